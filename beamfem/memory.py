@@ -2,7 +2,7 @@
 
 import os
 
-SHARE = 0.8  # of the memory of this computer that a model or a motion may take
+USABLE_FRACTION = 0.8  # of the memory of this computer that a model or a motion may take
 
 
 def installed_memory() -> int | None:

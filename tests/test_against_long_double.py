@@ -30,8 +30,8 @@ from beamfem.assembly.equations import MIXED, STATICS, linearise, linearise_afte
 from beamfem.assembly.round_off import LOSES, lost_digits
 from beamfem.assembly.system import system_of
 from beamfem.kernels.band import KNOWN, band
-from beamfem.kernels.band_halves import band_halves
 from beamfem.kernels.two_sided import SHORT, two_sided
+from beamfem.kernels.two_sided_parts import two_sided_parts
 
 ELEMENTS = (
     bf.ANCF(),
@@ -134,7 +134,7 @@ def in_motions(system, tangent, right):
 def in_halves(system, tangent, right):
     """Return the solutions with factors of two halves, which motions of long chains compute side by side."""
     n, w, rows, solutions = len(right), tangent.rows.shape[1] // 2, tangent.rows.copy(), right.T.copy()
-    own, m = band_halves(w), (n - 2 * w) // 2
+    own, m = two_sided_parts(w), (n - 2 * w) // 2
     ends, middle, space = ((0, m), (1, n - 2 * w - m)), (2, 0), np.empty(n)
     for part, count in (*ends, middle):
         assert own.factor(part, 0, count, n, m, w, system.unknowns.reach, rows, space) > 0.0

@@ -160,7 +160,7 @@ def test_what_lies_before_and_behind_a_turning_point_is_listed_in_the_order_of_t
     def crossing(x):
         return found_by.Crossing(x, np.zeros(1), np.zeros(1), np.zeros(1))
 
-    monkeypatch.setattr(found_by, "turning", lambda segment, x: crossing(x))
+    monkeypatch.setattr(found_by, "turning_point", lambda segment, x: crossing(x))
     monkeypatch.setattr(found_by, "_search", lambda segment, start, end: iter([crossing(0.5 * (start + end))]))
     segment = SimpleNamespace(turned=[0.6], change=lambda start, end: 0)
     shares = [found.fraction for found in found_by.bifurcations(segment, [])]

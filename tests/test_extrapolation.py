@@ -5,6 +5,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.kernels.extrapolation import MOST, complete, difference_rows, padded, predict
+from beamfem.kernels.motion_record import BEST_ORDER, KNOWN_DIFFERENCES, MotionStatistics
 from beamfem.kernels.motion_steps import check_convergence
 from studies.benchmarks.peer_cases import STRUCTURAL, pendulum, swing
 
@@ -13,22 +14,22 @@ NONE = np.zeros(0, dtype=np.int64)
 
 
 def extrapolated(accelerations, weights):
-    """Go through accelerations (steps, n); return what each step expected (steps - 1, n), and the last order."""
+    """Go through accelerations (steps, n); return what each step expected (steps - 1, n), and the last statistics."""
     n = accelerations.shape[1]
     state, before, differences = np.zeros((4, n)), np.zeros((4, n)), np.zeros(difference_rows(n))
-    inverse_scale, order, expected = np.zeros(padded(n)), np.zeros(2), []
+    inverse_scale, statistics, expected = np.zeros(padded(n)), np.array(MotionStatistics()), []
     inverse_scale[:n] = weights
     state[2] = accelerations[0]
     for now in accelerations[1:]:
-        predict(n, 0, order[0], state, before, differences, NONE, np.zeros(0), RULE)
+        predict(n, 0, statistics[BEST_ORDER], state, before, differences, NONE, np.zeros(0), RULE)
         expected.append(state[2].copy())
         h, alpha_m, alpha_f, gamma, beta = RULE
         new = (1.0 - alpha_f) / (1.0 - alpha_m) * (now - state[2])
         state[0] += h * h * beta * new
         state[1] += h * gamma * new
         state[2] = now
-        complete(n, 0, state, before, differences, inverse_scale, NONE, RULE, order)
-    return np.array(expected), order
+        complete(n, 0, state, before, differences, inverse_scale, NONE, RULE, statistics)
+    return np.array(expected), statistics
 
 
 @pytest.mark.parametrize("degree", range(MOST + 1))
@@ -37,10 +38,10 @@ def test_a_polynomial_is_extrapolated_exactly(degree, n):
     coefficients = np.random.default_rng(degree).standard_normal((n, degree + 1))
     times = np.arange(2 * MOST + 4)
     accelerations = np.array([np.polynomial.polynomial.polyval(0.1 * t, coefficients.T) for t in times])
-    expected, order = extrapolated(accelerations, 1.0)
+    expected, statistics = extrapolated(accelerations, 1.0)
     first = degree + 2  # a step more than the differences that are known by then
-    assert degree <= order[0] <= MOST
-    assert order[1] >= order[0]
+    assert degree <= statistics[BEST_ORDER] <= MOST
+    assert statistics[KNOWN_DIFFERENCES] >= statistics[BEST_ORDER]
     np.testing.assert_allclose(expected[first:], accelerations[first + 1 :], atol=1e-10 * np.abs(accelerations).max())
 
 
@@ -92,8 +93,8 @@ def test_coordinates_without_weight_do_not_choose_the_order():
     smooth = 0.1 * np.arange(30.0)[:, None] ** 2 * np.ones(3)
     rough = (-1.0) ** np.arange(30)[:, None]
     weights = np.array([1.0, 1.0, 1.0, 0.0])
-    expected, order = extrapolated(np.hstack([smooth, rough]), weights)
-    assert order[0] >= 2.0
+    expected, statistics = extrapolated(np.hstack([smooth, rough]), weights)
+    assert statistics[BEST_ORDER] >= 2.0
     np.testing.assert_allclose(expected[4:, :3], smooth[5:], atol=1e-9)
 
 

@@ -11,8 +11,8 @@ import pytest
 import beamfem
 from beamfem.kernels import cache, compiling, inertia
 from beamfem.kernels.band import KNOWN, band
-from beamfem.kernels.band_halves import band_halves
 from beamfem.kernels.two_sided import two_sided
+from beamfem.kernels.two_sided_parts import two_sided_parts
 
 KERNELS = Path(beamfem.__file__).parent / "kernels"
 PLAIN = set(sys.stdlib_module_names) | {"numpy", "llvmlite", "platformdirs"}
@@ -220,7 +220,7 @@ def test_no_two_kernels_share_a_name():
     for half_width in range(20):
         found |= {routine.name for short in (True, False) for routine in two_sided(half_width, short)}
     assert len(found) == 3 * 7 + 2 * (7 + 6)
-    found |= {routine.name for half_width in KNOWN for routine in band_halves(half_width)}
+    found |= {routine.name for half_width in KNOWN for routine in two_sided_parts(half_width)}
     assert len(found) == 3 * 7 + 2 * (7 + 6) + 3 * 6
     for nodes in (2, 3):
         inertia.add_inertia.fixed(nodes=nodes, vectors=2, others=4)

@@ -9,8 +9,8 @@ import beamfem as bf
 from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import system_of
 from beamfem.kernels.band import KNOWN, band
-from beamfem.kernels.band_halves import BLOCK, band_halves, whole_blocks
 from beamfem.kernels.two_sided import two_sided
+from beamfem.kernels.two_sided_parts import BLOCK, two_sided_parts, whole_blocks
 
 
 def matrix(n, w, rng, sign=1.0):
@@ -73,9 +73,9 @@ def test_negative_definite_and_mixed_matrices_are_solved_too(w, rng):
         np.testing.assert_allclose(x, np.linalg.solve(whole, right), rtol=1e-11, atol=1e-13)
 
 
-def factor_halves(w, n, m, reach, rows, chunk=BLOCK):
+def factor_parts(w, n, m, reach, rows, chunk=BLOCK):
     """Factor in place, both ends by some blocks of rows in each call, then the middle; return the smallest ratio."""
-    own, space, ratios = band_halves(w), np.empty(n), []
+    own, space, ratios = two_sided_parts(w), np.empty(n), []
     for part, count in ((0, m), (1, n - 2 * w - m)):
         ratios += [own.factor(part, *each, n, m, w, reach, rows, space) for each in calls(count, w, chunk)]
     return min(*ratios, own.factor(2, 0, 0, n, m, w, reach, rows, space))
@@ -90,13 +90,13 @@ def calls(count, w, chunk):
 @pytest.mark.parametrize("w", KNOWN)
 def test_halves_of_a_long_band_are_solved_by_blocks_or_at_once(w, rng):
     """With a few rows, and with so many that factors are stored in blocks; the middle may be anywhere."""
-    own = band_halves(w)
+    own = two_sided_parts(w)
     for n, m in ((2 * w, 0), (2 * w + 1, 1), (4 * w + 3, w), (1100, 540), (1301, 700), (1300, 0), (1301, 257)):
         whole, rows = matrix(n, w, rng)
         right, found = rng.standard_normal(n), []
         for chunk in (BLOCK, 2 * BLOCK, 10 * BLOCK):
             lu, x = rows.copy(), right.copy()
-            assert factor_halves(w, n, m, whole_band(n, w), lu, chunk) > 0.2
+            assert factor_parts(w, n, m, whole_band(n, w), lu, chunk) > 0.2
             ends = ((0, m), (1, n - 2 * w - m))
             for part, count in ends:
                 for start, stop in calls(count, w, chunk):
@@ -112,12 +112,12 @@ def test_halves_of_a_long_band_are_solved_by_blocks_or_at_once(w, rng):
 
 
 @pytest.mark.parametrize("w", KNOWN)
-def test_a_pivot_of_halves_that_is_zero_is_seen_wherever_it_is(w, rng):
+def test_a_pivot_of_parts_that_is_zero_is_seen_wherever_it_is(w, rng):
     n = 5 * w + 4
     for where in (2, n // 2, n - 3):
         _, rows = matrix(n, w, rng)
         rows[where] = 0.0
-        assert factor_halves(w, n, (n - 2 * w) // 2, whole_band(n, w), rows) == 0.0
+        assert factor_parts(w, n, (n - 2 * w) // 2, whole_band(n, w), rows) == 0.0
 
 
 CHAINS = [
@@ -146,7 +146,7 @@ def test_rows_that_a_chain_does_not_couple_stay_as_they_are(element, extra, rng)
     routines = [lambda lu, own: band(w).factor(n, n, w, 0, own[0].copy(), lu, np.empty(n), np.empty(n))]
     routines.append(lambda lu, own: two_sided(w, False).factor(n, w, own, lu, np.empty(n)))
     if w in KNOWN:
-        routines.append(lambda lu, own: factor_halves(w, n, (n - 2 * w) // 2, own, lu))
+        routines.append(lambda lu, own: factor_parts(w, n, (n - 2 * w) // 2, own, lu))
     for factored in routines:
         within, whole = rows.copy(), rows.copy()
         assert factored(within, reach) == factored(whole, whole_band(n, w))
@@ -171,7 +171,7 @@ def inverse_pivots(factor, w, n):
 
 
 def from_both_ends_in_parts(w, n, rows):
-    return factor_halves(w, n, (n - 2 * w) // 2, whole_band(n, w), rows)
+    return factor_parts(w, n, (n - 2 * w) // 2, whole_band(n, w), rows)
 
 
 @pytest.mark.parametrize("unit", [1e-280, 1e-160, 1e160, 1e280])

@@ -13,7 +13,7 @@ from beamfem.kernels.two_sided import two_sided
 
 PASSES = [
     *(stiffness.columns, stiffness.combine, stiffness.products, inertia.add_inertia, inertia.add_mass),
-    *(field.interpolate, field.spread, linear_law.four_resultants, linear_law.six_resultants),
+    *(field.interpolate, field.distribute, linear_law.four_resultants, linear_law.six_resultants),
     *(getattr(forces, name) for forces in (green_lagrange, structural) for name in ("strains", "forces", "rates")),
     *(forces.hessian for forces in (green_lagrange, structural)),
     *(band(half_width).factor for half_width in (5, 8, 11)),

@@ -37,15 +37,15 @@ class Actions:
     loads: tuple[PointLoad | LineLoad, ...]
 
     @cached_property
-    def _spread(self) -> tuple[np.ndarray, np.ndarray]:
+    def _distributed(self) -> tuple[np.ndarray, np.ndarray]:
         """Distributed loads and foundations (m,), ordered by element, and their elements (m,)."""
-        spread = np.flatnonzero(self.rule > 0)
-        order = spread[np.argsort(self.points.element[spread], kind="stable")]
+        distributed = np.flatnonzero(self.rule > 0)
+        order = distributed[np.argsort(self.points.element[distributed], kind="stable")]
         return order, self.points.element[order]
 
-    def spread_on(self, elements: np.ndarray) -> np.ndarray:
+    def distributed_on(self, elements: np.ndarray) -> np.ndarray:
         """Return the numbers (k,) of the distributed loads and foundations on elements of the block, ascending."""
-        order, owner = self._spread
+        order, owner = self._distributed
         first, last = (np.searchsorted(owner, elements, side=side) for side in ("left", "right"))
         count = last - first
         return np.sort(order[np.repeat(first - np.cumsum(count) + count, count) + np.arange(count.sum())])

@@ -195,13 +195,13 @@ class Assembler:
         step since the committed history.
         """
         self._factors[:] = *coefficients, dt
-        moving, rated = moving or coefficients[2] != 0.0, coefficients[1] != 0.0
+        moving, rated = moving or coefficients[record.WEIGHT_A] != 0.0, coefficients[record.WEIGHT_V] != 0.0
         self.table[record.MOVING], self.table[record.RATED] = int(moving), int(moving or rated)
 
     @property
     def weights(self) -> tuple[float, float, float]:
         """Weights ck, cv, ca of p, p', p'' in the tangent."""
-        ck, cv, ca = self._factors[:3].tolist()
+        ck, cv, ca = self._factors[: record.SINCE_COMMITTED].tolist()
         return ck, cv, ca
 
     def require(self, *tasks: str) -> None:

@@ -4,7 +4,7 @@ from beamfem.assembly import scratch
 from beamfem.assembly.arena import Arena
 from beamfem.assembly.equations import STATICS
 from beamfem.assembly.system import System
-from beamfem.kernels import record
+from beamfem.kernels import newton_record, record
 from beamfem.kernels.pointers import address_of
 
 _KEPT = 100_000  # entries of the largest tangent for which allocation is a noticeable part of a solve
@@ -30,8 +30,8 @@ class BandWorkspace:
                 record.PRESCRIBED_FORCE: (n,),
                 record.RIGHT: (unknown,),
                 record.ROWS: (unknown, 2 * half + 1),
-                record.LIMITS: (7,),
-                record.FOUND: (9,),
+                record.LIMITS: (newton_record.LIMIT_FIELDS,),
+                record.FOUND: (newton_record.FOUND_FIELDS,),
                 record.LINEAR: (n,),
             }
         )

@@ -33,8 +33,8 @@ def require_workless(item: Connector) -> None:
         pairs = [pair for pair in (_derivatives(item, motion), _derivatives(item, _reversed(item, motion))) if pair]
         if len(pairs) == 2:  # a friction that grows with |lambda| has a slope of either sign
             pairs.append((0.5 * (pairs[0][0] + pairs[1][0]), pairs[0][1]))
-        for held, conditions in pairs:
-            size, row, opposed = _besides(item, held, conditions)
+        for forces, conditions in pairs:
+            size, row, opposed = _besides(item, forces, conditions)
             if size <= _AGREE and opposed < 0:
                 return
             if size <= _AGREE:
@@ -104,19 +104,19 @@ def _derivatives(item: Connector, motion: Motion) -> tuple[np.ndarray, np.ndarra
     return tangent[:number, number:], tangent[number:, :number].T
 
 
-def _besides(item: Connector, held: np.ndarray, conditions: np.ndarray) -> tuple[float, int, int]:
+def _besides(item: Connector, forces: np.ndarray, conditions: np.ndarray) -> tuple[float, int, int]:
     """Return the largest force that is no combination of the conditions, relative to all at its place, and its place.
 
     Third, a multiplier whose part of its own condition is not positive, -1 if there is none. Every coordinate is scaled
     to 1, so that short arms count as much as long ones.
     """
-    works = (item.units[:, None] * table for table in (held, conditions))  # moments and forces become comparable
-    held, conditions = (table / np.maximum(np.abs(table).max(axis=0), np.finfo(float).tiny) for table in works)
-    sizes = np.maximum(np.abs(held), np.abs(conditions)).max(axis=1, keepdims=True)
-    held, conditions = (table / np.maximum(sizes, _ACTS) for table in (held, conditions))
-    coefficients = np.linalg.lstsq(conditions, held, rcond=1e-9)[0]
-    residual = np.abs(held - conditions @ coefficients).max(axis=1)
-    opposed = np.flatnonzero((np.diag(coefficients) <= _ROUND_OFF) & held.any(axis=0))
+    works = (item.units[:, None] * table for table in (forces, conditions))  # moments and forces become comparable
+    forces, conditions = (table / np.maximum(np.abs(table).max(axis=0), np.finfo(float).tiny) for table in works)
+    sizes = np.maximum(np.abs(forces), np.abs(conditions)).max(axis=1, keepdims=True)
+    forces, conditions = (table / np.maximum(sizes, _ACTS) for table in (forces, conditions))
+    coefficients = np.linalg.lstsq(conditions, forces, rcond=1e-9)[0]
+    residual = np.abs(forces - conditions @ coefficients).max(axis=1)
+    opposed = np.flatnonzero((np.diag(coefficients) <= _ROUND_OFF) & forces.any(axis=0))
     return float(residual.max()), int(residual.argmax()), int(opposed[0]) if len(opposed) else -1
 
 

@@ -134,11 +134,13 @@ def _routines(block: Block) -> Routines:
 
 def _constant(structure: Structure, size: int, frame: np.ndarray) -> np.ndarray | None:
     """Return node data with the entries that never change; frame (N, 3): of nodes in storage order."""
-    turns, turned, turning = structure.turns, structure.turned, structure.turning
-    if structure.constant is None or not len(turns):
+    rotated, dependent, parameters = structure.rotated, structure.dependent, structure.parameters
+    if structure.constant is None or not len(rotated):
         return structure.constant
     chunks = structure.constant.copy()
-    c, s = frame[turns, 0], frame[turns, 1]
+    c, s = frame[rotated, 0], frame[rotated, 1]
     for part, column, value in ((2, 2, c), (2, 1, -s), (1, 2, s), (1, 1, c)):
-        chunks[turns // LANES, 2 * size + (turned - part) * turning + turning - column, turns % LANES] = value
+        chunks[rotated // LANES, 2 * size + (dependent - part) * parameters + parameters - column, rotated % LANES] = (
+            value
+        )
     return chunks

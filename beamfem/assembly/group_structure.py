@@ -59,19 +59,19 @@ class Numbers(NamedTuple):
 class Structure:
     """The part of a group that identical groups share: see `element_group.ElementGroup`.
 
-    table: see `kernels.record`; kept: the arrays that it points to; turned, turning: numbers of components of nodal
-    vectors that rotate, and of the coordinates that rotate them; constant: node data with the entries that never change
-    in any such group, None if there are none; turns (k,): nodes with `ROTATED_GRADIENTS`, in storage order; used: rows
-    of workspace.
+    table: see `kernels.record`; kept: the arrays that it points to; dependent, parameters: numbers of components of
+    nodal vectors that are no coordinates, and of the coordinates on which they depend; constant: node data with the
+    entries that never change in any such group, None if there are none; rotated (k,): nodes with `ROTATED_GRADIENTS`,
+    in storage order; used: rows of workspace.
     """
 
     table: np.ndarray
     kept: tuple[np.ndarray, ...]
     order: np.ndarray | None
-    turned: int
-    turning: int
+    dependent: int
+    parameters: int
     constant: np.ndarray | None
-    turns: np.ndarray
+    rotated: np.ndarray
     chunks: tuple[int, int, int]
     used: int
     needs: Needs
@@ -129,18 +129,18 @@ def _structure(given: Numbers, sizes: Sizes) -> Structure:
     count, coordinates = given.dof.shape
     size = 2 * sizes.vectors
     kinds = tuple(np.unique(given.node_kind).tolist())
-    turned = 4 if STRETCH in kinds or SHEAR_RIGID in kinds else (0 if set(kinds) <= {GRADIENTS} else 2)
-    turning = coordinates - (size - turned) if turned else 0
+    dependent = 4 if STRETCH in kinds or SHEAR_RIGID in kinds else (0 if set(kinds) <= {GRADIENTS} else 2)
+    parameters = coordinates - (size - dependent) if dependent else 0
     table = np.zeros(record.BLOCK_FIELDS, dtype=np.int64)
     table_rows = _table_rows(table, nodes * sizes.vectors, sizes)
-    velocity = 2 * size + 2 * turned * turning
+    velocity = 2 * size + 2 * dependent * parameters
     gathered = velocity + size * sizes.damped
-    chunk_rows = gathered + turning * turning + 2 * size
+    chunk_rows = gathered + parameters * parameters + 2 * size
     table[record.ACCELERATION], table[record.TRANSFORM] = size, 2 * size
-    table[record.CONVECTIVE] = 2 * size + turned * turning
+    table[record.CONVECTIVE] = 2 * size + dependent * parameters
     table[record.VELOCITY], table[record.DAMPED] = velocity, sizes.damped
-    table[record.CURVATURE], table[record.FORCE] = gathered, gathered + turning * turning
-    table[record.PREDICTED_FORCE], table[record.NODE_ROWS] = gathered + turning * turning + size, chunk_rows
+    table[record.CURVATURE], table[record.FORCE] = gathered, gathered + parameters * parameters
+    table[record.PREDICTED_FORCE], table[record.NODE_ROWS] = gathered + parameters * parameters + size, chunk_rows
     used = rows_of(nodes, sizes.vectors, sizes.points, gathered, table_rows)[-1]
     batch = LANES
     while batch > _SMALLEST and used * batch > _CACHE * LANES:
@@ -171,27 +171,29 @@ def _structure(given: Numbers, sizes: Sizes) -> Structure:
     table[record.ORDERED] = (np.diff(given.node, axis=0) > 0).all()
     table[record.VECTORS], table[record.POINTS] = sizes.vectors, sizes.points
     table[record.MEASURES], table[record.BENDS] = sizes.measures, sizes.bends
-    table[record.TURNED], table[record.TURNING] = turned, turning
+    table[record.DEPENDENT], table[record.PARAMETERS] = dependent, parameters
     table[record.BATCH], table[record.TABLE_ROWS], table[record.COORDINATES] = batch, table_rows, coordinates
     table[record.RUN_COUNT], table[record.HALF_WIDTH] = len(runs), sizes.half_width
     table[record.LOADS] = len(given.element)
     needs = _needs(kinds, sizes, bool(len(given.element)))
     chunks = -(-count // LANES), chunk_rows, ROW
-    turns, constant = np.flatnonzero(given.node_kind == ROTATED_GRADIENTS), None
-    if (turned and len(kinds) > 1) or len(turns):
-        constant = _constant(given.node_kind, chunks, size, turned, turning)
-    return Structure(table, tuple(kept), order, turned, turning, constant, turns, chunks, used, needs)
+    rotated, constant = np.flatnonzero(given.node_kind == ROTATED_GRADIENTS), None
+    if (dependent and len(kinds) > 1) or len(rotated):
+        constant = _constant(given.node_kind, chunks, size, dependent, parameters)
+    return Structure(table, tuple(kept), order, dependent, parameters, constant, rotated, chunks, used, needs)
 
 
-def _constant(node_kind: np.ndarray, shape: tuple[int, int, int], size: int, turned: int, turning: int) -> np.ndarray:
+def _constant(
+    node_kind: np.ndarray, shape: tuple[int, int, int], size: int, dependent: int, parameters: int
+) -> np.ndarray:
     """Return node data with the entries that never change: B of nodes whose coordinates are nodal vectors."""
     chunks = np.zeros(shape)
-    for part in range(turned):
+    for part in range(dependent):
         straight = node_kind == GRADIENTS
-        if part < turned - 2:
+        if part < dependent - 2:
             straight |= (node_kind == ROTATION) | (node_kind == ROTATED_GRADIENTS)
         nodes = np.flatnonzero(straight)
-        chunks[nodes // LANES, 2 * size + part * turning + (part if part < turning else 0), nodes % LANES] = 1.0
+        chunks[nodes // LANES, 2 * size + part * parameters + (part if part < parameters else 0), nodes % LANES] = 1.0
     return chunks
 
 
@@ -221,18 +223,18 @@ def _needs(kinds: tuple[int, ...], sizes: Sizes, loads: bool) -> Needs:
     """Return the parts of `Routines` that each task needs, and the kinds of nodes with an angle."""
     angles = tuple(kind - ROTATION for kind in kinds if kind in (ROTATION, STRETCH, SHEAR_RIGID))
     rotated = ("rotated",) if ROTATED_GRADIENTS in kinds else ()
-    turns = bool(angles or rotated)
+    rotates = bool(angles or rotated)
     forces = ("forces", *(("angles",) if angles else ()), *rotated, *(("loads",) if loads else ()))
     forces += (*(("damping",) if sizes.damped else ()), *(("imposed",) if sizes.imposed else ()))
     tangent = ["tangent", "band" if sizes.half_width >= 0 else "sparse"]
-    tangent += ["turning tangent"] if turns else []
+    tangent += ["rotation tangent"] if rotates else []
     tangent += ["load tangent"] if loads else []
-    tangent += ["turning load tangent"] if loads and turns else []
+    tangent += ["rotation load tangent"] if loads and rotates else []
     parts = {"forces": forces, "tangent": tuple(tangent), "mass": ("mass",), "prediction": ("prediction",)}
     return {task: (names, angles) for task, names in parts.items()}
 
 
 def _runs(node_kind: np.ndarray) -> np.ndarray:
-    """Return kind, first node and number of nodes (runs, 3) of each run of consecutive nodes of one kind."""
+    """Return kind, first node and number of nodes (runs, run fields) of each run of consecutive nodes of one kind."""
     first = np.flatnonzero(np.diff(node_kind, prepend=-1))
     return np.column_stack([node_kind[first], first, np.diff(first, append=len(node_kind))])

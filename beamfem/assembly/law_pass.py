@@ -114,7 +114,7 @@ def _past(group: int, system: int, elements: slice, number: int, points: int) ->
     b, s = _wholes(group, record.BLOCK_FIELDS).tolist(), _wholes(system, record.SYSTEM_FIELDS).tolist()
     table = _wholes(b[record.HISTORY], b[record.ELEMENTS], points, b[record.VARIABLES])
     state, factors = _reals(s[record.COORDINATES_P], s[record.SIZE]), _reals(s[record.FACTORS], record.FACTOR_COUNT)
-    return state[table[elements, number]], float(factors[-1])
+    return state[table[elements, number]], float(factors[record.SINCE_COMMITTED])
 
 
 def _rows(address: int, count: int) -> np.ndarray:

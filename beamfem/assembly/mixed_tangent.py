@@ -18,7 +18,7 @@ from beamfem.assembly.system import System
 from beamfem.linalg.inertia import negative_eigenvalues
 from beamfem.linalg.lapack import LinAlgError
 from beamfem.linalg.superlu import superlu
-from beamfem.linalg.tangent import Rotated, Stresses, Tangent, turning
+from beamfem.linalg.tangent import Rotated, Stresses, Tangent, rotation_to_normals
 from beamfem.once import cached_property
 
 _FLEXIBILITY = 1e-10  # of the stiffest part, beside derivatives of strains of one
@@ -30,7 +30,7 @@ class MixedFactors:
     """Factors of the mixed tangent.
 
     scale (n + m,): scaling of the coordinates, then of the resultants; kept (n,): mask of the coordinates without the
-    normals of inclined rollers; turn (n, n): rotation of these normals to x, None if there are none.
+    normals of inclined rollers; rotation (n, n): rotation of these normals to x, None if there are none.
     """
 
     lu: SuperLU
@@ -39,7 +39,7 @@ class MixedFactors:
     kept: np.ndarray
     tangent: "MixedTangent"
     rotated: Rotated
-    turn: csr_array | None
+    rotation: csr_array | None
 
     @cached_property
     def negative_pivots(self) -> int:
@@ -73,8 +73,8 @@ class MixedFactors:
         return x, tuple(stresses)
 
     def _solve(self, right: np.ndarray, strain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        turn, n = self.turn, int(self.kept.sum())
-        rhs = np.concatenate([(right if turn is None else turn @ right)[self.kept], strain])
+        rotation, n = self.rotation, int(self.kept.sum())
+        rhs = np.concatenate([(right if rotation is None else rotation @ right)[self.kept], strain])
         rhs = self.scale * rhs
         solution = self.lu.solve(rhs)
         for _ in range(_REFINEMENTS):
@@ -84,7 +84,7 @@ class MixedFactors:
             raise LinAlgError("the tangent is singular")
         x = np.zeros(len(right))
         x[self.kept] = solution[:n]
-        return x if turn is None else np.asarray(turn.T @ x), solution[n:]
+        return x if rotation is None else np.asarray(rotation.T @ x), solution[n:]
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,11 +112,11 @@ class MixedTangent:
     def factorised(self, rotated: Rotated) -> MixedFactors:
         """Factorise the mixed matrix. Raises LinAlgError."""
         n, zeros, couples = self.zeros.shape[0], self.zeros, self.slopes
-        kept, turn = np.ones(n, dtype=bool), None
+        kept, rotation = np.ones(n, dtype=bool), None
         if len(rotated[0]):
             kept[rotated[0]] = False
-            turn = turning(n, rotated)
-            zeros, couples = (turn @ zeros @ turn.T)[kept][:, kept], csr_array(couples @ turn.T)[:, kept]
+            rotation = rotation_to_normals(n, rotated)
+            zeros, couples = (rotation @ zeros @ rotation.T)[kept][:, kept], csr_array(couples @ rotation.T)[:, kept]
         unknown = zeros.shape[0]
         above, beside, below = coo_array(zeros), coo_array(couples), self.flexibility
         row = np.concatenate([above.row, unknown + beside.row, beside.col, unknown + below.row])
@@ -132,7 +132,7 @@ class MixedTangent:
         scale = 2.0 ** np.round(np.log2(scale))  # powers of two round nothing
         shape = len(scale), len(scale)
         matrix = csc_array(coo_array((scale[row] * data * scale[column], (row, column)), shape=shape))
-        return MixedFactors(superlu(matrix), scale, matrix, kept, self, rotated, turn)
+        return MixedFactors(superlu(matrix), scale, matrix, kept, self, rotated, rotation)
 
     def _units(self, length: np.ndarray, couples: coo_array) -> np.ndarray:
         """Return the scale (n + m,) in which the matrix is nearly the same in any units.

@@ -6,10 +6,10 @@ from contextlib import contextmanager
 import numpy as np
 
 from beamfem.assembly.arena import Arena
+from beamfem.assembly.rotating_vectors import runs_of
 from beamfem.assembly.system import System
 from beamfem.assembly.tiles import tiles_of
-from beamfem.assembly.turning import runs_of
-from beamfem.kernels import record
+from beamfem.kernels import motion_record, record
 from beamfem.kernels.extrapolation import difference_rows, padded
 from beamfem.kernels.pointers import address_of
 
@@ -33,7 +33,7 @@ class MotionWorkspace:
         self.in_two = tiles is not None
         self._bounds = _whole(system) if tiles is None else tiles.bounds
         self._tiles = _NONE if tiles is None else tiles.table
-        pairs = runs_of(system.turning)
+        pairs = runs_of(system.rotating)
         self._kept = pairs, tiles  # what the tables point to
         nodes = sum(int(work.table[record.NODES]) for work in self.assembler.works)
         first = system.unknowns.first
@@ -49,9 +49,9 @@ class MotionWorkspace:
                 record.DIFFERENCES: (difference_rows(size, len(self._bounds)),),
                 record.INVERSE_SCALE: (padded(size),),
                 record.KEPT: (2, nodes),
-                record.TURNS: (2, nodes),
-                record.RULE: (6,),
-                record.LIMITS: (5,),
+                record.ROTATIONS: (2, nodes),
+                record.RULE: (motion_record.RULE_FIELDS,),
+                record.LIMITS: (motion_record.LIMIT_FIELDS,),
             }
         )
         self.arrays, addresses = room.arrays, room.addresses

@@ -17,10 +17,10 @@ from beamfem.kernels import (
     two_threads,
 )
 from beamfem.kernels.band import Band, band
-from beamfem.kernels.band_halves import BandHalves, band_halves
 from beamfem.kernels.compiling import Routine
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.two_sided import SHORT, TwoSided, two_sided
+from beamfem.kernels.two_sided_parts import TwoSidedParts, two_sided_parts
 
 
 class SolverTable:
@@ -72,7 +72,7 @@ def _driver_routines(half_width: int, moving: bool, short: bool, in_two: bool) -
     }
     if moving:
         routines |= _of_motions()
-        routines |= _of_halves(band_halves(half_width)) if in_two else _of_all(two_sided(half_width, short))
+        routines |= _of_parts(two_sided_parts(half_width)) if in_two else _of_all(two_sided(half_width, short))
     else:
         routines |= _of_statics(band(half_width))
     table = np.zeros(record.SOLVER_ROUTINES, dtype=np.int64)
@@ -92,9 +92,9 @@ def _of_statics(own: Band) -> dict[int, Routine]:
 def _of_motions() -> dict[int, Routine]:
     return {
         record.KEEP_DIRECTIONS: motion_steps.keep_directions,
-        record.TURNS_SINCE: motion_steps.turns_since,
-        record.TURN_PAIRS: motion_steps.turn_pairs,
-        record.COUNT_TURNS: motion_steps.count_turns,
+        record.ROTATIONS_SINCE: motion_steps.rotations_since,
+        record.ROTATE_PAIRS: motion_steps.rotate_pairs,
+        record.COUNT_ROTATIONS: motion_steps.count_rotations,
         record.PREDICT: motion_stages.predict,
         record.COMPLETE: motion_stages.complete,
     }
@@ -111,7 +111,7 @@ def _of_all(own: TwoSided) -> dict[int, Routine]:
     }
 
 
-def _of_halves(own: BandHalves) -> dict[int, Routine]:
+def _of_parts(own: TwoSidedParts) -> dict[int, Routine]:
     return {
         record.FACTOR_PART: own.factor,
         record.LOWER_PART: own.lower,

@@ -17,11 +17,11 @@ from beamfem.assembly.layout import Unknowns, order_unknowns
 from beamfem.assembly.loads_at import LoadsAt, body_loads
 from beamfem.assembly.prescribed import PrescribedCoordinate, inclined_rollers, prescribed_coordinates
 from beamfem.assembly.pressures import pressures_have_potential
+from beamfem.assembly.rotating_vectors import rotating_vectors
 from beamfem.assembly.row_errors import residual_errors, stress_errors
 from beamfem.assembly.solver_table import SolverTable
 from beamfem.assembly.strain_rates import StrainRates, strain_rates
 from beamfem.assembly.stress_free import stress_free
-from beamfem.assembly.turning import turning_vectors
 from beamfem.errors import InputError
 from beamfem.kernels.block import Block, Layout, PointLoads, Springs
 from beamfem.model.load import factor
@@ -291,14 +291,14 @@ class System:
         return first, np.array([normal for _, normal in self.inclined], dtype=float).reshape(-1, 2)
 
     @shared_property
-    def turning(self) -> np.ndarray:
+    def rotating(self) -> np.ndarray:
         """Equation numbers of x and y, node and number of each nodal vector that is a coordinate (np, 4).
 
         A tangent that is kept for several steps is rotated with the sections in these components. Nodes are numbered
         consecutively over all blocks, in storage order. Vectors with a prescribed component or an inclined roller are
         left out.
         """
-        return turning_vectors(self.blocks, self.unknowns.free, self.rotated[0])
+        return rotating_vectors(self.blocks, self.unknowns.free, self.rotated[0])
 
     def along_free(self, residual: np.ndarray) -> np.ndarray:
         """Return the residual of the unknowns without the reactions of inclined rollers."""

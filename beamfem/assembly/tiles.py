@@ -12,13 +12,13 @@ from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.chain_parts import block_of, is_chain, loads_of
 from beamfem.assembly.element_group import make_group
 from beamfem.assembly.group_structure import storage_order
+from beamfem.assembly.rotating_vectors import runs_of
 from beamfem.assembly.system import System
-from beamfem.assembly.turning import runs_of
 from beamfem.kernels import record
 from beamfem.kernels.band import KNOWN
-from beamfem.kernels.band_halves import whole_blocks
 from beamfem.kernels.block import Block, Layout, PointLoads, Springs
 from beamfem.kernels.pointers import address_of
+from beamfem.kernels.two_sided_parts import whole_blocks
 
 LONG = 20_000  # elements; the node data of longer chains does not fit into the cache
 _FEWEST = 4  # unknowns in half widths: two are left in the middle
@@ -70,14 +70,14 @@ def tiles_of(system: System) -> Tiles | None:
     spaces = [*[0] * len(halves[0]), *[1] * len(halves[1]), 0]
     groups = [part.group for part in tiles]
     assembler = Assembler(Equations(groups, springs, system.model.size), spaces=spaces)
-    turning, order = system.turning.copy(), storage_order(block.node, len(block.node_kind))
-    turning[:, 2] = position[turning[:, 2] if order is None else order[turning[:, 2]]]
+    rotating, order = system.rotating.copy(), storage_order(block.node, len(block.node_kind))
+    rotating[:, 2] = position[rotating[:, 2] if order is None else order[rotating[:, 2]]]
     ranges = _nested(np.array([part.range for part in tiles]), first)
     # what one half needs to solve for its unknowns, the other must not have rotated: half of it lies between them
     rows_down = int(np.searchsorted(system.free_dofs, ranges[-1]).sum()) // 2 - layout.half_width
     bounds, table = _tables(system, springs.dof, ranges, first, rows_down)
     table[:, record.TILE_NODE] = stored[table[:, record.TILE_GROUP]]
-    pairs = _pairs(turning, table)
+    pairs = _pairs(rotating, table)
     return Tiles(assembler, tuple(part.loaded for part in tiles), bounds, table, pairs, rows_down)
 
 
@@ -101,13 +101,13 @@ class _Tile:
         self.nodes = nodes if self.group.order is None else nodes[self.group.order]
 
 
-def _pairs(turning: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, ...]:
+def _pairs(rotating: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, ...]:
     """Fill the pairs of vectors that rotate into the table of tiles, and return their tables, which tiles share."""
     shared: dict[bytes, np.ndarray] = {}
     for tile in table:
         unknown, end, node = tile[[record.DONE_UNKNOWN, record.END_DONE_UNKNOWN, record.TILE_NODE]]
-        first, last = np.searchsorted(turning[:, 0], (unknown, end))
-        pairs = runs_of(turning[first:last] - [unknown, unknown, node, 0])
+        first, last = np.searchsorted(rotating[:, 0], (unknown, end))
+        pairs = runs_of(rotating[first:last] - [unknown, unknown, node, 0])
         pairs = shared.setdefault(pairs.tobytes(), pairs)
         tile[record.TILE_RUNS_OF_PAIRS], tile[record.TILE_PAIR_TABLE] = len(pairs), address_of(pairs)
     return tuple(shared.values())

@@ -8,8 +8,8 @@ STRAINS = 3  # of a law: stretch, shear and curvature, which precede other measu
 
 
 @kept_with_elements
-def coupled_shares(element: Element) -> np.ndarray:
-    """Return the shares (nq, ns, ns) of a stiffness that couples all strains in the energy at its points, read-only."""
+def coupled_fractions(element: Element) -> np.ndarray:
+    """Return the fractions (nq, ns, ns), read-only, of a stiffness that couples all strains in the energy at points."""
     points, measures = len(element.energy_points()[0]), len(element.forces.shear_measures)
     result = element.energy_stiffness(np.ones((1, points, measures, measures)), np.ones((1, points)))[0]
     result.setflags(write=False)
@@ -19,7 +19,7 @@ def coupled_shares(element: Element) -> np.ndarray:
 @kept_with_elements
 def law_points(element: Element) -> int:
     """Return at how many points, the first ones, a law acts; 0 if its strains do not all count fully at the same."""
-    block = coupled_shares(element)[:, :STRAINS, :STRAINS]
+    block = coupled_fractions(element)[:, :STRAINS, :STRAINS]
     count = int(block.any(axis=(1, 2)).sum())
     whole = np.zeros_like(block)
     whole[:count] = 1.0

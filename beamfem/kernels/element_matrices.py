@@ -22,11 +22,11 @@ def form_matrices(group, system, count, x, nodal, stride):
     """
     b, s = wholes(group), wholes(system)
     call, factors = wholes(b[r.ROUTINES]), reals(s[r.FACTORS])
-    nodes, vectors, turned, turning, gathered = (
+    nodes, vectors, dependent, parameters, gathered = (
         b[r.NODES_PER_ELEMENT],
         b[r.VECTORS],
-        b[r.TURNED],
-        b[r.TURNING],
+        b[r.DEPENDENT],
+        b[r.PARAMETERS],
         b[r.CURVATURE],
     )
     points, bends, coordinates = b[r.POINTS], b[r.BENDS], b[r.COORDINATES]
@@ -41,9 +41,9 @@ def form_matrices(group, system, count, x, nodal, stride):
         at(x, pair * ROW),
         at(x, k * ROW),
     )
-    ck, linear = factors[0], size - turned
+    ck, linear = factors[r.WEIGHT_P], size - dependent
     if b[r.DAMPED] != 0 and s[r.RATED] != 0:  # `linear_law.add_viscous` has applied ck and cv at the points
-        ck = 1.0 if ck != 0.0 or factors[1] != 0.0 else 0.0
+        ck = 1.0 if ck != 0.0 or factors[r.WEIGHT_V] != 0.0 else 0.0
     transform, director = at(nodal, b[r.TRANSFORM] * ROW), reals(b[r.DIRECTOR])
     if ck != 0.0:
         for m in range(nodes):
@@ -63,13 +63,13 @@ def form_matrices(group, system, count, x, nodal, stride):
                     at(h, 21 * point * ROW),
                     to,
                 )
-                if turned != 0:
-                    turn = at(transform, m * stride)
-                    _combine(call[r.COMBINE], 6, turned, turning, count, turn, at(to, 6 * linear * ROW), x)
+                if dependent != 0:
+                    b_node = at(transform, m * stride)
+                    _combine(call[r.COMBINE], 6, dependent, parameters, count, b_node, at(to, 6 * linear * ROW), x)
             for n in range(m + 1):
                 slope = at(t, (b[r.SLOPE] + n * vectors) * ROW)
                 second = at(t, (b[r.SECOND] + n * vectors * bends) * ROW)
-                turn, to = at(transform, n * stride), at(k, (rows * m + n) * coordinates * ROW)
+                b_node, to = at(transform, n * stride), at(k, (rows * m + n) * coordinates * ROW)
                 done = _products(
                     call[r.PRODUCTS],
                     vectors,
@@ -79,39 +79,44 @@ def form_matrices(group, system, count, x, nodal, stride):
                     coordinates,
                     slots_,
                     6 * size,
-                    turned,
-                    turning,
+                    dependent,
+                    parameters,
                     rows,
                     slope,
                     second,
                     at(director, n),
-                    turn,
+                    b_node,
                     z,
                     pair,
                     to,
                 )
                 if done == 0:
-                    _store(call[r.STORE], size, turned, turning, coordinates, count, rows, turn, pair, to)
+                    _store(call[r.STORE], size, dependent, parameters, coordinates, count, rows, b_node, pair, to)
         _mirror(call[r.MIRROR], rows, count, k)
     else:
         _clear(call[r.CLEAR], rows * rows, count, k)
     if s[r.MOVING] != 0:
         convective = at(nodal, b[r.CONVECTIVE] * ROW)  # a copy
-        if turned != 0:
+        if dependent != 0:
             for n in range(nodes):
                 to = at(convective, n * gathered * ROW)
                 _add_scaled(
-                    call[r.ADD_SCALED], turned * turning, count, factors[2], at(transform, n * gathered * ROW), to
+                    call[r.ADD_SCALED],
+                    dependent * parameters,
+                    count,
+                    factors[r.WEIGHT_A],
+                    at(transform, n * gathered * ROW),
+                    to,
                 )
         _add_mass(
             call[r.ADD_MASS],
             nodes,
             vectors,
-            turned,
-            turning,
+            dependent,
+            parameters,
             count,
             gathered,
-            factors[2],
+            factors[r.WEIGHT_A],
             at(t, b[r.MASS] * ROW),
             transform,
             convective,
@@ -156,20 +161,20 @@ def reduce_and_add(group, system, first, count, x):
     """Reduce the matrices (columns, rows, ROW) of a batch of loads in its workspace x, and add them to the model's."""
     b, s = wholes(group), wholes(system)
     call = wholes(b[r.ROUTINES])
-    nodes, vectors, turned, turning, gathered = (
+    nodes, vectors, dependent, parameters, gathered = (
         b[r.NODES_PER_ELEMENT],
         b[r.VECTORS],
-        b[r.TURNED],
-        b[r.TURNING],
+        b[r.DEPENDENT],
+        b[r.PARAMETERS],
         b[r.CURVATURE],
     )
     size, coordinates, half = 2 * vectors, b[r.COORDINATES], b[r.HALF_WIDTH]
     matrix = at(reals(s[r.MATRIX]), b[r.FIRST_OF_MATRIX])
     _, e, _, _, _, _, _, _, _, k, _ = rows_of(nodes, vectors, b[r.POINTS], gathered, b[r.TABLE_ROWS])
     transform, k = at(x, (e + b[r.TRANSFORM]) * ROW), at(x, k * ROW)
-    if turned != 0:
-        _reduce(call[r.REDUCE_COLUMNS], nodes, size, turned, turning, count, gathered, transform, k, x)
-        _reduce(call[r.REDUCE_ROWS], nodes, size, turned, turning, count, gathered, transform, k, x)
+    if dependent != 0:
+        _reduce(call[r.REDUCE_COLUMNS], nodes, size, dependent, parameters, count, gathered, transform, k, x)
+        _reduce(call[r.REDUCE_ROWS], nodes, size, dependent, parameters, count, gathered, transform, k, x)
     if half >= 0:
         number = at(wholes(b[r.LOAD_NUMBER]), first)
         _add_to_band(call[r.ADD_TO_BAND], nodes, size, coordinates, count, b[r.LOADS], number, half, k, matrix)

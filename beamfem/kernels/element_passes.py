@@ -10,7 +10,7 @@ from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 from beamfem.kernels.record import ROW
 
 _collect, _scatter = caller("iiiiii", "i"), caller("iiiiiniirr")
-_interpolate, _spread = caller("iiiiirrrrr"), caller("iiiirrrrr")
+_interpolate, _distribute = caller("iiiiirrrrr"), caller("iiiirrrrr")
 _measure, _law = caller("ir"), caller("iiiiiirrrr")
 _add_inertia = caller("iiiiiiirrrrrr")
 _form, _add, _copy = caller("iiirri"), caller("iiiir"), caller("iirr")
@@ -31,7 +31,7 @@ def add_elements(group, system):
     size, slots_ = 2 * vectors, nodes * vectors
     measures, moving, tangent, predicted = b[r.MEASURES], s[r.MOVING], s[r.TANGENT], s[r.PREDICTED]
     gathered, damped = b[r.CURVATURE], b[r.DAMPED] != 0 and s[r.RATED] != 0
-    ck, cv = reals(s[r.FACTORS])[0], reals(s[r.FACTORS])[1] if damped else 0.0
+    ck, cv = reals(s[r.FACTORS])[r.WEIGHT_P], reals(s[r.FACTORS])[r.WEIGHT_V] if damped else 0.0
     stiff = tangent != 0 and (ck != 0.0 or cv != 0.0)
     changed = 1 if tangent != 0 and moving != 0 else 0  # what the mass adds, the chunks must not keep
     if damped:
@@ -114,7 +114,9 @@ def add_elements(group, system):
                     q,
                 )
             _measure(call[r.FORCES], count, q)
-            _spread(call[r.SPREAD], nodes, vectors, bends, count, slope, second, factor, at(q, POINT_FORCE * ROW), f)
+            _distribute(
+                call[r.DISTRIBUTE], nodes, vectors, bends, count, slope, second, factor, at(q, POINT_FORCE * ROW), f
+            )
             if predicted != 0:
                 stress = reals(b[r.STRESS])
                 for i in range(count):
@@ -122,8 +124,8 @@ def add_elements(group, system):
                     for measure in range(measures):
                         q[(RESULTANT + measure) * ROW + i] = weight[i] * resultants[measure]
                 _measure(call[r.FORCES], count, q)
-                _spread(
-                    call[r.SPREAD], nodes, vectors, bends, count, slope, second, factor, at(q, POINT_FORCE * ROW), g
+                _distribute(
+                    call[r.DISTRIBUTE], nodes, vectors, bends, count, slope, second, factor, at(q, POINT_FORCE * ROW), g
                 )
             if stiff and damped:
                 for row in range(measures):

@@ -4,6 +4,7 @@ import math
 
 from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, where_negative, zeros
+from beamfem.kernels.motion_record import ALPHA_F, ALPHA_M, BEST_ORDER, BETA, GAMMA, KNOWN_DIFFERENCES, TIME_STEP
 from beamfem.kernels.pointers import at
 
 FAST = {"contract", "reassoc", "nsz"}
@@ -43,7 +44,7 @@ def alternates(difference, higher):
 @inlined
 def predict_part(first, end, n, prescribed, order, state, before, differences, dofs, values, rule):
     """Do what `predict` does for the coordinates from `first` to `end`."""
-    h, alpha_m, alpha_f, gamma, beta = rule[0], rule[1], rule[2], rule[3], rule[4]
+    h, alpha_m, alpha_f, gamma, beta = rule[TIME_STEP], rule[ALPHA_M], rule[ALPHA_F], rule[GAMMA], rule[BETA]
     kept, mean, fraction = 1.0 / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m), (1.0 - alpha_f) / (1.0 - alpha_m)
     length, lanes, now, then = padded(n), as_rows(differences), as_rows(state), as_rows(before)
     whole = first + (end - first) // WIDTH * WIDTH
@@ -94,7 +95,7 @@ def predict(n, prescribed, order, state, before, differences, dofs, values, rule
     Where the second difference changed its sign in the last step, as that of parts does whose period is shorter than a
     few steps, the error of orders 1 and 2 is expected to change its sign again.
     values (3, prescribed): of p, p' and p''; differences: see `difference_rows`, at least `order` of them known, the
-    others zero; rule: step, alpha_m, alpha_f, gamma, beta.
+    others zero; rule: see `motion_record`, without the order.
     """
     predict_part(0, n, n, prescribed, order, state, before, differences, dofs, values, rule)
 
@@ -111,15 +112,16 @@ def errors_of_orders(second, third, second_before, third_before):
 
 
 @inlined
-def complete_part(part, first, end, n, prescribed, state, before, differences, inverse_scale, dofs, rule, known):
+def complete_part(part, first, end, n, prescribed, state, before, differences, inverse_scale, dofs, rule, statistics):
     """Do what `complete` does, except for the choice of the order, for the coordinates from `first` to `end`.
 
-    known (2,): `extrapolation` of `complete`. The sums of squared errors are stored for `best_order`.
+    The sums of squared errors are stored for `best_order`.
     """
-    alpha_m, alpha_f = rule[1], rule[2]
+    alpha_m, alpha_f = rule[ALPHA_M], rule[ALPHA_F]
     new, old, mean = (1.0 - alpha_f) / (1.0 - alpha_m), alpha_f / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m)
     # differences that are not known yet stay zero
-    has_second, has_third = 1.0 if known[1] > 0.0 else 0.0, 1.0 if known[1] > 1.0 else 0.0
+    known = statistics[KNOWN_DIFFERENCES]
+    has_second, has_third = 1.0 if known > 0.0 else 0.0, 1.0 if known > 1.0 else 0.0
     length, rest, sum_0, sum_1, sum_2, sum_3 = padded(n), 0.0, zeros(), zeros(), zeros(), zeros()
     lanes, weight, now, then = as_rows(differences), as_rows(inverse_scale), as_rows(state), as_rows(before)
     errors, largest_change = MOST * length + part * (MOST + 1) * WIDTH, zeros()
@@ -161,9 +163,9 @@ def complete_part(part, first, end, n, prescribed, state, before, differences, i
 
 
 @inlined
-def best_order(parts, n, state, before, differences, inverse_scale, rule, extrapolation):
+def best_order(parts, n, state, before, differences, inverse_scale, rule, statistics):
     """Set the order of extrapolation that would have been best for this step, and the number of known differences."""
-    top = min(int(extrapolation[1]), int(extrapolation[0]) + 1)
+    top = min(int(statistics[KNOWN_DIFFERENCES]), int(statistics[BEST_ORDER]) + 1)
     order, least, errors = 0, math.inf, MOST * padded(n)
     for k in range(top + 1):
         error = 0.0
@@ -174,24 +176,24 @@ def best_order(parts, n, state, before, differences, inverse_scale, rule, extrap
             order, least = k, error
     # order -1 is better if p changed by less than half of the change that corresponds to that of the acceleration
     if order == 0:
-        h, beta, changed = rule[0], rule[4], 0.0
+        h, beta, changed = rule[TIME_STEP], rule[BETA], 0.0
         for i in range(n):
             moved = (state[i] - before[i]) * inverse_scale[i]
             changed += moved * moved
-        to_acceleration = (1.0 - rule[1]) / (h * h * beta * (1.0 - rule[2]))
+        to_acceleration = (1.0 - rule[ALPHA_M]) / (h * h * beta * (1.0 - rule[ALPHA_F]))
         if 4.0 * to_acceleration * to_acceleration * changed < least:
             order = -1
-    extrapolation[0], extrapolation[1] = order, min(extrapolation[1] + 1.0, MOST)
+    statistics[BEST_ORDER], statistics[KNOWN_DIFFERENCES] = order, min(statistics[KNOWN_DIFFERENCES] + 1.0, MOST)
 
 
 @routine("iirrrrnrr", "d", fastmath=FAST)
-def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rule, extrapolation):
+def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rule, statistics):
     """Update the auxiliary acceleration and the differences of p'' at the end of a step, and choose the next order.
 
-    Return the largest change of p'', relative to its scale. inverse_scale (padded(n),): zero beyond n; extrapolation
-    (2,), updated: the order of `predict` that would have been best, at most one more than the last one, and the number
-    of known differences.
+    Return the largest change of p'', relative to its scale. inverse_scale (padded(n),): zero beyond n; statistics: see
+    `motion_record`, updated are the order of `predict` that would have been best, at most one more than the last one,
+    and the number of known differences.
     """
-    change = complete_part(0, 0, n, n, prescribed, state, before, differences, inverse_scale, dofs, rule, extrapolation)
-    best_order(1, n, state, before, differences, inverse_scale, rule, extrapolation)
+    change = complete_part(0, 0, n, n, prescribed, state, before, differences, inverse_scale, dofs, rule, statistics)
+    best_order(1, n, state, before, differences, inverse_scale, rule, statistics)
     return change

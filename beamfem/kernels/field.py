@@ -44,7 +44,7 @@ def interpolate(nodes, vectors, bends, count, stride, slope, second, director, e
 
 
 @routine("iiiivvrvv", fastmath=FAST)
-def spread(nodes, vectors, bends, count, slope, second, director, q, f):
+def distribute(nodes, vectors, bends, count, slope, second, director, q, f):
     """Add the nodal forces that are equivalent to forces on q (6, ROW) to f (nodes, 2 vectors, ROW)."""
     small_code()
     last = vectors - 1

@@ -49,14 +49,14 @@ def add_scaled(rows, count, factor, source, to):
 
 
 @routine("iiiiiidvvvv", fastmath=FAST)
-def add_mass(nodes, vectors, turned, turning, count, stride, ca, mass, b, c, k):
+def add_mass(nodes, vectors, dependent, parameters, count, stride, ca, mass, b, c, k):
     """Add B^T M C to the reduced matrices k, with C = ca B + ck de''/dp + cv de''/dp'.
 
     b, c (nodes, stride, ROW): B and C of the vectors that depend on rotations; other vectors are coordinates
     themselves, with B = 1 and C = ca.
     """
-    linear = vectors - turned // 2
-    coordinates = 2 * linear + turning
+    linear = vectors - dependent // 2
+    coordinates = 2 * linear + parameters
     rows, slots = nodes * coordinates, nodes * vectors
     for m in range(nodes):
         for n in range(nodes):
@@ -72,29 +72,29 @@ def add_mass(nodes, vectors, turned, turning, count, stride, ca, mass, b, c, k):
                             x[i] += ca * value[i]
                             y[i] += ca * value[i]
                     elif s < linear:
-                        for column in range(turning):
+                        for column in range(parameters):
                             x = at(block, ((2 * linear + column) * rows + 2 * s) * ROW)
-                            cx = at(c_m, (2 * (t - linear) * turning + column) * ROW)
-                            cy = at(cx, turning * ROW)
+                            cx = at(c_m, (2 * (t - linear) * parameters + column) * ROW)
+                            cy = at(cx, parameters * ROW)
                             for i in range(0, count, WIDTH):
                                 x[i] += value[i] * cx[i]
                                 x[ROW + i] += value[i] * cy[i]
                     elif t < linear:
-                        for row in range(turning):
+                        for row in range(parameters):
                             x = at(block, (2 * t * rows + 2 * linear + row) * ROW)
                             y = at(x, rows * ROW)
-                            bx = at(b_n, (2 * (s - linear) * turning + row) * ROW)
-                            by = at(bx, turning * ROW)
+                            bx = at(b_n, (2 * (s - linear) * parameters + row) * ROW)
+                            by = at(bx, parameters * ROW)
                             for i in range(0, count, WIDTH):
                                 x[i] += ca * value[i] * bx[i]
                                 y[i] += ca * value[i] * by[i]
                     else:
-                        for column in range(turning):
-                            for row in range(turning):
+                        for column in range(parameters):
+                            for row in range(parameters):
                                 to = at(block, ((2 * linear + column) * rows + 2 * linear + row) * ROW)
-                                bx = at(b_n, (2 * (s - linear) * turning + row) * ROW)
-                                by = at(bx, turning * ROW)
-                                cx = at(c_m, (2 * (t - linear) * turning + column) * ROW)
-                                cy = at(cx, turning * ROW)
+                                bx = at(b_n, (2 * (s - linear) * parameters + row) * ROW)
+                                by = at(bx, parameters * ROW)
+                                cx = at(c_m, (2 * (t - linear) * parameters + column) * ROW)
+                                cy = at(cx, parameters * ROW)
                                 for i in range(0, count, WIDTH):
                                     to[i] += value[i] * (bx[i] * cx[i] + by[i] * cy[i])

@@ -1,8 +1,10 @@
 """Time steps of the generalized-alpha method, many in one compiled call."""
 
+from beamfem.kernels import motion_record as m
 from beamfem.kernels import motion_steps
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.motion_steps import RATIO
 from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 
 _constrain, _predict, _jacobian, _count = caller("iiirnr"), caller("iii"), caller("i", "d"), caller("inrrr")
@@ -52,7 +54,7 @@ def solve_once(system, solver, calls):
     `RIGHT`: the correction, which is not added to the state.
     """
     s, b, call = wholes(system), wholes(solver), wholes(calls)
-    s[r.TANGENT], s[r.PREDICTED], b[r.TURNS_WANTED], b[r.STEP_WANTED] = 1, 0, 1, 1
+    s[r.TANGENT], s[r.PREDICTED], b[r.ROTATIONS_WANTED], b[r.STEP_WANTED] = 1, 0, 1, 1
     pivots = _run(call[r.ASSEMBLE], system, solver, calls, b, call)
     pivots = max(pivots, _run(call[r.FACTORISE], system, solver, calls, b, call))
     _stage(call[r.SOLVE], 0, system, solver, calls)
@@ -63,11 +65,8 @@ def solve_once(system, solver, calls):
 def march(system, solver, calls):
     """March through `STEPS` steps; return how many were completed.
 
-    `STATE`: p, p', p'', auxiliary acceleration (4, n), advanced in place. `RULE`: step, alpha_m, alpha_f, gamma, beta,
-    and the order of this step's extrapolation. `LIMITS`: see `solve.motion.limits`. `ROWS`: the last tangent, or its
-    factors. `STATISTICS` (10,): iterations, most iterations in a step, last correction, worst pivot ratio, rate of
-    convergence of the last step (negative: its tangent is of no use), number of tangents, order of extrapolation, how
-    many differences it has, what the last change of p'' changed in p, and the size of corrections that are noise.
+    `STATE`: p, p', p'', auxiliary acceleration (4, n), advanced in place. `RULE`, `LIMITS`, `STATISTICS`: see
+    `motion_record`. `ROWS`: the last tangent, or its factors.
 
     Chung and Hulbert 1993; in the form of Arnold and Bruels 2007 the equations hold at the end of each step. Iterations
     keep the tangent, over steps as well, rotated with the sections, and end when the estimated error is small (Hairer
@@ -93,11 +92,11 @@ def march(system, solver, calls):
         wholes(b[r.LOAD_VALUES]),
         wholes(b[r.NATURALS]),
     )
-    saved, every, turned_by, saved_turns = (
+    saved, every, rotated_by, saved_rotations = (
         reals(b[r.SAVED]),
         b[r.EVERY],
-        reals(b[r.TURNED_BY]),
-        reals(b[r.SAVED_TURNS]),
+        reals(b[r.ROTATED_BY]),
+        reals(b[r.SAVED_ROTATIONS]),
     )
     for step in range(b[r.STEPS]):
         s[r.BODY] = bodies + 8 * step * b[r.BODY_STRIDE]
@@ -110,38 +109,47 @@ def march(system, solver, calls):
                 record[r.NATURAL] = naturals[group] + 8 * step * strains
         b[r.NOW] = step
         b[r.PRESCRIBED_NOW] = b[r.PRESCRIBED_VALUES] + 24 * fixed * step
-        rule[5] = statistics[6]
+        rule[m.ORDER] = statistics[m.BEST_ORDER]
         _run(call[r.PREDICT], system, solver, calls, b, call)
         size, first_size, iteration, far = 0.0, 0.0, 0, 0
-        full, fresh, done = 0, statistics[4] < 0.0, 0
+        full, fresh, done = 0, statistics[m.RATE] < 0.0, 0
         rate = at(space, n)
-        rate[0] = max(statistics[4], motion_steps.SMALLEST_RATE) ** 0.8 if not fresh else 1.0
-        while iteration < limits[1]:
+        rate[RATIO] = max(statistics[m.RATE], motion_steps.SMALLEST_RATE) ** 0.8 if not fresh else 1.0
+        while iteration < limits[m.NEWTON_ITERATIONS]:
             renew = full != 0 or fresh
             s[r.TANGENT], s[r.PREDICTED] = renew, full != 0 and iteration > 0
-            b[r.TURNS_WANTED] = iteration == 0 or renew
+            b[r.ROTATIONS_WANTED] = iteration == 0 or renew
             pivots = _run(call[r.ASSEMBLE], system, solver, calls, b, call)
             if renew:
                 if b[r.ROLLERS] > 0:
                     first_of, normal = wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL])
                     _constrain(call[r.CONSTRAIN_NORMALS], unknown, half, b[r.ROLLERS], rows, first_of, normal)
                 pivots = max(pivots, _run(call[r.FACTORISE], system, solver, calls, b, call))
-                statistics[3] = min(statistics[3], -pivots)
-                statistics[5] += 1.0
+                statistics[m.PIVOT_RATIO] = min(statistics[m.PIVOT_RATIO], -pivots)
+                statistics[m.TANGENTS] += 1.0
             b[r.STEP_WANTED] = full != 0
             _stage(call[r.SOLVE], 0, system, solver, calls)
             if full != 0:
                 _predict_resultants(s, b, call, system)
             last, size = size, _run(call[r.CORRECT], system, solver, calls, b, call)
             iteration += 1
-            statistics[0] += 1.0
-            statistics[2] = size
+            statistics[m.ITERATIONS] += 1.0
+            statistics[m.CORRECTION] = size
             if iteration == 1:
-                first_size = max(size, statistics[8])
+                first_size = max(size, statistics[m.CHANGE])
                 far = 1 if size > motion_steps.FAR else 0
             new_tangent = 1 if renew else 0
             done = _check_convergence(
-                iteration, full, new_tangent, far, size, last, first_size, limits[0], rate, at(statistics, 9)
+                iteration,
+                full,
+                new_tangent,
+                far,
+                size,
+                last,
+                first_size,
+                limits[m.TOLERANCE],
+                rate,
+                at(statistics, m.NOISE),
             )
             if (
                 done == motion_steps.CONVERGED
@@ -156,31 +164,34 @@ def march(system, solver, calls):
                 done = 0
                 continue
             if full == 0:
-                fails = done < 0 or not (iteration < limits[2] and (iteration < 2 or rate[0] < 0.5))
+                converges = iteration < limits[m.KEPT_TANGENT_ITERATIONS] and (iteration < 2 or rate[RATIO] < 0.5)
+                fails = done < 0 or not converges
             else:
-                fails = done < 0 or not iteration < limits[1]
+                fails = done < 0 or not iteration < limits[m.NEWTON_ITERATIONS]
             if fails and full == 2:
                 break
             if fails:
                 for i in range(4 * n):
                     state[i] = before[i]
-                stays = statistics[6] < 0.0 or statistics[7] == 0.0  # of the first step nothing is known
-                rule[5] = -1.0 if stays == (full == 0) else 0.0
+                # of the first step nothing is known
+                stays = statistics[m.BEST_ORDER] < 0.0 or statistics[m.KNOWN_DIFFERENCES] == 0.0
+                rule[m.ORDER] = -1.0 if stays == (full == 0) else 0.0
                 _run(call[r.PREDICT], system, solver, calls, b, call)
                 full, iteration = full + 1, 0
-        statistics[1] = max(statistics[1], iteration)
-        statistics[4] = -1.0 if iteration > limits[3] or (iteration > 1 and rate[0] > limits[4]) else rate[0]
+        statistics[m.MOST_ITERATIONS] = max(statistics[m.MOST_ITERATIONS], iteration)
+        slow = iteration > limits[m.MANY_ITERATIONS] or (iteration > 1 and rate[RATIO] > limits[m.SLOW_RATE])
+        statistics[m.RATE] = -1.0 if slow else rate[RATIO]
         if done <= 0:
             for i in range(4 * n):
                 state[i] = before[i]
             return step
-        statistics[8] = _run(call[r.COMPLETE], system, solver, calls, b, call) / factors[2]
-        _count(call[r.COUNT_TURNS], b[r.TURN_COUNT], wholes(b[r.TURN_TABLE]), before, state, turned_by)
+        statistics[m.CHANGE] = _run(call[r.COMPLETE], system, solver, calls, b, call) / factors[r.WEIGHT_A]
+        _count(call[r.COUNT_ROTATIONS], b[r.ROTATION_COUNT], wholes(b[r.ROTATION_TABLE]), before, state, rotated_by)
         if (b[r.FIRST_STEP] + step) % every == 0:
             row = (b[r.FIRST_STEP] + step) // every
             to = at(saved, 3 * n * row)
             for i in range(3 * n):
                 to[i] = state[i]
-            for i in range(b[r.TURN_COUNT]):
-                saved_turns[row * b[r.TURN_COUNT] + i] = turned_by[i]
+            for i in range(b[r.ROTATION_COUNT]):
+                saved_rotations[row * b[r.ROTATION_COUNT] + i] = rotated_by[i]
     return b[r.STEPS]

@@ -39,7 +39,7 @@ def add_group(s, system, number):
 @inlined
 def add_springs(s, first, end):
     """Add the forces of some springs to the ground to the residual and, if needed, their stiffness to the matrix."""
-    p, dof, factor = reals(s[r.COORDINATES_P]), wholes(s[r.SPRING_DOF]), reals(s[r.FACTORS])[0]
+    p, dof, factor = reals(s[r.COORDINATES_P]), wholes(s[r.SPRING_DOF]), reals(s[r.FACTORS])[r.WEIGHT_P]
     residual, matrix, stiffness, rest, place = (
         reals(s[r.RESIDUAL]),
         reals(s[r.MATRIX]),
@@ -65,21 +65,24 @@ def balance(system):
 
 
 @routine("iiiiiinrrr", fastmath={"contract", "reassoc", "nsz"})
-def add_node_rates(first, count, linear, turned, turning, stride, dof, step, transform, rates):
-    """Fill rates (linear + turned, ROW) of nodal vectors: coordinate rates, then b times those of the last coordinates.
+def add_node_rates(first, count, linear, dependent, parameters, stride, dof, step, transform, rates):
+    """Fill rates (linear + dependent, ROW) of nodal vectors: those of coordinates, then b times those of the last ones.
 
-    step (n,): rates p'; transform (turned, turning, ROW): b, see `reduction`; dof (coordinates, stride).
+    step (n,): rates p'; transform (dependent, parameters, ROW): b, see `reduction`; dof (coordinates, stride).
     """
     for row in range(linear):
         dofs, to = at(dof, row * stride + first), at(rates, row * ROW)
         for i in range(count):
             to[i] = step[dofs[i]]
-    for part in range(turned):
+    for part in range(dependent):
         to = at(rates, (linear + part) * ROW)
         for i in range(count):
             to[i] = 0.0
-        for column in range(turning):
-            dofs, factor = at(dof, (linear + column) * stride + first), at(transform, (part * turning + column) * ROW)
+        for column in range(parameters):
+            dofs, factor = (
+                at(dof, (linear + column) * stride + first),
+                at(transform, (part * parameters + column) * ROW),
+            )
             for i in range(count):
                 if dofs[i] >= 0:
                     to[i] += factor[i] * step[dofs[i]]
@@ -96,9 +99,9 @@ def rate_nodes(group, system, row):
             call[r.NODE_RATES],
             first,
             count,
-            2 * b[r.VECTORS] - b[r.TURNED],
-            b[r.TURNED],
-            b[r.TURNING],
+            2 * b[r.VECTORS] - b[r.DEPENDENT],
+            b[r.DEPENDENT],
+            b[r.PARAMETERS],
             b[r.NODES],
             wholes(b[r.DOF]),
             at(reals(s[r.COORDINATES_V]), b[r.FIRST_OF_STATE]),
@@ -128,7 +131,7 @@ def predict_resultants(group, system, placed):
     )
     s, size, slots, stress = wholes(system), 2 * vectors, nodes * vectors, reals(b[r.STRESS])
     damped = b[r.DAMPED] != 0 and s[r.RATED] != 0
-    cv = reals(s[r.FACTORS])[1] if damped else 0.0
+    cv = reals(s[r.FACTORS])[r.WEIGHT_V] if damped else 0.0
     rows = b[r.CURVATURE] if damped else 2 * size
     if placed == 0 or b[r.SHARED] != 0:
         _three(call[r.PLACE_NODES], group, system, 0)

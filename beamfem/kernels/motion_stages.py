@@ -1,6 +1,7 @@
 """Stages of a time step: each does a part of a model, whose bounds stand in a table; see `record` for its fields."""
 
 from beamfem.kernels import extrapolation, model_passes, motion_steps, rollers
+from beamfem.kernels import motion_record as m
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.extrapolation import FAST
@@ -8,7 +9,7 @@ from beamfem.kernels.lanes import WIDTH, as_rows
 from beamfem.kernels.pointers import at, caller, reals, slots, small_code, wholes
 
 _factor, _solve, _roll = caller("iisrr", "d"), caller("iirr"), caller("inrr")
-_turn_pairs, _keep, _turns = caller("idnirr"), caller("iiir"), caller("iiirr")
+_rotate_pairs, _keep, _rotations = caller("idnirr"), caller("iiir"), caller("iiirr")
 _stay_on_planes = inlined(rollers.stay_on_planes)
 
 
@@ -29,7 +30,7 @@ def predict(part, system, solver, calls):
         bounds[r.END_COORDINATE],
         s[r.SIZE],
         b[r.PRESCRIBED],
-        rule[5],
+        rule[m.ORDER],
         reals(b[r.STATE]),
         reals(b[r.BEFORE]),
         reals(b[r.DIFFERENCES]),
@@ -47,19 +48,19 @@ def predict(part, system, solver, calls):
 def assemble(part, system, solver, calls):
     """Fill the residual and, if needed, the matrix; return -1, as nothing is factorised yet.
 
-    With `TURNS_WANTED`, also fill the rotations of sections since the last tangent; a new tangent stores their
+    With `ROTATIONS_WANTED`, also fill the rotations of sections since the last tangent; a new tangent stores their
     directions first.
     """
     small_code()
     s, b, call = wholes(system), wholes(solver), wholes(calls)
-    groups, kept, turns, node = wholes(s[r.GROUP_RECORDS]), reals(b[r.KEPT]), reals(b[r.TURNS]), 0
+    groups, kept, rotations, node = wholes(s[r.GROUP_RECORDS]), reals(b[r.KEPT]), reals(b[r.ROTATIONS]), 0
     model_passes.clear(s, 0, s[r.SIZE], 0, s[r.ENTRIES])
     for group in range(s[r.GROUPS]):
         model_passes.add_group(s, system, group)
-        if b[r.TURNS_WANTED] != 0:
+        if b[r.ROTATIONS_WANTED] != 0:
             if s[r.TANGENT] != 0:
                 _keep(call[r.KEEP_DIRECTIONS], groups[group], node, b[r.NODE_STRIDE], kept)
-            _turns(call[r.TURNS_SINCE], groups[group], node, b[r.NODE_STRIDE], kept, turns)
+            _rotations(call[r.ROTATIONS_SINCE], groups[group], node, b[r.NODE_STRIDE], kept, rotations)
         node += wholes(groups[group])[r.NODES]
     model_passes.add_springs(s, 0, s[r.SPRINGS])
     return -1.0
@@ -80,9 +81,9 @@ def factorise(part, system, solver, calls):
 
 
 @inlined
-def _turn_vectors(b, call, sense):
-    runs, table, turns = b[r.RUNS_OF_PAIRS], wholes(b[r.PAIR_TABLE]), reals(b[r.TURNS])
-    _turn_pairs(call[r.TURN_PAIRS], runs, sense, table, b[r.NODE_STRIDE], turns, reals(b[r.RIGHT]))
+def _rotate_vectors(b, call, sense):
+    runs, table, rotations = b[r.RUNS_OF_PAIRS], wholes(b[r.PAIR_TABLE]), reals(b[r.ROTATIONS])
+    _rotate_pairs(call[r.ROTATE_PAIRS], runs, sense, table, b[r.NODE_STRIDE], rotations, reals(b[r.RIGHT]))
 
 
 @inlined
@@ -112,9 +113,9 @@ def solve(part, system, solver, calls):
     fill_right(s, b, 0, unknown)
     if rollers > 0:
         _roll(call[r.ROTATE_IN], rollers, first_of, normal, right)
-    _turn_vectors(b, call, -1.0)
+    _rotate_vectors(b, call, -1.0)
     _solve(call[r.SOLVE_BOTH], unknown, b[r.HALF], reals(b[r.ROWS]), right)
-    _turn_vectors(b, call, 1.0)
+    _rotate_vectors(b, call, 1.0)
     if rollers > 0:
         _roll(call[r.ROTATE_BACK], rollers, first_of, normal, right)
     return 0.0
@@ -124,10 +125,10 @@ def solve(part, system, solver, calls):
 def correct_range(s, b, own):
     """Add corrections to the state; own (4,): the range of coordinates, and that of the unknowns among them."""
     return motion_steps.correct_part(
-        own[0],
-        own[1],
-        own[2],
-        own[3],
+        own[r.FIRST_COORDINATE],
+        own[r.END_COORDINATE],
+        own[r.FIRST_UNKNOWN],
+        own[r.END_UNKNOWN],
         s[r.SIZE],
         b[r.FIRST_FREE],
         reals(b[r.STATE]),
@@ -150,7 +151,7 @@ def correct(part, system, solver, calls):
 def complete(part, system, solver, calls):
     """End a step; return the largest change of p'', relative to its scale. The last part chooses the order."""
     s, b = wholes(system), wholes(solver)
-    bounds, n, rule, orders = bounds_of(b, part), s[r.SIZE], reals(b[r.RULE]), at(reals(b[r.STATISTICS]), 6)
+    bounds, n, rule, statistics = bounds_of(b, part), s[r.SIZE], reals(b[r.RULE]), reals(b[r.STATISTICS])
     state, before, differences, scale = (
         reals(b[r.STATE]),
         reals(b[r.BEFORE]),
@@ -169,8 +170,8 @@ def complete(part, system, solver, calls):
         scale,
         wholes(b[r.PRESCRIBED_DOFS]),
         rule,
-        orders,
+        statistics,
     )
     if part == b[r.PARTS] - 1:
-        extrapolation.best_order(b[r.PARTS], n, state, before, differences, scale, rule, orders)
+        extrapolation.best_order(b[r.PARTS], n, state, before, differences, scale, rule, statistics)
     return change

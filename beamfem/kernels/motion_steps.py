@@ -6,7 +6,22 @@ from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.extrapolation import FAST, larger_of
 from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, zeros
 from beamfem.kernels.pointers import at, reals, small_code, wholes
-from beamfem.kernels.record import CHUNKS, LANES, NODE_ROWS, NODES, ROW, VECTORS
+from beamfem.kernels.record import (
+    CHUNKS,
+    LANES,
+    NODE_ROWS,
+    NODES,
+    PAIR_COUNT,
+    PAIR_FIELDS,
+    PAIR_NODE,
+    PAIR_STEP,
+    PAIR_X,
+    PAIR_Y,
+    ROW,
+    VECTORS,
+    WEIGHT_A,
+    WEIGHT_V,
+)
 
 # of the tolerance: largest estimated error if the tangent is not that of the last iterate
 _REMAINDER = 1e-5
@@ -21,6 +36,7 @@ FAR = 0.01  # of the model: after a larger correction, elements are checked for 
 _LARGEST = 1e3  # of the model: a larger correction means divergence
 # how an iteration goes on: it has converged or diverged, or needs a new tangent
 CONVERGED, DIVERGED, RENEW = 1, -1, 2
+RATIO, RATIO_BEFORE = range(2)  # of successive corrections
 _GROWTH = 2.0  # largest ratio of successive corrections of Newton's method from the second on; above, it diverges
 
 
@@ -40,7 +56,7 @@ def correct_part(
     change,
 ):
     """Do what `correct` does for the coordinates from `first` to `end` and the unknowns among them."""
-    to_velocity, to_acceleration, size, rest = coefficients[1], coefficients[2], zeros(), 0.0
+    to_velocity, to_acceleration, size, rest = coefficients[WEIGHT_V], coefficients[WEIGHT_A], zeros(), 0.0
     begin, source, offset = first, change, 0
     if first_free >= 0:
         begin, end = first_unknown + first_free, end_unknown + first_free
@@ -98,13 +114,13 @@ def check_convergence(iteration, full, own, far, size, last, changed, tolerance,
             if size > 0.5 * last:
                 # no longer decreasing: either this is round-off, or the kept tangent cannot reduce the remaining error
                 return CONVERGED if size <= noise[0] else RENEW
-        rate[1] = rate[0] if iteration > 2 else SMALLEST_RATE
-        rate[0] = size / last if last > 0.0 else 0.0
+        rate[RATIO_BEFORE] = rate[RATIO] if iteration > 2 else SMALLEST_RATE
+        rate[RATIO] = size / last if last > 0.0 else 0.0
     if full != 0:
         if size <= tolerance:
             return CONVERGED
         return DIVERGED if iteration > 2 and size > _GROWTH * last else 0
-    worst = rate[0] if iteration == 1 else max(rate[0], rate[1])
+    worst = rate[RATIO] if iteration == 1 else max(rate[RATIO], rate[RATIO_BEFORE])
     small = worst * size <= (1.0 - worst) * min(_REMAINDER * tolerance, _NEGLECTED * changed)
     if worst < 1.0 and small:
         return RENEW if far != 0 and own == 0 else CONVERGED
@@ -112,8 +128,8 @@ def check_convergence(iteration, full, own, far, size, last, changed, tolerance,
 
 
 @routine("inrrr")
-def count_turns(pairs, table, before, now, turned):
-    """Add the rotations of vectors between two states (n,) to `turned` (pairs,) [rad].
+def count_rotations(pairs, table, before, now, rotated_by):
+    """Add the rotations of vectors between two states (n,) to `rotated_by` (pairs,) [rad].
 
     table (pairs, 2): numbers of the coordinates x and y of each vector.
     """
@@ -121,7 +137,7 @@ def count_turns(pairs, table, before, now, turned):
     for i in range(pairs):
         x, y = table[2 * i], table[2 * i + 1]
         crossed = before[x] * now[y] - before[y] * now[x]
-        turned[i] += math.atan2(crossed, before[x] * now[x] + before[y] * now[y])
+        rotated_by[i] += math.atan2(crossed, before[x] * now[x] + before[y] * now[y])
 
 
 @routine("iiir")
@@ -137,7 +153,7 @@ def keep_directions(group, first, stride, kept):
 
 
 @routine("iiirr", fastmath=FAST)
-def turns_since(group, first, stride, kept, turns):
+def rotations_since(group, first, stride, kept, rotations):
     """Fill the cosine and sine (2, stride) of the rotation of each node of a group since its d was kept.
 
     See `keep_directions`.
@@ -146,7 +162,7 @@ def turns_since(group, first, stride, kept, turns):
     chunks, size, nodes = reals(b[CHUNKS]), 2 * b[VECTORS], b[NODES]
     while begin < nodes:
         d = at(chunks, (begin // LANES * b[NODE_ROWS] + size - 2) * ROW)
-        offset, its = at(kept, first + begin), at(turns, first + begin)
+        offset, its = at(kept, first + begin), at(rotations, first + begin)
         for i in range(min(LANES, nodes - begin)):
             x, y, x0, y0 = d[i], d[ROW + i], offset[i], offset[stride + i]
             c, s = x * x0 + y * y0, y * x0 - x * y0
@@ -156,19 +172,19 @@ def turns_since(group, first, stride, kept, turns):
 
 
 @routine("idnirr", fastmath=FAST)
-def turn_pairs(runs, sense, table, stride, turns, right):
+def rotate_pairs(runs, sense, table, stride, rotations, right):
     """Rotate the vectors in a right-hand side (n,) by the rotations of their nodes, or back if `sense` is -1.
 
     A kept tangent K rotates with the sections: the present one is nearly R K R^T, and exactly so if the body has
-    rotated as a whole; so the rotation of a pendulum or a rotor needs no new tangent. table (runs, 5): see
-    `turning.runs_of`; turns (2, stride): see `turns_since`.
+    rotated as a whole; so the rotation of a pendulum or a rotor needs no new tangent. table (runs, pair fields): see
+    `rotating_vectors.runs_of`; rotations (2, stride): see `rotations_since`.
     """
     small_code()
     for run in range(runs):
-        own = at(table, 5 * run)
-        step, apart, vector = own[3], own[1] - own[0], at(right, own[0])
-        cosine, sine = at(turns, own[2]), at(turns, stride + own[2])
-        for i in range(own[4]):
+        own = at(table, PAIR_FIELDS * run)
+        step, apart, vector = own[PAIR_STEP], own[PAIR_Y] - own[PAIR_X], at(right, own[PAIR_X])
+        cosine, sine = at(rotations, own[PAIR_NODE]), at(rotations, stride + own[PAIR_NODE])
+        for i in range(own[PAIR_COUNT]):
             c, s = cosine[i], sense * sine[i]
             x, y = vector[i * step], vector[i * step + apart]
             vector[i * step], vector[i * step + apart] = c * x - s * y, s * x + c * y

@@ -3,13 +3,31 @@
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, zeros
+from beamfem.kernels.newton_record import (
+    CORRECTION,
+    CORRECTION_BEFORE,
+    DIVERGENT,
+    FIRST_CORRECTION,
+    FORCE,
+    ITERATIONS,
+    JACOBIAN,
+    MOST_ITERATIONS,
+    NEGATIVE_PIVOTS,
+    NEGATIVE_PIVOTS_AFTER_FIRST,
+    PIVOT_RATIO,
+    PREDICTED_RESULTANTS,
+    REQUIRED_NEGATIVE_PIVOTS,
+    STAGNANT,
+    TOLERANCE,
+    UNBALANCED,
+)
 from beamfem.kernels.pointers import at, caller, reals, slots, wholes
 
 _FAST = {"contract", "reassoc", "nsz"}
 
 _balance, _predict, _jacobian = caller("i"), caller("iii"), caller("i", "d")
 _factor, _solve = caller("iiiisrrr", "d"), caller("iiirr")
-_constrain, _turn, _take = caller("iiirnr"), caller("inrr"), caller("irrr", "d")
+_constrain, _rotate, _take = caller("iiirnr"), caller("inrr"), caller("irrr", "d")
 
 
 @inlined
@@ -59,14 +77,9 @@ def iterate(system, solver, calls):
     """Iterate from p (n,), changed in place; return 1 if every tangent could be factorised without pivots, else 0.
 
     `PRESCRIBED_STEP`, `PRESCRIBED_FORCE`: first step (n,) of the prescribed coordinates and what it changes in the
-    residual (n,), zero to go on. `LIMITS`: tolerance, correction below which it may be stagnant, one beyond which it
-    diverges, smallest pivot ratio, iterations, 1 to take predicted resultants for the geometric tangent, and the count
-    of negative pivots where it stops if the third tangent or a later one has another, or -1. `FOUND` (9,): iterations
-    so far, last correction and the one before; then largest residual of the unknown and of all coordinates, times their
-    scales, and the smallest r0' x d of the state reached, whose residual (n,) is filled; negative pivots of the last
-    tangent; size of the first correction; negative pivots of the second tangent, which has the resultants of a linear
-    step: where it has another count, `LINEAR` (n,) is the state after this step. Stops where corrections are small or
-    stagnant, or have grown.
+    residual (n,), zero to go on. `LIMITS`, `FOUND`: see `newton_record`; the residual (n,) of the state reached is
+    filled. `LINEAR` (n,): the state after the linear step, where the second tangent has another number of negative
+    pivots than required. Stops where corrections are small or stagnant, or have grown.
     """
     s, b, call = wholes(system), wholes(solver), wholes(calls)
     n, unknown, half, rollers = s[r.SIZE], b[r.UNKNOWN], b[r.HALF], b[r.ROLLERS]
@@ -89,7 +102,7 @@ def iterate(system, solver, calls):
     first, done = True, False
     while True:
         s[r.TANGENT] = 0 if done else 1
-        s[r.PREDICTED] = 1 if not done and found[0] > 0.0 and limits[5] > 0.0 else 0
+        s[r.PREDICTED] = 1 if not done and found[ITERATIONS] > 0.0 and limits[PREDICTED_RESULTANTS] > 0.0 else 0
         _balance(call[r.BALANCE], system)
         if done:
             break
@@ -104,23 +117,23 @@ def iterate(system, solver, calls):
                 right[i] = -residual[free[i]] - (prescribed_force[free[i]] if first else 0.0)
         if rollers > 0:
             _constrain(call[r.CONSTRAIN_NORMALS], unknown, half, rollers, rows, first_of, normal)
-            _turn(call[r.ROTATE_IN], rollers, first_of, normal, right)
-        if not _factor(call[r.FACTOR], unknown, unknown, half, 1, reach, rows, right, step) > limits[3]:
+            _rotate(call[r.ROTATE_IN], rollers, first_of, normal, right)
+        if not _factor(call[r.FACTOR], unknown, unknown, half, 1, reach, rows, right, step) > limits[PIVOT_RATIO]:
             return 0
         negative = _negative(unknown, step)
-        found[6] = negative
-        if found[0] == 1.0:
-            found[8] = negative
-        if limits[6] >= 0.0 and found[6] != limits[6]:
-            if found[0] > 1.0:
-                found[0] += 1.0
+        found[NEGATIVE_PIVOTS] = negative
+        if found[ITERATIONS] == 1.0:
+            found[NEGATIVE_PIVOTS_AFTER_FIRST] = negative
+        if limits[REQUIRED_NEGATIVE_PIVOTS] >= 0.0 and found[NEGATIVE_PIVOTS] != limits[REQUIRED_NEGATIVE_PIVOTS]:
+            if found[ITERATIONS] > 1.0:
+                found[ITERATIONS] += 1.0
                 return 1
-            if found[0] == 1.0:
+            if found[ITERATIONS] == 1.0:
                 for i in range(n):
                     linear[i] = p[i]
         _solve(call[r.SOLVE_UPPER], unknown, unknown, half, rows, right)
         if rollers > 0:
-            _turn(call[r.ROTATE_BACK], rollers, first_of, normal, right)
+            _rotate(call[r.ROTATE_BACK], rollers, first_of, normal, right)
         for i in range(n):
             step[i] = prescribed_step[i] if first else 0.0
         if in_a_row >= 0:
@@ -133,26 +146,33 @@ def iterate(system, solver, calls):
             for i in range(unknown):
                 step[free[i]] = right[i]
         first = False
-        if limits[5] > 0.0:
+        if limits[PREDICTED_RESULTANTS] > 0.0:
             for group in range(s[r.GROUPS]):
                 _predict(call[r.PREDICT_RESULTANTS], groups[group], system, 1)
-        found[0] += 1.0
-        found[2], found[1] = found[1], _take(call[r.TAKE_STEP], n, step, p, inverse_scale)
-        if found[0] == 1.0:
-            found[7] = found[1]
-        if not found[1] <= limits[2]:
+        found[ITERATIONS] += 1.0
+        found[CORRECTION_BEFORE], found[CORRECTION] = (
+            found[CORRECTION],
+            _take(call[r.TAKE_STEP], n, step, p, inverse_scale),
+        )
+        if found[ITERATIONS] == 1.0:
+            found[FIRST_CORRECTION] = found[CORRECTION]
+        if not found[CORRECTION] <= limits[DIVERGENT]:
             return 1
-        stagnant = found[0] > 2.0 and found[1] > 0.25 * found[2] and found[1] < limits[1]
-        done = found[1] <= limits[0] or stagnant or not found[0] < limits[4]
-    found[4] = _largest_product(n, residual, scale)
+        stagnant = (
+            found[ITERATIONS] > 2.0
+            and found[CORRECTION] > 0.25 * found[CORRECTION_BEFORE]
+            and found[CORRECTION] < limits[STAGNANT]
+        )
+        done = found[CORRECTION] <= limits[TOLERANCE] or stagnant or not found[ITERATIONS] < limits[MOST_ITERATIONS]
+    found[FORCE] = _largest_product(n, residual, scale)
     for i in range(unknown):
         right[i], step[i] = residual[free[i]], scale[free[i]]
     if rollers > 0:
-        _turn(call[r.ROTATE_IN], rollers, first_of, normal, right)
-    found[3] = _largest_product(unknown, right, step)
-    found[5] = 1.0
+        _rotate(call[r.ROTATE_IN], rollers, first_of, normal, right)
+    found[UNBALANCED] = _largest_product(unknown, right, step)
+    found[JACOBIAN] = 1.0
     for group in range(s[r.GROUPS]):
-        found[5] = min(found[5], _jacobian(call[r.SMALLEST_JACOBIAN], groups[group]))
+        found[JACOBIAN] = min(found[JACOBIAN], _jacobian(call[r.SMALLEST_JACOBIAN], groups[group]))
     return 1
 
 
@@ -181,6 +201,6 @@ def count_after_step(system, solver, calls):
             reals(b[r.ROLLER_NORMAL]),
         )
     signs = reals(b[r.STEP])
-    if not _factor(call[r.FACTOR], unknown, unknown, half, 0, reach, rows, right, signs) > limits[3]:
+    if not _factor(call[r.FACTOR], unknown, unknown, half, 0, reach, rows, right, signs) > limits[PIVOT_RATIO]:
         return -1
     return _negative(unknown, signs)

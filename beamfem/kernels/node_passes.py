@@ -9,7 +9,7 @@ from beamfem.kernels.pointers import at, caller, reals, slots, small_code, whole
 from beamfem.kernels.record import LANES, ROW
 from beamfem.kernels.reduction import add_node_forces
 
-_turn, _rotate = caller("irrrrr"), caller("irrr")
+_rotate_frame, _rotate = caller("irrrrr"), caller("irrr")
 _clear, _place, _convect = caller("iir"), caller("ir"), caller("iddr")
 _add_curvature = caller("iiiiiiiinnnisrrd")
 
@@ -24,6 +24,13 @@ def _clear_forces(b, chunks):
         for i in range(0, count, WIDTH):
             for row in range(i, i + rows * ROW, ROW):
                 forces[row] = 0.0
+
+
+@inlined
+def _of_run(runs, run):
+    """Return the kind of the nodes of a run, the first node and the end."""
+    own = at(runs, r.RUN_FIELDS * run)
+    return own[r.RUN_KIND], own[r.RUN_FIRST], own[r.RUN_FIRST] + own[r.RUN_LENGTH]
 
 
 @routine("iii")
@@ -47,10 +54,10 @@ def place_nodes(group, system, moving):
         at(reals(s[r.COORDINATES_V]), b[r.FIRST_OF_STATE]),
         at(reals(s[r.COORDINATES_A]), b[r.FIRST_OF_STATE]),
     )
-    turned, turning, factors = b[r.TURNED], b[r.TURNING], reals(s[r.FACTORS])
+    dependent, parameters, factors = b[r.DEPENDENT], b[r.PARAMETERS], reals(s[r.FACTORS])
     _clear_forces(b, chunks)
     for run in range(b[r.RUN_COUNT]):
-        kind, first, end = runs[3 * run], runs[3 * run + 1], runs[3 * run + 1] + runs[3 * run + 2]
+        kind, first, end = _of_run(runs, run)
         linear = size
         if kind == ROTATION:
             linear = size - 2
@@ -78,8 +85,8 @@ def place_nodes(group, system, moving):
                 else:
                     _clear(call[r.CLEAR], 2 * polar, count, at(x, polar * ROW))
                 directions = at(x, 3 * polar * ROW)
-                _turn(
-                    call[r.TURN],
+                _rotate_frame(
+                    call[r.ROTATE_FRAME],
                     count,
                     at(x, (polar - 1) * ROW),
                     at(frame, first),
@@ -99,14 +106,16 @@ def place_nodes(group, system, moving):
                         at(chunk, (b[r.ACCELERATION] + linear) * ROW),
                     )
                 # where kinds of nodes are mixed, b of a node may be smaller: it takes the last rows and columns
-                corner = (turned - parts) * turning + linear - (size - turned)
+                corner = (dependent - parts) * parameters + linear - (size - dependent)
                 for part in range(parts):
-                    to = at(chunk, (b[r.TRANSFORM] + corner + part * turning) * ROW)
+                    to = at(chunk, (b[r.TRANSFORM] + corner + part * parameters) * ROW)
                     put(polar, count, last, at(result, (2 * parts + part * polar) * ROW), to)
                 if moving != 0 and s[r.TANGENT] != 0:
-                    _convect(call[r.PLACE_KIND + 3 * (kind - 1) + 1], count, factors[0], factors[1], x)
+                    _convect(
+                        call[r.PLACE_KIND + 3 * (kind - 1) + 1], count, factors[r.WEIGHT_P], factors[r.WEIGHT_V], x
+                    )
                     for part in range(parts):
-                        to = at(chunk, (b[r.CONVECTIVE] + corner + part * turning) * ROW)
+                        to = at(chunk, (b[r.CONVECTIVE] + corner + part * parameters) * ROW)
                         put(polar, count, last, at(result, part * polar * ROW), to)
             first += count
 
@@ -125,11 +134,11 @@ def finish_nodes(group, system):
         reals(b[r.CHUNKS]),
         reals(b[r.SPACE]),
     )
-    p, residual, turned, turning = (
+    p, residual, dependent, parameters = (
         at(reals(s[r.COORDINATES_P]), b[r.FIRST_OF_STATE]),
         at(reals(s[r.RESIDUAL]), b[r.FIRST_OF_STATE]),
-        b[r.TURNED],
-        b[r.TURNING],
+        b[r.DEPENDENT],
+        b[r.PARAMETERS],
     )
     forces = b[r.PREDICTED_FORCE] if s[r.PREDICTED] != 0 else b[r.FORCE]
     first = 0
@@ -139,8 +148,8 @@ def finish_nodes(group, system):
             first,
             count,
             size,
-            turned,
-            turning,
+            dependent,
+            parameters,
             stride,
             dof,
             b[r.TRANSFORM],
@@ -150,11 +159,11 @@ def finish_nodes(group, system):
             residual,
         )
         first += count
-    factor = reals(s[r.FACTORS])[0]
+    factor = reals(s[r.FACTORS])[r.WEIGHT_P]
     if s[r.TANGENT] == 0 or factor == 0.0:
         return
     for run in range(b[r.RUN_COUNT]):
-        kind, first, end = runs[3 * run], runs[3 * run + 1], runs[3 * run + 1] + runs[3 * run + 2]
+        kind, first, end = _of_run(runs, run)
         if kind in (GRADIENTS, ROTATED_GRADIENTS):
             continue
         linear = size - 2 if kind == ROTATION else size - 4
@@ -166,8 +175,8 @@ def finish_nodes(group, system):
             chunk = at(chunks, first // LANES * b[r.NODE_ROWS] * ROW + lane)
             take(first, count, polar, stride, at(source, linear * stride), p, True, x)
             directions, parts = at(x, 3 * polar * ROW), size - linear
-            _turn(
-                call[r.TURN],
+            _rotate_frame(
+                call[r.ROTATE_FRAME],
                 count,
                 at(x, (polar - 1) * ROW),
                 at(frame, first),

@@ -72,7 +72,7 @@ def put(rows, count, last, source, to):
 
 
 @routine("ivvvvv", fastmath={"contract"})
-def turn(count, angle, c, s, length, rows):
+def rotate_frame(count, angle, c, s, length, rows):
     """Fill rows (3, ROW) with the cosine and sine of the reference angle plus `angle`, and with `length`.
 
     c, s: cosine and sine of the reference angle.

@@ -28,7 +28,7 @@ def add_loads(group, system, values):
         wholes(b[r.LOAD_PLACE]),
     )
     size, tangent = 2 * vectors, s[r.TANGENT]
-    ck = reals(s[r.FACTORS])[0]
+    ck = reals(s[r.FACTORS])[r.WEIGHT_P]
     rows = b[r.CURVATURE] if tangent != 0 else size
     _, e, f, _, _, _, _, _, _, k, _ = rows_of(nodes, vectors, b[r.POINTS], b[r.CURVATURE], b[r.TABLE_ROWS])
     e, f, k = at(x, e * ROW), at(x, f * ROW), at(x, k * ROW)

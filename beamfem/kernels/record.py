@@ -16,8 +16,8 @@ NODES_PER_ELEMENT = 2
 VECTORS = 3  # nodal vectors per node
 POINTS = 4  # quadrature points
 MEASURES = 5  # strain measures
-TURNED = 6  # number of components of nodal vectors, the last ones, that are not coordinates but w(u): 0, 2 or 4
-TURNING = 7  # number of coordinates u, the last ones, on which they depend
+DEPENDENT = 6  # number of components of nodal vectors, the last ones, that are not coordinates but w(u): 0, 2 or 4
+PARAMETERS = 7  # number of coordinates u, the last ones, on which they depend
 BENDS = 8  # whether the third vector of strain measures is r0''
 BATCH = 9  # elements in a batch
 # rows of a class of elements: first row of each table, and the number of rows
@@ -37,7 +37,7 @@ BEAM = 22  # address (elements,)
 PLACE = 23  # address (nodes of an element, elements): offset of the node's first entry in the chunks
 DOF = 24  # address (coordinates of a node, nodes)
 FRAME = 25  # address (3, nodes)
-RUNS = 26  # address (runs, 3): kind of node, first node, number of nodes
+RUNS = 26  # address (runs, run fields): nodes of one kind, see RUN_KIND
 RUN_COUNT = 27
 NUMBER = 28  # address (nodes of an element * coordinates of a node, elements): number among the unknowns, or -1
 SLOT = 29  # address (elements, coordinates, coordinates): positions in the data of a sparse matrix
@@ -47,9 +47,9 @@ HOME = 32  # address (nodes, 2): an element that contains the node, and the node
 COORDINATES = 33  # per node, at most
 # rows of a node, after its nodal vectors
 ACCELERATION = 34
-TRANSFORM = 35  # B (turned, turning)
-CONVECTIVE = 36  # derivatives of e'' with respect to p and p' (turned, turning)
-CURVATURE = 37  # derivative of B^T f (turning, turning)
+TRANSFORM = 35  # B (dependent, parameters)
+CONVECTIVE = 36  # derivatives of e'' with respect to p and p' (dependent, parameters)
+CURVATURE = 37  # derivative of B^T f (parameters, parameters)
 FORCE = 38
 PREDICTED_FORCE = 39  # the same with the stress resultants predicted by the last correction
 NODE_ROWS = 40
@@ -85,6 +85,9 @@ FIRST_OF_STATE = 67  # number of the coordinate from which those of the group ar
 FIRST_OF_MATRIX = 68  # number of the entry of a band from which its entries are counted
 BLOCK_FIELDS = 69
 
+RUN_KIND, RUN_FIRST, RUN_LENGTH = range(3)
+RUN_FIELDS = 3
+
 # ------------------------------------------------------------------ a model in a state
 GROUPS = 0
 GROUP_RECORDS = 1  # address of a table of addresses
@@ -97,7 +100,7 @@ RESIDUAL = 7
 SIZE = 8
 MATRIX = 9
 ENTRIES = 10
-FACTORS = 11  # ck, cv, ca: weights of p, p' and p'' in the tangent; then the time step from the committed history
+FACTORS = 11  # see WEIGHT_P
 TANGENT = 12
 PREDICTED = 13  # whether the geometric part of the tangent uses the resultants in `STRESS`
 MOVING = 14
@@ -109,6 +112,9 @@ SPRING_REST = 19
 SPRING_PLACE = 20
 RATED = 21  # whether strain rates matter
 SYSTEM_FIELDS = 22
+
+WEIGHT_P, WEIGHT_V, WEIGHT_A = range(3)  # ck, cv, ca: weights of p, p' and p'' in the tangent
+SINCE_COMMITTED = 3  # [s] from the committed history
 FACTOR_COUNT = 4
 
 # ------------------------------------------------------------------ compiled functions, by their number in `ROUTINES`
@@ -116,7 +122,7 @@ FACTOR_COUNT = 4
     COLLECT,
     SCATTER,
     INTERPOLATE,
-    SPREAD,
+    DISTRIBUTE,
     COLUMNS,
     PRODUCTS,
     MIRROR,
@@ -127,7 +133,7 @@ FACTOR_COUNT = 4
     ADD_TO_BAND,
     ADD_TO_SPARSE,
     ADD_CURVATURE,
-    TURN,
+    ROTATE_FRAME,
     ROTATE,
     COPY,
     CLEAR,
@@ -166,8 +172,8 @@ ROWS = 6  # address (unknown, 2 half + 1)
 RIGHT = 7  # address (unknown,)
 STEP = 8  # address (n,), for motions (n + 2,): with the last two rates of convergence
 SCALE = 9  # address (n,)
-LIMITS = 10
-FOUND = 11
+LIMITS = 10  # see `newton_record`, for motions `motion_record`
+FOUND = 11  # see `newton_record`
 PRESCRIBED_STEP = 12
 PRESCRIBED_FORCE = 13
 PRESCRIBED = 14
@@ -176,12 +182,12 @@ STATE = 16  # address (4, n): p, p', p'' and the auxiliary acceleration
 BEFORE = 17
 DIFFERENCES = 18  # see `extrapolation.difference_rows`
 INVERSE_SCALE = 19  # address (padded(n),)
-RULE = 20
-STATISTICS = 21
+RULE = 20  # see `motion_record`
+STATISTICS = 21  # see `motion_record`
 RUNS_OF_PAIRS = 22  # of vectors that rotate with their section
-PAIR_TABLE = 23  # (runs, 5): see `turning.runs_of`
+PAIR_TABLE = 23  # (runs, pair fields): see `rotating_vectors.runs_of`
 KEPT = 24  # (2, node stride)
-TURNS = 25  # (2, node stride)
+ROTATIONS = 25  # (2, node stride)
 STEPS = 26
 PRESCRIBED_VALUES = 27  # (steps, 3, prescribed)
 BODIES = 28  # (steps or 1, beams, 4)
@@ -191,10 +197,10 @@ LOADS_VARY = 31
 SAVED = 32  # (rows, 3, n)
 FIRST_STEP = 33
 EVERY = 34
-TURN_COUNT = 35
-TURN_TABLE = 36  # (counted, 2)
-TURNED_BY = 37
-SAVED_TURNS = 38
+ROTATION_COUNT = 35
+ROTATION_TABLE = 36  # (counted, 2)
+ROTATED_BY = 37
+SAVED_ROTATIONS = 38
 LINEAR = 39  # address (n,)
 NATURALS = 40  # address of addresses, for each group (steps or 1, elements, points, measures), 0 if there are none
 NATURALS_VARY = 41
@@ -205,10 +211,10 @@ FIRST_FREE = 43  # number of the first unknown coordinate if all have consecutiv
 PARTS = 44  # 1, or 3: two halves and the part between them
 BOUNDS = 45  # address (1 or 3, bounds): of each part
 PRESCRIBED_NOW = 46  # address (3, prescribed): in this step
-TURNS_WANTED = 47  # whether it is asked how far sections have turned since the last tangent
+ROTATIONS_WANTED = 47  # whether it is asked how far sections have rotated since the last tangent
 REACH = 48  # address (2, unknown) of 32 bits: see `band.elimination`, downwards and backwards
 TILES = 49  # address (tiles, tile fields)
-ROWS_DOWN = 50  # rows eliminated downwards from the top, see `band_halves`
+ROWS_DOWN = 50  # rows eliminated downwards from the top, see `two_sided_parts`
 STEP_WANTED = 51  # whether corrections are needed before they are added to the state
 NODE_STRIDE = 52
 NOW = 53  # number of the step that is taken, of those of this call
@@ -217,6 +223,13 @@ SOLVER_FIELDS = 54
 FIRST_COORDINATE, END_COORDINATE, FIRST_UNKNOWN, END_UNKNOWN = range(4)
 FIRST_TILE, END_TILE = range(4, 6)  # in the order in which the part processes them
 BOUND_FIELDS = 6
+
+# ------------------------------------------------------------------ runs of vectors that rotate with their section
+PAIR_X, PAIR_Y = range(2)  # equation numbers of the first
+PAIR_NODE = 2  # of the first, and one more for each of the next
+PAIR_STEP = 3  # from one equation number to the next
+PAIR_COUNT = 4
+PAIR_FIELDS = 5
 
 # ------------------------------------------------------------------ a tile: a group of a long chain
 TILE_GROUP = 0
@@ -227,7 +240,7 @@ NEW_COORDINATE, END_NEW_COORDINATE, NEW_UNKNOWN, END_NEW_UNKNOWN = range(2, 6)
 DONE_COORDINATE, END_DONE_COORDINATE, DONE_UNKNOWN, END_DONE_UNKNOWN, DONE_SPRING, END_DONE_SPRING = range(6, 12)
 # of its unknowns: as `RUNS_OF_PAIRS`, but counted from DONE_UNKNOWN and TILE_NODE
 TILE_RUNS_OF_PAIRS, TILE_PAIR_TABLE = range(12, 14)
-# rows, from the end of the part, that can be eliminated before this tile and with it, see `band_halves.whole_blocks`
+# rows, from the end of the part, that can be eliminated before this tile and with it: `two_sided_parts.whole_blocks`
 ROWS_BEFORE, ROWS_WITH = range(14, 16)
 TILE_FIELDS = 16
 
@@ -255,9 +268,9 @@ JOB_FIELDS = 16
     ROTATE_BACK,
     TAKE_STEP,
     KEEP_DIRECTIONS,
-    TURNS_SINCE,
-    TURN_PAIRS,
-    COUNT_TURNS,
+    ROTATIONS_SINCE,
+    ROTATE_PAIRS,
+    COUNT_ROTATIONS,
     # stages of a time step, see `motion_stages`
     PREDICT,
     ASSEMBLE,

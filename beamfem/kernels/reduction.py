@@ -1,7 +1,8 @@
 """Reduction to coordinates, e' = B p': forces B^T f, matrices B^T k B, and their addition to a sparse matrix.
 
-The coordinates of a node are its first components of nodal vectors, followed by those on which the last `turned`
-components depend: B = diag(1, b) with b (turned, turning) for each node. Coordinates that a node lacks are numbered -1.
+The coordinates of a node are its first components of nodal vectors, followed by those on which the last `dependent`
+components depend: B = diag(1, b) with b (dependent, parameters) for each node. Coordinates that a node lacks are
+numbered -1.
 """
 
 from beamfem.kernels.compiling import inlined, routine
@@ -13,49 +14,52 @@ FAST = {"contract", "reassoc", "nsz"}
 
 
 @routine("iiiiiivvv", fastmath=FAST)
-def reduce_columns(nodes, size, turned, turning, count, stride, b, k, space):
+def reduce_columns(nodes, size, dependent, parameters, count, stride, b, k, space):
     """Replace k (columns, rows, ROW) by k B; b (nodes, stride, ROW), size: components of a node; space (2, ROW)."""
-    rows, linear = nodes * size, size - turned
+    rows, linear = nodes * size, size - dependent
     for n in range(nodes):
         columns = at(k, rows * (n * size + linear) * ROW)
         table = at(b, n * stride * ROW)
         for row in range(rows):
-            for column in range(turning):
+            for column in range(parameters):
                 to = at(space, column * ROW)
-                for part in range(turned):
-                    source, factor = at(columns, (rows * part + row) * ROW), at(table, (part * turning + column) * ROW)
+                for part in range(dependent):
+                    source, factor = (
+                        at(columns, (rows * part + row) * ROW),
+                        at(table, (part * parameters + column) * ROW),
+                    )
                     if part == 0:
                         for i in range(0, count, WIDTH):
                             to[i] = source[i] * factor[i]
                     else:
                         for i in range(0, count, WIDTH):
                             to[i] += source[i] * factor[i]
-            for column in range(turning):
+            for column in range(parameters):
                 source, to = at(space, column * ROW), at(columns, (rows * column + row) * ROW)
                 for i in range(0, count, WIDTH):
                     to[i] = source[i]
 
 
 @routine("iiiiiivvv", fastmath=FAST)
-def reduce_rows(nodes, size, turned, turning, count, stride, b, k, space):
+def reduce_rows(nodes, size, dependent, parameters, count, stride, b, k, space):
     """Replace k B by B^T k B, with the arguments of `reduce_columns`."""
-    rows, linear = nodes * size, size - turned
+    rows, linear = nodes * size, size - dependent
     for m in range(nodes):
-        for column in range(linear + turning):
+        for column in range(linear + parameters):
             for n in range(nodes):
                 entries = at(k, (rows * (m * size + column) + n * size + linear) * ROW)
                 table = at(b, n * stride * ROW)
-                for row in range(turning):
+                for row in range(parameters):
                     to = at(space, row * ROW)
-                    for part in range(turned):
-                        source, factor = at(entries, part * ROW), at(table, (part * turning + row) * ROW)
+                    for part in range(dependent):
+                        source, factor = at(entries, part * ROW), at(table, (part * parameters + row) * ROW)
                         if part == 0:
                             for i in range(0, count, WIDTH):
                                 to[i] = source[i] * factor[i]
                         else:
                             for i in range(0, count, WIDTH):
                                 to[i] += source[i] * factor[i]
-                for row in range(turning):
+                for row in range(parameters):
                     source, to = at(space, row * ROW), at(entries, row * ROW)
                     for i in range(0, count, WIDTH):
                         to[i] = source[i]
@@ -80,23 +84,23 @@ def add_to_sparse(nodes, size, coordinates, count, elements, slots, k, matrix):
 
 
 @inlined
-def add_node_forces(first, count, size, turned, turning, stride, dof, rows, force, chunk, space, residual):
+def add_node_forces(first, count, size, dependent, parameters, stride, dof, rows, force, chunk, space, residual):
     """Add B^T f of the nodes of a chunk to the residual (n,).
 
     dof (coordinates, stride); rows, force: first rows of b and f in the chunk; space (ROW,): workspace.
     """
-    linear = size - turned
+    linear = size - dependent
     for row in range(linear):
         dofs, source = at(dof, row * stride + first), at(chunk, (force + row) * ROW)
         for i in range(count):
             residual[dofs[i]] += source[i]
     b, f, sums = as_rows(at(chunk, rows * ROW)), as_rows(at(chunk, (force + linear) * ROW)), as_rows(space)
-    for column in range(turning):
+    for column in range(parameters):
         dofs = at(dof, (linear + column) * stride + first)
         for i in range(0, count, WIDTH):
             total = b[column * ROW + i] * f[i]
-            for part in range(1, turned):
-                total += b[(part * turning + column) * ROW + i] * f[part * ROW + i]
+            for part in range(1, dependent):
+                total += b[(part * parameters + column) * ROW + i] * f[part * ROW + i]
             sums[i] = total
         for i in range(count):
             if dofs[i] >= 0:
@@ -105,17 +109,32 @@ def add_node_forces(first, count, size, turned, turning, stride, dof, rows, forc
 
 @routine("iiiiiiiinnnisrrd")
 def add_curvature(
-    first, count, nodes, linear, turning, stride, row, coordinates, dof, free, home, half, slots, chunk, matrix, factor
+    first,
+    count,
+    nodes,
+    linear,
+    parameters,
+    stride,
+    row,
+    coordinates,
+    dof,
+    free,
+    home,
+    half,
+    slots,
+    chunk,
+    matrix,
+    factor,
 ):
-    """Add a factor times the derivative of B^T f at constant f (turning, turning) of nodes of a chunk to the matrix.
+    """Add a factor times the derivative of B^T f at constant f (parameters, parameters) of nodes to the matrix.
 
     chunk: from the lane of the first of these nodes on; row: where the derivative begins; linear: coordinates of a node
     before those on which B depends.
     """
     per = nodes * coordinates
-    for j in range(turning):
-        for k in range(turning):
-            value = at(chunk, (row + j * turning + k) * ROW)
+    for j in range(parameters):
+        for k in range(parameters):
+            value = at(chunk, (row + j * parameters + k) * ROW)
             row_dofs, column_dofs = at(dof, (linear + j) * stride + first), at(dof, (linear + k) * stride + first)
             for i in range(count):
                 matrix_row, matrix_column = free[row_dofs[i]], free[column_dofs[i]]

@@ -68,29 +68,29 @@ def columns(vectors, bends, count, ck, slope, second, director, h, z):
 
 
 @routine("iiiivvv", fastmath=FAST)
-def combine(rows, turned, turning, count, b, own, space):
-    """Replace the `turned` columns of own (columns, rows, ROW) by the `turning` columns own b.
+def combine(rows, dependent, parameters, count, b, own, space):
+    """Replace the `dependent` columns of own (columns, rows, ROW) by the `parameters` columns own b.
 
-    b (turned, turning, ROW); space (turning, ROW): workspace.
+    b (dependent, parameters, ROW); space (parameters, ROW): workspace.
     """
     for row in range(rows):
-        if turned == 2 and turning == 1:
+        if dependent == 2 and parameters == 1:
             x, y, sine = at(own, row * ROW), at(own, (rows + row) * ROW), at(b, ROW)
             for i in range(0, count, WIDTH):
                 x[i] = x[i] * b[i] + y[i] * sine[i]
             continue
-        for column in range(turning):
+        for column in range(parameters):
             to = at(space, column * ROW)
-            for part in range(0, turned, 2):
+            for part in range(0, dependent, 2):
                 x, y = at(own, (rows * part + row) * ROW), at(own, (rows * (part + 1) + row) * ROW)
-                c, s = at(b, (part * turning + column) * ROW), at(b, ((part + 1) * turning + column) * ROW)
+                c, s = at(b, (part * parameters + column) * ROW), at(b, ((part + 1) * parameters + column) * ROW)
                 if part == 0:
                     for i in range(0, count, WIDTH):
                         to[i] = x[i] * c[i] + y[i] * s[i]
                 else:
                     for i in range(0, count, WIDTH):
                         to[i] += x[i] * c[i] + y[i] * s[i]
-        for column in range(turning):
+        for column in range(parameters):
             source, to = at(space, column * ROW), at(own, (rows * column + row) * ROW)
             for i in range(0, count, WIDTH):
                 to[i] = source[i]
@@ -105,8 +105,8 @@ def products(
     coordinates,
     slots,
     z_stride,
-    turned,
-    turning,
+    dependent,
+    parameters,
     rows,
     slope,
     second,
@@ -119,11 +119,11 @@ def products(
     """Fill the rows of one node in the columns of another one: T^T z, summed over quadrature points.
 
     z (points, z_stride, ROW): 6 rows for each coordinate; slope, second (points, slots, ROW) and director (points,
-    nodes): tables T, from the node of the rows on; b (turned, turning, ROW): of this node. Return 1 if its rows of k
-    are done, see `store`, or 0 if own (coordinates, 2 vectors, ROW) has them before their multiplication by b^T.
+    nodes): tables T, from the node of the rows on; b (dependent, parameters, ROW): of this node. Return 1 if its rows
+    of k are done, see `store`, or 0 if own (coordinates, 2 vectors, ROW) has them before their multiplication by b^T.
     """
     last, nodes = vectors - 1, slots // vectors
-    done = turned == 0 or (turned == 2 and turning == 1)
+    done = dependent == 0 or (dependent == 2 and parameters == 1)
     into, size = own, 2 * vectors
     if done:
         into, size = k, rows
@@ -144,7 +144,7 @@ def products(
                         if bends == 0:
                             x, y = x + w * column[4 * ROW], y + w * column[5 * ROW]
                 to = at(into, (c * size + 2 * s) * ROW + i)
-                if done and turned != 0 and s == last:
+                if done and dependent != 0 and s == last:
                     to[0] = x * b[i] + y * b[ROW + i]
                 else:
                     to[0], to[ROW] = x, y
@@ -152,14 +152,14 @@ def products(
 
 
 @routine("iiiiiivvv", fastmath=FAST)
-def store(size, turned, turning, coordinates, count, rows, b, own, k):
-    """Store own (coordinates, size, ROW) in k, with its last `turned` rows multiplied by the transpose of b.
+def store(size, dependent, parameters, coordinates, count, rows, b, own, k):
+    """Store own (coordinates, size, ROW) in k, with its last `dependent` rows multiplied by the transpose of b.
 
-    own: rows of one node in the columns of another one; b (turned, turning, ROW): of the node of the rows; k: from the
-    entry of the first coordinates of both nodes on; rows: number of rows of k.
+    own: rows of one node in the columns of another one; b (dependent, parameters, ROW): of the node of the rows; k:
+    from the entry of the first coordinates of both nodes on; rows: number of rows of k.
     """
-    linear = size - turned
-    own_count = linear + turning
+    linear = size - dependent
+    own_count = linear + parameters
     for c in range(coordinates):
         for r in range(own_count):
             source = at(own, (c * size + r) * ROW)
@@ -169,10 +169,10 @@ def store(size, turned, turning, coordinates, count, rows, b, own, k):
                     to[i] = source[i]
             else:
                 source = at(own, (c * size + linear) * ROW)
-                for part in range(0, turned, 2):
+                for part in range(0, dependent, 2):
                     x, y = at(source, part * ROW), at(source, (part + 1) * ROW)
-                    cosine = at(b, (part * turning + r - linear) * ROW)
-                    sine = at(b, ((part + 1) * turning + r - linear) * ROW)
+                    cosine = at(b, (part * parameters + r - linear) * ROW)
+                    sine = at(b, ((part + 1) * parameters + r - linear) * ROW)
                     if part == 0:
                         for i in range(0, count, WIDTH):
                             to[i] = x[i] * cosine[i] + y[i] * sine[i]

@@ -12,7 +12,7 @@ from beamfem.kernels.pointers import at, caller, reals, slots, small_code, whole
 
 _in_two, _substitute = caller("iiii", "d"), caller("iiii", "d")
 _factor, _solve = caller("iiiiiisrr", "d"), caller("iiiiiirr")
-_turn_pairs, _keep, _turns = caller("idnirr"), caller("iiir"), caller("iiirr")
+_rotate_pairs, _keep, _rotations = caller("idnirr"), caller("iiir"), caller("iiirr")
 
 
 @inlined
@@ -31,10 +31,10 @@ def _solve_rows(b, address, part, start, stop):
 
 
 @inlined
-def _turn_vectors(b, call, tile, sense):
-    turns, right = at(reals(b[r.TURNS]), tile[r.TILE_NODE]), at(reals(b[r.RIGHT]), tile[r.DONE_UNKNOWN])
+def _rotate_vectors(b, call, tile, sense):
+    rotations, right = at(reals(b[r.ROTATIONS]), tile[r.TILE_NODE]), at(reals(b[r.RIGHT]), tile[r.DONE_UNKNOWN])
     runs, table = tile[r.TILE_RUNS_OF_PAIRS], wholes(tile[r.TILE_PAIR_TABLE])
-    _turn_pairs(call[r.TURN_PAIRS], runs, sense, table, b[r.NODE_STRIDE], turns, right)
+    _rotate_pairs(call[r.ROTATE_PAIRS], runs, sense, table, b[r.NODE_STRIDE], rotations, right)
 
 
 @routine("iiii", "d")
@@ -47,19 +47,19 @@ def assemble(part, system, solver, calls):
     small_code()
     s, b, call = wholes(system), wholes(solver), wholes(calls)
     bounds, width, groups = motion_stages.bounds_of(b, part), 2 * b[r.HALF] + 1, wholes(s[r.GROUP_RECORDS])
-    kept, turns, worst = reals(b[r.KEPT]), reals(b[r.TURNS]), 1.0
+    kept, rotations, worst = reals(b[r.KEPT]), reals(b[r.ROTATIONS]), 1.0
     for number in range(bounds[r.FIRST_TILE], bounds[r.END_TILE]):
         tile = at(wholes(b[r.TILES]), number * r.TILE_FIELDS)
         group, first, end = tile[r.TILE_GROUP], tile[r.NEW_UNKNOWN], tile[r.END_NEW_UNKNOWN]
         model_passes.clear(s, tile[r.NEW_COORDINATE], tile[r.END_NEW_COORDINATE], first * width, end * width)
         model_passes.add_group(s, system, group)
-        if b[r.TURNS_WANTED] != 0:
+        if b[r.ROTATIONS_WANTED] != 0:
             if s[r.TANGENT] != 0:
                 _keep(call[r.KEEP_DIRECTIONS], groups[group], tile[r.TILE_NODE], b[r.NODE_STRIDE], kept)
-            _turns(call[r.TURNS_SINCE], groups[group], tile[r.TILE_NODE], b[r.NODE_STRIDE], kept, turns)
+            _rotations(call[r.ROTATIONS_SINCE], groups[group], tile[r.TILE_NODE], b[r.NODE_STRIDE], kept, rotations)
         model_passes.add_springs(s, tile[r.DONE_SPRING], tile[r.END_DONE_SPRING])
         motion_stages.fill_right(s, b, tile[r.DONE_UNKNOWN], tile[r.END_DONE_UNKNOWN])
-        _turn_vectors(b, call, tile, -1.0)
+        _rotate_vectors(b, call, tile, -1.0)
         start, stop = tile[r.ROWS_BEFORE], tile[r.ROWS_WITH]
         if start < stop:
             if s[r.TANGENT] != 0:
@@ -107,7 +107,7 @@ def substitute(part, system, solver, calls):
         tile = at(wholes(b[r.TILES]), number * r.TILE_FIELDS)
         _solve_rows(b, call[r.UPPER_PART], part, tile[r.ROWS_BEFORE], stop)
         stop = tile[r.ROWS_BEFORE]
-        _turn_vectors(b, call, tile, 1.0)
+        _rotate_vectors(b, call, tile, 1.0)
         if b[r.STEP_WANTED] == 0:
             size = larger_of(size, motion_stages.correct_range(s, b, at(tile, r.DONE_COORDINATE)))
     return size

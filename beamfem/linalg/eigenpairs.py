@@ -14,7 +14,7 @@ from beamfem.linalg.lapack import LinAlgError, cholesky, eigh, solve_triangular
 # Computing all eigenpairs takes no longer than computing a few with so many unknowns, or with so few times the number
 # of pairs. It also calls BLAS with large matrices, whose threads wait for each other for seconds on a busy computer.
 _DENSE = 64
-_SHARE = 6
+_UNKNOWNS_PER_PAIR = 6
 _LARGEST_DENSE = 4000  # unknowns up to which all eigenpairs are computed if the iteration for a few fails
 MOST_RESTARTS = 100  # of an iteration, which needs about ten unless round-off leaves no accurate digits
 _LANCZOS_VECTORS = (1, 3)  # times the usual number
@@ -103,8 +103,8 @@ def first_that_works(dense: Callable[[], Any], few: Callable[[int], Any], n: int
 
     few(times): iterates with `times` the usual number of vectors, see `lanczos_vectors`. Raises ConvergenceError.
     """
-    share = _SHARE if n <= _LARGEST_DENSE else 2
-    if n > _DENSE and share * count < n:
+    per_pair = _UNKNOWNS_PER_PAIR if n <= _LARGEST_DENSE else 2
+    if n > _DENSE and per_pair * count < n:
         for vectors in _LANCZOS_VECTORS:
             try:
                 return few(vectors)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import block_array, csc_array, csr_array, dia_array
 
-from beamfem.linalg.tangent import UNROTATED, Rotated, SparseFactors, SparseTangent, Stresses, turning
+from beamfem.linalg.tangent import UNROTATED, Rotated, SparseFactors, SparseTangent, Stresses, rotation_to_normals
 
 
 @dataclass(frozen=True)
@@ -28,11 +28,11 @@ class SaddleFactors:
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Return x (n,) with A x = right. Raises LinAlgError."""
-        turn = turning(len(right), self.rotated)
-        whole = turn @ right
+        rotation = rotation_to_normals(len(right), self.rotated)
+        whole = rotation @ right
         whole[self.rotated[0]] = 0.0
         whole[: -self.multipliers] += self.stiffening @ whole[-self.multipliers :]
-        return np.asarray(turn.T @ self.factors.solve(whole))
+        return np.asarray(rotation.T @ self.factors.solve(whole))
 
     def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
         """Return the Newton correction (n,) for a residual (n,), and None; see `Factorised`. Raises LinAlgError."""

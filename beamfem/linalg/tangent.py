@@ -179,8 +179,8 @@ class SparseTangent:
         first, _ = rotated
         if not len(first):
             return csr_array(self.matrix)
-        turn = turning(self.matrix.shape[0], rotated)
-        matrix = csr_array(turn @ self.matrix @ turn.T)
+        rotation = rotation_to_normals(self.matrix.shape[0], rotated)
+        matrix = csr_array(rotation @ self.matrix @ rotation.T)
         kept = np.ones(matrix.shape[0])
         kept[first] = 0.0
         keep = dia_array((kept[None], [0]), shape=matrix.shape)
@@ -205,7 +205,7 @@ def _constrained(rows: np.ndarray, rotated: Rotated) -> np.ndarray:
     return result
 
 
-def turning(size: int, rotated: Rotated) -> csr_array:
+def rotation_to_normals(size: int, rotated: Rotated) -> csr_array:
     """Return the rotation matrix (n, n) that takes the normals of inclined rollers to x."""
     first, normal = rotated
     diagonal, above, below = np.ones(size), np.zeros(size), np.zeros(size)

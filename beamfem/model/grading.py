@@ -4,7 +4,7 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.keywords import keywords_checked
-from beamfem.memory import SHARE, in_gib, installed_memory
+from beamfem.memory import USABLE_FRACTION, in_gib, installed_memory
 from beamfem.validation import count, positive
 
 _ELEMENT = 64  # bytes per element: its fraction as a float in a tuple, and in intermediate arrays
@@ -38,7 +38,7 @@ def graded(elements: int, ratio: float) -> tuple[float, ...]:
     """
     number, ratio = count("elements", elements), positive("ratio", ratio)
     memory = installed_memory()
-    if memory is not None and number * _ELEMENT > SHARE * memory:
+    if memory is not None and number * _ELEMENT > USABLE_FRACTION * memory:
         raise InputError(
             f"{number:.3g} elements need {in_gib(number * _ELEMENT)} at the least, and this computer has "
             f"{in_gib(memory)}; take fewer"

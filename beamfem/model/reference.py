@@ -9,7 +9,7 @@ from beamfem.element.coordinates import across
 from beamfem.element.element import Element
 from beamfem.element.fields import Field, d_slots, r_slots, slots
 from beamfem.element.forces import Forces
-from beamfem.element.law_points import coupled_shares
+from beamfem.element.law_points import coupled_fractions
 from beamfem.element.structural import section_frame
 from beamfem.model.grid import Grid
 from beamfem.quadrature import gauss
@@ -120,7 +120,7 @@ def energy_stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tupl
     points = len(element_type.energy_points()[0])
     by_element = stiffness.reshape(-1, points, *stiffness.shape[1:])
     if grid.beam.law is not None:  # it may couple strains that are not coupled at zero strain
-        return (by_element * coupled_shares(element_type)).reshape(stiffness.shape), reference
+        return (by_element * coupled_fractions(element_type)).reshape(stiffness.shape), reference
     return element_type.energy_stiffness(by_element, jacobian.reshape(-1, points)).reshape(stiffness.shape), reference
 
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from beamfem.element.coordinates import labels
 from beamfem.errors import InputError
-from beamfem.memory import SHARE, in_gib, installed_memory
+from beamfem.memory import USABLE_FRACTION, in_gib, installed_memory
 from beamfem.model.beam import Beam
 
 _COORDINATE = 300  # bytes per coordinate; 310 to 370 were measured in statics
@@ -17,7 +17,7 @@ def require_room(beams: Sequence[Beam]) -> None:
     if needed <= _LITTLE:
         return
     memory = installed_memory()
-    if memory is None or needed <= SHARE * memory:
+    if memory is None or needed <= USABLE_FRACTION * memory:
         return
     most, elements = max(beams, key=_coordinates), sum(beam.element_count for beam in beams)
     raise InputError(

@@ -30,7 +30,7 @@ def _has_gradients_only(mesh: BeamMesh) -> bool:
     return all("theta" not in mesh.labels(int(nodes[0])) for _, nodes in mesh.node_kinds)
 
 
-def turning_pairs(model: Model) -> np.ndarray:
+def rotation_pairs(model: Model) -> np.ndarray:
     """Return the coordinates x and y (m, 2) of the vector that determines the rotation at the start of each of them."""
     pairs = []
     for mesh in uncounted(model):

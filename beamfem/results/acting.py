@@ -13,8 +13,8 @@ from beamfem.element.fields import d_slots, r_slots
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import inertia_points, length_points, scales
 from beamfem.quadrature import gauss
+from beamfem.results.distributions import nearest, to_more_points
 from beamfem.results.loading import loading
-from beamfem.results.spread import nearest, to_more_points
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -68,7 +68,7 @@ class Acting:
 
     element (m,): index among the elements cut free; xi (m,); rule (m,): number of Gauss points over which the
     distributed force is lumped; position, direction (m, nv): r = sum position_i e_i, likewise g;
-    force f (steps, m, 2) [N], turning h (steps, m, 2) [N m over the unit of g].
+    force f (steps, m, 2) [N], couple h (steps, m, 2) [N m over the unit of g].
     """
 
     element: np.ndarray
@@ -77,18 +77,18 @@ class Acting:
     position: np.ndarray
     direction: np.ndarray
     force: np.ndarray
-    turning: np.ndarray
+    couple: np.ndarray
 
     def moments(self, e: np.ndarray, origin: np.ndarray) -> np.ndarray:
         """Return the moments (steps, m) [N m] about an origin (steps, elements, 2) of each element; e: `vectors`."""
         arm = _at(self.position, e, self.element) - origin[:, self.element]
-        return cross(arm, self.force) + cross(_at(self.direction, e, self.element), self.turning)
+        return cross(arm, self.force) + cross(_at(self.direction, e, self.element), self.couple)
 
     def nodal(self, elements: int) -> np.ndarray:
         """Return the forces (steps, elements, nv, 2) on the nodal vectors of each element."""
         result = np.zeros((elements, len(self.force), self.position.shape[1], 2))
         parts = np.einsum("smc,mi->msic", self.force, self.position)
-        parts += np.einsum("smc,mi->msic", self.turning, self.direction)
+        parts += np.einsum("smc,mi->msic", self.couple, self.direction)
         np.add.at(result, self.element, parts)
         return np.moveaxis(result, 0, 1)
 
@@ -101,10 +101,10 @@ def acting_on(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, a
     parts = [
         _of_mass(rows, mesh, elements, e, acceleration),
         _along(rows, mesh, elements, e),
-        _spread(rows, mesh, elements, e),
+        _distributed(rows, mesh, elements, e),
     ]
     joined = {
-        name: np.concatenate([getattr(part, name) for part in parts], axis=1 if name in ("force", "turning") else 0)
+        name: np.concatenate([getattr(part, name) for part in parts], axis=1 if name in ("force", "couple") else 0)
         for name in Acting.__dataclass_fields__
     }
     return Acting(**joined)
@@ -124,15 +124,15 @@ def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acti
         mask = acting.rule == rule
         index = acting.element[mask], nearest(gauss(rule)[0], acting.xi[mask])
         finer = to_more_points(rule, rule + extra)
-        spread = []
-        for values in (acting.force[:, mask], acting.turning[:, mask]):
+        distributed = []
+        for values in (acting.force[:, mask], acting.couple[:, mask]):
             summed = np.zeros((len(elements), rule, len(values), 2))
             np.add.at(summed, index, np.moveaxis(values, 1, 0))
-            spread.append(np.einsum("jn,ensc->sejc", finer, summed).reshape(len(values), -1, 2))
+            distributed.append(np.einsum("jn,ensc->sejc", finer, summed).reshape(len(values), -1, 2))
         element, xi = np.repeat(np.arange(len(elements)), len(finer)), np.tile(gauss(len(finer))[0], len(elements))
         # distributed moments come from inertia alone, which turns with d
         tables = _tables(mesh, elements[element], xi)
-        parts.append((element, xi, np.full(len(xi), len(finer)), *tables, *spread))
+        parts.append((element, xi, np.full(len(xi), len(finer)), *tables, *distributed))
     joined = zip(*parts, strict=True)
     return Acting(*(np.concatenate(values, axis=1 if values[0].ndim == 3 else 0) for values in joined))
 
@@ -164,12 +164,12 @@ def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> A
     return Acting(element, xi, rule, position, direction, force, np.zeros_like(force))
 
 
-def _spread(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
+def _distributed(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
     """Return follower and varying loads along beams, and foundation springs, as evaluated by the kernels."""
     actions = rows.system.actions[mesh.block]
     points, own = actions.points, mesh.in_block(elements)
     order = np.argsort(own)
-    chosen = actions.spread_on(own[order])
+    chosen = actions.distributed_on(own[order])
     if not len(chosen):
         return _nothing(e)
     element = order[np.searchsorted(own, points.element[chosen], sorter=order)]
@@ -182,8 +182,8 @@ def _spread(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> 
     co, si = dot(g, at_rest)[..., None] / unit, cross(at_rest, g)[..., None] / unit
     dead = values[..., :2]
     force = np.where(follows, co * dead + si * across(dead), dead) - points.spring[chosen] * (r - points.anchor[chosen])
-    turning = values[..., 2:] * across(g) / square
-    return Acting(element, actions.xi[chosen], actions.rule[chosen], position, direction, force, turning)
+    couple = values[..., 2:] * across(g) / square
+    return Acting(element, actions.xi[chosen], actions.rule[chosen], position, direction, force, couple)
 
 
 def _nothing(e: np.ndarray) -> Acting:

@@ -110,7 +110,7 @@ def rotation(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray)
     """Return the rotation of the section from the reference configuration (rows, points) [rad]."""
     turned, p = turned_of(solution, points.mesh), solution.p[rows]
     counted = None if turned is None else turned[rows]
-    return postprocess.turning(points.mesh, p, points.now(p), points.element, points.xi, counted)
+    return postprocess.section_rotation(points.mesh, p, points.now(p), points.element, points.xi, counted)
 
 
 @dataclass(frozen=True)

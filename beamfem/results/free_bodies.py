@@ -17,8 +17,8 @@ from beamfem.kernels.block import Block
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import interpolate
 from beamfem.results.acting import Acting, Rows, acting_on, at_more_points
+from beamfem.results.distributions import fractions_before
 from beamfem.results.postprocess import direction
-from beamfem.results.spread import fractions_before
 
 
 @dataclass(frozen=True, eq=False)

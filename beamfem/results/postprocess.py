@@ -153,7 +153,7 @@ def direction(mesh: BeamMesh, now: Axis) -> np.ndarray:
     return section_frame(now.d)[0]
 
 
-def turning(
+def section_rotation(
     mesh: BeamMesh, p: np.ndarray, now: Axis, element: np.ndarray, xi: np.ndarray, turned: np.ndarray | None = None
 ) -> np.ndarray:
     """Return the rotation of the section (steps, points) [rad], full turns included.
@@ -229,7 +229,7 @@ def fields(
     distribution, height = distributions(mesh, element, xi), np.zeros((len(element), 1))
     along = (distribution.normal_stress(None, height, forces[:, 0], forces[:, 2]) + self_stress)[..., 0]
     sheared = distribution.shear_stress(None, height, forces[:, 1])[..., 0]
-    angle = turning(mesh, p, now, element, xi, turned)
+    angle = section_rotation(mesh, p, now, element, xi, turned)
     stress = Components(along, 0.0 * along, sheared)
     return Fields(now.r, now.r_s, now.d, angle, shear_angle(now), strain, stress)
 

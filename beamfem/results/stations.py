@@ -29,7 +29,7 @@ class StationsOfRows:
     def rotation(self) -> np.ndarray:
         """Rotations of the sections from the reference (steps, n) [rad]."""
         turned = turned_of(self.solution, self.mesh)
-        return postprocess.turning(self.mesh, self.solution.p, self._now, self.element, self.xi, turned)
+        return postprocess.section_rotation(self.mesh, self.solution.p, self._now, self.element, self.xi, turned)
 
     @property
     def slope(self) -> np.ndarray:

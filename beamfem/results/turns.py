@@ -51,4 +51,4 @@ def rotations(solution: "Solution", points: Sequence[Point]) -> np.ndarray:
     mesh = solution.model.mesh_of(points[0])
     element, xi = (np.array(each) for each in zip(*(mesh.locate(point.fraction) for point in points), strict=True))
     now = axis_at(mesh, solution.p, element, xi)
-    return postprocess.turning(mesh, solution.p, now, element, xi, turned_of(solution, mesh))
+    return postprocess.section_rotation(mesh, solution.p, now, element, xi, turned_of(solution, mesh))

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.memory import SHARE, in_gib, installed_memory
+from beamfem.memory import USABLE_FRACTION, in_gib, installed_memory
 from beamfem.results.solution import Solution
 from beamfem.validation import nearest
 
@@ -43,7 +43,7 @@ def _varies(value: Any) -> bool:
 def _require_room(counts: Sequence[int]) -> None:
     """Raise InputError if the points of a study need more memory than this computer has."""
     points, memory = math.prod(counts), installed_memory()
-    if memory is not None and points * _POINT > SHARE * memory:
+    if memory is not None and points * _POINT > USABLE_FRACTION * memory:
         product = " x ".join(map(str, counts))
         raise InputError(
             f"{product} = {points:.3g} points need {in_gib(points * _POINT)} at the least, and this computer has "

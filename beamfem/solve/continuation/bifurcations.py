@@ -12,7 +12,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.solve.continuation.condensed import Condensed, condensed
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError, interpolation_weights
-from beamfem.solve.continuation.crossings import Crossing, Samples, crossings, turning, without_limit
+from beamfem.solve.continuation.crossings import Crossing, Samples, crossings, turning_point, without_limit
 
 _BESIDE = 1e-3  # of a segment: distance from a limit point at which signs of pivots and positions are reliable
 _WINDOW = 0.1  # of a segment: around a limit point that coincides with a bifurcation
@@ -34,7 +34,7 @@ def bifurcations(segment: Segment, limits: list[float]) -> list[Crossing]:
     SegmentLostError.
     """
     extrema = sorted([*limits, *segment.turned])
-    result = [turning(segment, x) for x in segment.turned]
+    result = [turning_point(segment, x) for x in segment.turned]
     start = 0.0
     for i, x in enumerate(extrema):
         low, high = max(x - _BESIDE, start), min(x + _BESIDE, 1.0)

@@ -219,10 +219,10 @@ class Segment:
         hidden = [self._least_slope(start, end, 0.0) for start, end in ((0.0, near), (near, 1.0))]
         return sorted({0.0, near, 1.0, *(x for x in hidden if x is not None)})
 
-    def _least_slope(self, start: float, end: float, share: float) -> float | None:
+    def _least_slope(self, start: float, end: float, fraction: float) -> float | None:
         """Return where the cubic between two fractions has the slope of the load factor nearest to a change of sign.
 
-        None if its sign is not the same at both ends, or if it stays above a share of the smaller slope there.
+        None if its sign is not the same at both ends, or if it stays above a fraction of the smaller slope there.
         """
         points, width = (self.at(start), self.at(end)), end - start
         squared = self.line.dot(self.chord, self.chord)
@@ -237,7 +237,7 @@ class Segment:
         if not 0.0 < x < 1.0:
             return None
         slope = left + x * (6.0 * rise - 4.0 * left - 2.0 * right) + x**2 * 0.5 * curvature
-        return float(start + x * width) if slope * np.sign(left) < share * min(abs(left), abs(right)) else None
+        return float(start + x * width) if slope * np.sign(left) < fraction * min(abs(left), abs(right)) else None
 
 
 def _cubic(x: float, a: Any, b: Any, a_slope: Any, b_slope: Any) -> Any:

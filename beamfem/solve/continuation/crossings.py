@@ -146,7 +146,7 @@ def _require_crossing(samples: Samples, x: float, mode: np.ndarray, rate: float)
         raise SegmentLostError("the step leads to another path")
 
 
-def turning(segment: Segment, x: float) -> Crossing:
+def turning_point(segment: Segment, x: float) -> Crossing:
     """Return the bifurcation at a fraction where the load factor has an extremum because another path crosses.
 
     There the path is tangential to the mode. Raises SegmentLostError.

@@ -13,7 +13,7 @@ from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 
 _SMALLEST = 1e-8
 _LARGEST = 0.5
-_LEAST_SHARE = 0.1  # of the whole movement: the least share that counts as deformation when a step is bounded
+_LEAST_FRACTION = 0.1  # of the whole movement: the least fraction that counts as deformation when a step is bounded
 _LARGEST_GROWTH = 0.5  # of a large load factor, in one step
 _WANTED_TURN = 0.2  # [rad] by which the tangent of the path should turn in a step
 _LARGEST_TURN = 0.5
@@ -80,14 +80,14 @@ def longest_step(line: Continuation, point: PathPoint, end: float | None = None)
 
 
 def _deforming(line: Continuation, tangent: np.ndarray) -> float:
-    """Return the share of the movement along a tangent that bounds a step: 1 unless nearly all of it is translation."""
+    """Return the fraction of the movement along a tangent that bounds a step: 1 unless nearly all is translation."""
     system = line.system
     change = tangent[:-1] / system.scale
     beside = np.max(np.abs(change[~system.positions]), initial=0.0)
     largest = max(float(np.max(np.abs(change), initial=0.0)), np.finfo(float).tiny)
     nodes = np.concatenate([block.dof[:, :2] for block in system.blocks])
-    spread = 0.5 * float(np.ptp(change[nodes], axis=0).max())
-    return float(min(max(beside, spread) / (_LEAST_SHARE * largest), 1.0))
+    half_range = 0.5 * float(np.ptp(change[nodes], axis=0).max())
+    return float(min(max(beside, half_range) / (_LEAST_FRACTION * largest), 1.0))
 
 
 def too_small(line: Continuation, point: PathPoint, size: float) -> bool:

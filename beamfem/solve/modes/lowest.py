@@ -13,7 +13,7 @@ from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
 from beamfem.solve.modes.pencil import Pencil
 
 _SPARE = 4  # eigenvalues found beyond those asked for, so that a gap can be seen
-_SPREAD = 1e6  # largest ratio of eigenvalues that are computed together from the stiffness
+_RANGE = 1e6  # largest ratio of eigenvalues that are computed together from the stiffness
 _SEARCHES = 8
 WRONG = 1e-5  # of vectors: largest acceptable error by round-off of the tangent
 _SOLVES = 2  # for vectors with noticeable round-off: each reduces their error to about a hundredth
@@ -113,7 +113,7 @@ def _alike(squares: np.ndarray) -> list[slice]:
     """Return parts of ascending eigenvalues, cut at gaps, whose ratio is bounded."""
     first, result = 0, []
     while first < len(squares):
-        far = np.flatnonzero(squares[first:] > _SPREAD * np.abs(squares[: first + 1]).max())
+        far = np.flatnonzero(squares[first:] > _RANGE * np.abs(squares[: first + 1]).max())
         last = len(squares)
         if len(far):
             inside = np.arange(first + 1, first + int(far[0]) + 1)

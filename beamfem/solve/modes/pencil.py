@@ -15,7 +15,7 @@ from beamfem.once import cached_property
 _RANGE = 80.0  # logarithm of the largest ratio of eigenvalues
 _AWAY = 0.75  # of a shift: least distance of an eigenvalue from it
 _ASYMMETRY = 1e-12
-_FELT = 1e-4  # of the work of random forces: share of the round-off of the stiffness above which it is examined
+_FELT = 1e-4  # of the work of random forces: fraction of the round-off of the stiffness above which it is examined
 
 
 def is_symmetric(system: System, matrix: csr_array) -> bool:

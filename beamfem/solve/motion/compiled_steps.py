@@ -6,6 +6,7 @@ from beamfem.assembly.motion_workspace import MotionWorkspace
 from beamfem.assembly.system import System
 from beamfem.kernels import record
 from beamfem.kernels.march import march, solve_once
+from beamfem.kernels.motion_record import TIME_STEP
 from beamfem.kernels.pointers import address_of
 from beamfem.linalg.tangent import SMALLEST_PIVOT
 from beamfem.solve.motion.coupled_stages import CoupledStages
@@ -19,15 +20,16 @@ _INERTIA = 0.0, 0.0, 1.0  # weights of p, p', p'' in the tangent
 class CompiledSteps:
     """Marches through time steps; keeps tangent and differences of the acceleration between calls.
 
-    space: its own workspace; rule: step, alpha_m, alpha_f, gamma, beta; statistics (10,): see `kernels.march.march`.
+    space: its own workspace; rule: step, alpha_m, alpha_f, gamma, beta; statistics: see
+    `kernels.motion_record`.
     """
 
     def __init__(self, system: System, space: MotionWorkspace, rule: np.ndarray, statistics: np.ndarray) -> None:
-        self._system, self._space, self._statistics, self._step = system, space, statistics, float(rule[0])
+        self._system, self._space, self._statistics, self._step = system, space, statistics, float(rule[TIME_STEP])
         sparse, connected = system.unknowns.pattern is not None, bool(system.connectors.items)
         self._limits = SPARSE if sparse else BORDERED if connected else BAND
         h, alpha_m, alpha_f, gamma, beta = rule
-        space.arrays[record.RULE][:5], space.arrays[record.LIMITS][:] = rule, self._limits
+        space.arrays[record.RULE][: len(rule)], space.arrays[record.LIMITS][:] = rule, self._limits
         space.arrays[record.DIFFERENCES][:] = 0.0
         space.assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))), self._step)
         space.assembler.require("tangent", "prediction")
@@ -72,9 +74,9 @@ class CompiledSteps:
         arrays = {
             record.PRESCRIBED_VALUES: prescribed,
             record.SAVED: saving.states,
-            record.TURN_TABLE: saving.pairs,
-            record.TURNED_BY: saving.turned,
-            record.SAVED_TURNS: saving.rows_turned,
+            record.ROTATION_TABLE: saving.pairs,
+            record.ROTATED_BY: saving.rotations,
+            record.SAVED_ROTATIONS: saving.saved_rotations,
             record.LOAD_VALUES: load_addresses,
             record.NATURALS: natural,
         }
@@ -89,7 +91,7 @@ class CompiledSteps:
             record.STEPS: len(prescribed),
             record.FIRST_STEP: saving.first,
             record.EVERY: saving.every,
-            record.TURN_COUNT: len(saving.pairs),
+            record.ROTATION_COUNT: len(saving.pairs),
         }
         for field, value in (numbers | {field: address_of(array) for field, array in arrays.items()}).items():
             solver[field] = value

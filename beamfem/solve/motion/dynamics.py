@@ -8,9 +8,10 @@ from beamfem.assembly.compiled import tell_of_compilation
 from beamfem.assembly.rigid_velocity import RigidVelocity
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, InputError
+from beamfem.kernels.motion_record import ITERATIONS
 from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
-from beamfem.model.turns import turning_pairs
+from beamfem.model.turns import rotation_pairs
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.results.turns import first_turns
@@ -119,13 +120,13 @@ def simulate(
         require_met(system, state[0], state[1], duration)
     state[2] = initial_acceleration(system, state, parts[0].loads_from)
     state[3] = state[2]
-    rows, pairs = -(-(len(times) - 1) // save_every) + 1, turning_pairs(model)
+    rows, pairs = -(-(len(times) - 1) // save_every) + 1, rotation_pairs(model)
     table = np.empty((rows, 3, model.size))
     record = Record(table, save_every, new_statistics(), pairs, np.empty((rows, len(pairs))))
     near = transferred_turns(start, model, "start")
-    record.states[0], record.turned[0] = state[:3], first_turns(model, state[0], near)
+    record.states[0], record.rotations[0] = state[:3], first_turns(model, state[0], near)
     further = len(ends) - len(times)
-    last = Last((0, state[:3].copy(), record.turned[0].copy()))
+    last = Last((0, state[:3].copy(), record.rotations[0].copy()))
     with kept(lambda: _solution(system, times, record, last, further, unresolved)):
         failed = march(system, integrator, parts, prescribed, state, record, last)
     solution = _solution(system, times, record, last, further, unresolved)
@@ -141,17 +142,17 @@ def simulate(
 def _solution(
     system: System, times: np.ndarray, record: Record, last: Last, further: int, unresolved: list[str]
 ) -> Solution:
-    done, state, turned_by = last.step
+    done, state, last_rotations = last.step
     kept_steps = np.append(np.arange(0, done, record.every), done)
-    states, turned = record.states[: len(kept_steps)], record.turned[: len(kept_steps)]
+    states, rotations = record.states[: len(kept_steps)], record.rotations[: len(kept_steps)]
     if done % record.every:
-        states[-1], turned[-1] = state, turned_by
+        states[-1], rotations[-1] = state, last_rotations
     ended = f"{done} step{'' if done == 1 else 's'} of {times[1]:g} {system.model.unit('s')}"
     if further:
         ended += f", divided {further} times at kinks of loads"
     for name in unresolved:
         ended += f"; the {name} varies within steps, which do not resolve it"
     status = Status.COMPLETED if done == len(times) - 1 else Status.STOPPED
-    summary = Statistics(int(record.statistics[0]), done, 0, ended, status)
+    summary = Statistics(int(record.statistics[ITERATIONS]), done, 0, ended, status)
     p, v, a = states.swapaxes(0, 1)
-    return Solution(system.model, False, times[kept_steps], p, v, a, summary, turned=turned)
+    return Solution(system.model, False, times[kept_steps], p, v, a, summary, turned=rotations)

@@ -13,7 +13,7 @@ from beamfem.assembly.system import System
 from beamfem.brief import brief
 from beamfem.errors import ConvergenceError
 from beamfem.linalg.superlu import superlu
-from beamfem.linalg.tangent import UNROTATED, turning
+from beamfem.linalg.tangent import UNROTATED, rotation_to_normals
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
 
@@ -154,14 +154,14 @@ class EquationsOfMotion:
         kept = np.ones(unknown, dtype=bool)
         kept[self.system.rotated[0]] = False
         kept = np.tile(kept, stages)
-        turn = csr_array(block_diag([turning(unknown, self.system.rotated)] * stages))
-        matrix = csr_array(turn @ block_array(blocks) @ turn.T)[kept][:, kept]
+        rotation = csr_array(block_diag([rotation_to_normals(unknown, self.system.rotated)] * stages))
+        matrix = csr_array(rotation @ block_array(blocks) @ rotation.T)[kept][:, kept]
         solution = np.zeros(right.size)
         try:
-            solution[kept] = superlu(csc_array(matrix)).solve((turn @ right.ravel())[kept])
+            solution[kept] = superlu(csc_array(matrix)).solve((rotation @ right.ravel())[kept])
         except LinAlgError as error:
             raise ConvergenceError("the tangent of a step is singular") from error
-        return np.asarray(turn.T @ solution).reshape(right.shape)
+        return np.asarray(rotation.T @ solution).reshape(right.shape)
 
 
 class Integrator(Protocol):

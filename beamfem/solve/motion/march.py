@@ -15,6 +15,7 @@ from beamfem.assembly.motion_workspace import motion_workspace
 from beamfem.assembly.system import System
 from beamfem.assembly.tiles import is_long
 from beamfem.assembly.viscosity import viscous_tangent
+from beamfem.kernels.motion_record import ALPHA_M, GAMMA, ITERATIONS, OF_EQUAL_STEPS, TIME_STEP, MotionStatistics
 from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.progress import progress
 from beamfem.solve.motion.compiled_steps import CompiledSteps, acceleration
@@ -33,7 +34,7 @@ _FIRST_CHUNK = 200_000  # coordinates times steps
 class Record:
     """Stored states (rows, 3, n) of every n-th whole step, and of the last one in the row after them.
 
-    statistics (10,): see `kernels.march.march`; pairs (m, 2): see `turns.turning_pairs`; turned (rows, m) [rad]: of
+    statistics: see `kernels.motion_record`; pairs (m, 2): see `turns.rotation_pairs`; rotations (rows, m) [rad]: of
     the stored states.
     """
 
@@ -41,12 +42,12 @@ class Record:
     every: int
     statistics: np.ndarray
     pairs: np.ndarray
-    turned: np.ndarray
+    rotations: np.ndarray
 
 
 def new_statistics() -> np.ndarray:
     """Return the statistics of a motion that has not begun."""
-    return np.array([0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    return np.array(MotionStatistics())
 
 
 @dataclass
@@ -56,11 +57,11 @@ class Last:
     step: tuple[int, np.ndarray, np.ndarray]
     _spare: np.ndarray | None = None
 
-    def reach(self, done: int, state: np.ndarray, turned: np.ndarray) -> None:
+    def reach(self, done: int, state: np.ndarray, rotations: np.ndarray) -> None:
         """Record another step by a single assignment, so that the record is complete even after an interruption."""
         before, buffer = self.step[1], np.empty_like(state) if self._spare is None else self._spare
         buffer[:] = state
-        self.step = done, buffer, turned.copy()
+        self.step = done, buffer, rotations.copy()
         self._spare = before
 
 
@@ -87,22 +88,22 @@ def march(
     prescribed (m + 1, 3, nh): see `prescribed_motion`, at the ends of all steps; last: updated after each step. Return
     where and why it failed, or None.
     """
-    statistics = record.statistics
+    statistics, begun_anew = record.statistics, new_statistics()
     done, row, failed = 0, 0, None
     damped = any(block.damping.any() for block in system.blocks) or bool(system.connectors.items)
     # see initial_acceleration; laws with history know rates by differences only
     relaxed = is_scheme(integrator) and (bool(system.history.laws) or (damped and not _keeps_rates(integrator)))
     # a user-defined integrator may raise any exception; the states reached before are kept
     size = max(_FIRST_CHUNK // system.model.size, 1) if is_scheme(integrator) else 1
-    turned = record.turned[0].copy()
-    counting = record.pairs, turned, record.turned
+    rotations = record.rotations[0].copy()
+    counting = record.pairs, rotations, record.rotations
     with progress("time [s]", float(parts[-1].times[-1])) as report:
         for number, part in enumerate(parts):
             if number > 0:
                 if is_scheme(integrator):
                     _keep_momentum(integrator.rule(parts[number - 1].step), state)
                 _begin_anew(system, part, state, _kept(record, done, part))
-                statistics[[4, 6, 7, 8, 9]] = -1.0, 0.0, 0.0, 0.0, 0.0
+                statistics[OF_EQUAL_STEPS] = begun_anew[OF_EQUAL_STEPS]
             if relaxed:
                 state[2] = state[3] = initial_acceleration(system, state, part.loads_from, part.step)
             load_times = np.append(part.times[1:-1], part.loads_to)
@@ -121,7 +122,7 @@ def march(
                     if completed < chunk:
                         failed = Failure(float(part.times[begun]), float(part.times[begun + 1]), motion.why)
                     if part.whole and completed:
-                        last.reach(done, state[:3], turned)
+                        last.reach(done, state[:3], rotations)
                         report(float(part.times[begun]))
                     if part.whole and spent < _CHUNK_SECONDS and is_scheme(integrator):
                         size *= 4
@@ -129,9 +130,9 @@ def march(
                 break
             if part.ends_whole and not part.whole:
                 done += 1
-                last.reach(done, state[:3], turned)
+                last.reach(done, state[:3], rotations)
                 if done % record.every == 0:
-                    record.states[done // record.every], record.turned[done // record.every] = last.step[1:]
+                    record.states[done // record.every], record.rotations[done // record.every] = last.step[1:]
     return failed
 
 
@@ -146,7 +147,8 @@ def _steps(
 ) -> Iterator[CompiledSteps | OwnSteps]:
     """Provide the object that takes the steps of a stretch."""
     if not is_scheme(integrator):
-        yield OwnSteps(system, cast("Integrator", integrator), part.loads_from, statistics[:1])
+        counted = statistics[ITERATIONS : ITERATIONS + 1]
+        yield OwnSteps(system, cast("Integrator", integrator), part.loads_from, counted)
         return
     with motion_workspace(system) as space:
         yield CompiledSteps(system, space, integrator.rule(part.step), statistics)
@@ -165,7 +167,7 @@ def _keep_momentum(rule: np.ndarray, state: np.ndarray) -> None:
     arithmetic one in methods of second order. With this correction the same holds across stretches, and momentum is
     conserved.
     """
-    state[1] += rule[0] * (1.0 - rule[1] - rule[3]) * (state[3] - state[2])
+    state[1] += rule[TIME_STEP] * (1.0 - rule[ALPHA_M] - rule[GAMMA]) * (state[3] - state[2])
 
 
 def _begin_anew(system: System, part: Stretch, state: np.ndarray, kept: np.ndarray | None) -> None:

@@ -6,6 +6,7 @@ from scipy.linalg import LinAlgError
 from beamfem.assembly.band_workspace import band_workspace
 from beamfem.assembly.round_off import load_size
 from beamfem.assembly.system import System
+from beamfem.kernels import newton_record as r
 from beamfem.kernels.newton import count_after_step, iterate
 from beamfem.linalg.tangent import SMALLEST_PIVOT
 from beamfem.solve.newton.convergence import LARGEST, STAGNANT, Balance, Correction
@@ -32,13 +33,13 @@ class BandProblem:
         self.load = load_size(system, loads)
         space.assembler.take(loads)
         space.p[:], space.step[:], space.found[:] = start, 0.0, 0.0
-        space.found[1:3] = np.inf
+        space.found[r.CORRECTION] = space.found[r.CORRECTION_BEFORE] = np.inf
         space.prescribed_step[:], space.prescribed_force[:] = step.step, step.force
-        keeps = -1 if keep is None else keep
-        space.limits[:] = (
-            *(newton.tolerance, STAGNANT, LARGEST, SMALLEST_PIVOT),
-            *(newton.iterations, newton.independent_stresses, keeps),
-        )
+        limits = space.limits
+        limits[r.TOLERANCE], limits[r.STAGNANT], limits[r.DIVERGENT] = newton.tolerance, STAGNANT, LARGEST
+        limits[r.PIVOT_RATIO], limits[r.MOST_ITERATIONS] = SMALLEST_PIVOT, newton.iterations
+        limits[r.PREDICTED_RESULTANTS] = newton.independent_stresses
+        limits[r.REQUIRED_NEGATIVE_PIVOTS] = -1 if keep is None else keep
 
     def correct(self) -> Correction:
         """Take corrections until one is small or stagnant. Raises LinAlgError if pivoting is needed."""
@@ -48,7 +49,8 @@ class BandProblem:
         if not factorised:
             raise LinAlgError("a pivot is tiny")
         space.prescribed_step[:] = space.prescribed_force[:] = 0.0
-        return Correction(int(found[0]), found[1], found[2], int(found[6]))
+        negative = int(found[r.NEGATIVE_PIVOTS])
+        return Correction(int(found[r.ITERATIONS]), found[r.CORRECTION], found[r.CORRECTION_BEFORE], negative)
 
     @property
     def state(self) -> np.ndarray:
@@ -58,12 +60,13 @@ class BandProblem:
     def balance(self) -> Balance:
         """Return the balance of forces in the state reached."""
         space, found = self.space, self.space.found
-        force = max(found[4], self.load)
-        return Balance(space.p, space.residual, found[3], force, found[5] <= 0.0)
+        force = max(found[r.FORCE], self.load)
+        return Balance(space.p, space.residual, found[r.UNBALANCED], force, found[r.JACOBIAN] <= 0.0)
 
     def after_first(self) -> tuple[float, int]:
         """Return the size of the first correction and the negative pivots of the second tangent."""
-        return float(self.space.found[7]), int(self.space.found[8])
+        found = self.space.found
+        return float(found[r.FIRST_CORRECTION]), int(found[r.NEGATIVE_PIVOTS_AFTER_FIRST])
 
     def count_after_linear(self) -> int:
         """Return the negative pivots at the start with the stresses of a linear step; overwrites the state reached."""

@@ -12,7 +12,7 @@ from beamfem.solve.stability.loading_path import LoadingPath
 from beamfem.solve.stability.window import on_path
 
 _MODES = 3  # softest ones, of which one may lose its stiffness and gain it again
-_SHARE = 0.3  # of the least stiffness of a mode at the points of a step: with less in between it may lose it
+_FRACTION = 0.3  # of the least stiffness of a mode at the points of a step: with less in between it may lose it
 _GRID = np.linspace(0.0, 1.0, 65)
 
 
@@ -57,9 +57,9 @@ def _extreme_slope(path: LoadingPath, before: PathPoint, after: PathPoint) -> fl
 
 
 def _softest_place(path: LoadingPath, before: PathPoint, middle: PathPoint, after: PathPoint) -> np.ndarray | None:
-    """Return y (n + 1,) where by parabolas through three points a mode keeps the least share of its stiffness.
+    """Return y (n + 1,) where by parabolas through three points a mode keeps the least fraction of its stiffness.
 
-    None if all modes keep more of it than a share, or round-off hides the stiffnesses.
+    None if all modes keep more of it than a fraction, or round-off hides the stiffnesses.
     """
     line, points = path.line, (before, middle, after)
     normal = path.normal(before, after)
@@ -73,10 +73,10 @@ def _softest_place(path: LoadingPath, before: PathPoint, middle: PathPoint, afte
         return None
     at = np.array([line.dot(normal, point.y - before.y) for point in points])
     grid = at[-1] * _GRID
-    shares = interpolation_weights(at, grid) @ (
+    fractions = interpolation_weights(at, grid) @ (
         eigenvalues / eigenvalues[np.argmin(np.abs(eigenvalues), axis=0), np.arange(eigenvalues.shape[1])]
     )
-    row, mode = np.unravel_index(np.argmin(shares[:, steady]), (len(grid), len(steady)))
-    if shares[row, steady[mode]] > _SHARE:
+    row, mode = np.unravel_index(np.argmin(fractions[:, steady]), (len(grid), len(steady)))
+    if fractions[row, steady[mode]] > _FRACTION:
         return None
     return np.asarray(interpolation_weights(at, float(grid[row])) @ np.array([point.y for point in points]))

@@ -1,7 +1,7 @@
 """Check that the states of a motion fit into memory, before the first of them is computed."""
 
 from beamfem.errors import InputError
-from beamfem.memory import SHARE, in_gib, installed_memory
+from beamfem.memory import USABLE_FRACTION, in_gib, installed_memory
 
 _STATE = 3 * 8  # bytes of a coordinate: p, p', p''
 _STEP = 8 * 8  # bytes of a step, stored or not: its time, prescribed values and loads
@@ -12,9 +12,9 @@ def require_memory(coordinates: int, duration: float, step: float, save_every: i
     steps = duration / step
     memory = installed_memory()
     needed = steps * (_STATE * coordinates / save_every + _STEP)
-    if memory is None or needed <= SHARE * memory:
+    if memory is None or needed <= USABLE_FRACTION * memory:
         return
-    room = SHARE * memory - steps * _STEP
+    room = USABLE_FRACTION * memory - steps * _STEP
     message = (
         f"{steps:.3g} steps of {coordinates} coordinates, of which every {_ordinal(save_every)} is kept, need "
         f"{in_gib(needed)}, and this computer has {in_gib(memory)}"
@@ -28,7 +28,7 @@ def require_memory(coordinates: int, duration: float, step: float, save_every: i
 def require_room(states: int, coordinates: int) -> None:
     """Raise InputError if this many states of a mode need more memory [bytes] than this computer has."""
     memory, needed = installed_memory(), float(states) * 2 * _STATE * coordinates
-    if memory is not None and needed > SHARE * memory:
+    if memory is not None and needed > USABLE_FRACTION * memory:
         raise InputError(
             f"{states:.3g} frames of {coordinates} coordinates need {in_gib(needed)}, and this computer has "
             f"{in_gib(memory)}; take fewer"

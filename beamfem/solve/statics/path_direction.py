@@ -8,7 +8,7 @@ from beamfem.assembly.system import System
 from beamfem.solve.continuation.steps import leaves_arc
 
 # of the lesser rise of the load per movement at the ends of a step: with less in between it may fall there
-_SHARE = 0.3
+_FRACTION = 0.3
 _SLOPE_WIDTH = 1e-3  # of the load step; loads are evaluated within it only, since functions may end with it
 
 
@@ -42,7 +42,7 @@ def _dips(first: float, last: float) -> bool:
     """
     if min(first, last) <= 1.0:
         return False
-    return first - (2.0 * first + last - 3.0) ** 2 / (3.0 * (first + last - 2.0)) < _SHARE * min(first, last)
+    return first - (2.0 * first + last - 3.0) ** 2 / (3.0 * (first + last - 2.0)) < _FRACTION * min(first, last)
 
 
 def _tangent(system: System, p: np.ndarray, load_factor: float, middle: float, width: float) -> np.ndarray:

@@ -18,7 +18,7 @@ BLOCK = 256  # rows
 _AHEAD = 256  # numbers that are fetched ahead: one stream of factors alone does not fill the memory's bandwidth
 
 
-class BandHalves(NamedTuple):
+class TwoSidedParts(NamedTuple):
     """Compiled functions for a half width.
 
     Parts 0 and 1 are the ends, part 2 is the middle, after both. factor(part, start, stop, n, m, w, reach, ab, space):
@@ -38,11 +38,11 @@ def whole_blocks(known: int, rows: int, w: int) -> int:
 
 
 @cache
-def band_halves(w: int) -> BandHalves:
+def two_sided_parts(w: int) -> TwoSidedParts:
     """Return the compiled functions for a half width."""
     case, width, entries = f"half_width_{w}", 2 * w + 1, BLOCK * (2 * w + 1)
-    _down = inlined(elimination(w, f"{case}_of_halves_down", backwards=False))
-    _up = inlined(elimination(w, f"{case}_of_halves_up", backwards=True))
+    _down = inlined(elimination(w, f"{case}_of_parts_down", backwards=False))
+    _up = inlined(elimination(w, f"{case}_of_parts_up", backwards=True))
 
     @inlined
     def _store(way, start, stop, first):
@@ -168,4 +168,4 @@ def band_halves(w: int) -> BandHalves:
         elif part == 1:
             _substitute(-1, start, stop, n - 2 * w - m, at(lu, n * width - 1), at(x, n - 1))
 
-    return BandHalves(factor, lower, upper)
+    return TwoSidedParts(factor, lower, upper)

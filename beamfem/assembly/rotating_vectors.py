@@ -10,10 +10,10 @@ from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS, ROTATION, SHEAR_
 
 _GRADIENTS = (GRADIENTS, ROTATED_GRADIENTS)
 # kinds of nodes that have r, r_x and r_y themselves as coordinates
-_TURNING = ((*_GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID), (*_GRADIENTS, ROTATION), _GRADIENTS)
+_ROTATING = ((*_GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID), (*_GRADIENTS, ROTATION), _GRADIENTS)
 
 
-def turning_vectors(blocks: Sequence[Block], free: np.ndarray, inclined: np.ndarray) -> np.ndarray:
+def rotating_vectors(blocks: Sequence[Block], free: np.ndarray, inclined: np.ndarray) -> np.ndarray:
     """Return equation numbers of x and y, node and number of each nodal vector that is a coordinate (np, 4).
 
     free (n,): equation number of each coordinate; inclined (nt,): equation number of x of each inclined roller.
@@ -23,8 +23,8 @@ def turning_vectors(blocks: Sequence[Block], free: np.ndarray, inclined: np.ndar
         block = stored(numbered, storage_order(numbered.node, len(numbered.node_kind)))
         vectors = block.scale.shape[1] // block.node.shape[1]
         for slot in range(vectors):
-            turning = _TURNING[0 if slot == 0 else 2 if slot == vectors - 1 else 1]
-            nodes = np.flatnonzero(np.isin(block.node_kind, turning))
+            rotating = _ROTATING[0 if slot == 0 else 2 if slot == vectors - 1 else 1]
+            nodes = np.flatnonzero(np.isin(block.node_kind, rotating))
             x, y = (free[block.dof[nodes, 2 * slot + axis]] if len(nodes) else nodes for axis in (0, 1))
             mask = (x >= 0) & (y >= 0)
             tables.append(np.column_stack([x, y, first + nodes, np.full(len(nodes), slot)])[mask])
@@ -35,7 +35,7 @@ def turning_vectors(blocks: Sequence[Block], free: np.ndarray, inclined: np.ndar
 
 
 def runs_of(pairs: np.ndarray) -> np.ndarray:
-    """Return runs (runs, 5) of vectors: equation numbers of x and y, node, step, and how many vectors.
+    """Return runs (runs, pair fields) of vectors, see `kernels.record.PAIR_X`.
 
     pairs (np, 4): equation numbers of x and y, node and number of the nodal vector of each. From one vector of a run to
     the next, the node increases by one, and the equation numbers increase by the step.

@@ -1,8 +1,23 @@
 """Bands with a border: connectors on chains in motions, against the same equations as a sparse matrix."""
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 import pytest
-from connectors import KINDS, Anchor, PointMass, Rest, RigidLink, SpringDamper, beam, cantilever, crossbar
+from connectors import (
+    AREA,
+    KINDS,
+    Anchor,
+    Barrier,
+    PointMass,
+    Rest,
+    RigidLink,
+    SpringDamper,
+    beam,
+    cantilever,
+    crossbar,
+)
+from section_laws import LinearLaw
 
 import beamfem as bf
 from beamfem.assembly import layout
@@ -58,7 +73,7 @@ def test_its_tangent_is_that_of_the_sparse_matrix(number, monkeypatch, rng):
         full, x = np.zeros(len(moved)), np.zeros(len(moved))
         full[system.free_dofs] = right
         x[system.free_dofs] = tangent.solve(right, UNROTATED)
-        assert isinstance(tangent, BorderedTangent) == (widest > 0)
+        assert isinstance(tangent, BorderedTangent | BandTangent) == (widest > 0)
         found.append((whole, full, x, tangent.factorised(UNROTATED).negative_pivots))
     one, other = found
     assert one[0] == pytest.approx(other[0], rel=1e-13, abs=1e-13 * np.abs(other[0]).max())
@@ -87,7 +102,7 @@ def test_factors_with_a_border_solve_the_whole_matrix(multipliers, rng):
     factors = BorderedFactors(size, border_of(size, multipliers, coupled, matrices), solve)
     right = rng.standard_normal(size + multipliers)
     x = right.copy()
-    factors.solve(x)
+    factors.solve_in_place(x)
     assert whole @ x == pytest.approx(right, abs=1e-12)
 
 
@@ -112,14 +127,98 @@ def test_an_error_in_a_force_ends_the_motion_with_the_states_before():
     ) as caught:
         bf.simulate(model, 0.05, 1e-3)
     known = bf.simulate(cantilever(own, [bf.Gravity((0.0, -9.81))], [PointMass(own.end, 1.0)]), 0.01, 1e-3)
+    assert len(caught.value.solution) == 11
     assert caught.value.solution.p == pytest.approx(known.p[: len(caught.value.solution)], abs=1e-14)
     assert bf.simulate(model, 0.01, 1e-3).p == pytest.approx(known.p, abs=1e-14)
 
 
 def test_many_connectors_make_the_matrix_sparse():
     own = beam(bf.CRBF(2), elements=30)
-    masses = [PointMass(own.at(k / 30), 0.1) for k in range(1, 31)]
-    model = cantilever(own, [bf.Gravity((0.0, -9.81))], masses)
+    springs = [SpringDamper(own.at(k / 30), own.end, 10.0) for k in range(1, 13)]
+    model = cantilever(own, [bf.Gravity((0.0, -9.81))], springs)
     bf.simulate(model, 0.01, 1e-3)
-    system = system_of(model, static=False)
-    assert system.unknowns.pattern is not None
+    assert system_of(model, static=False).unknowns.pattern is not None
+
+
+def test_connectors_of_one_point_change_nothing_but_entries_of_the_band():
+    """However many there are, also between neighbours; pivots are as those of the sparse matrix."""
+    own = beam(bf.CRBF(2), elements=30)
+    parts = [PointMass(own.at(k / 30), 0.1) for k in range(1, 31)]
+    parts.append(SpringDamper(own.at(14 / 30), own.at(29 / 60), 1e3, 2.0))
+    model = cantilever(own, [bf.Gravity((0.0, -9.81))], parts)
+    unknowns = system_of(model, static=False).unknowns
+    assert unknowns.pattern is None
+    assert not any(len(numbers) for numbers in unknowns.border)
+    motion = bf.simulate(model, 0.05, 1e-3)
+    heavy = replace(own, material=replace(own.material, density=7800.0 + 3.0 / AREA))  # the same mass, distributed
+    alone = bf.simulate(cantilever(heavy, [bf.Gravity((0.0, -9.81))]), 0.05, 1e-3)
+    assert motion.position(own.end) == pytest.approx(alone.position(heavy.end), abs=1e-3)
+    assert np.abs(motion.displacement(own.end)).max() > 1e-2
+
+
+@pytest.mark.parametrize("part", [lambda at: PointMass(at, 2.0), lambda at: Anchor(at, (1e3, 1e3, 1.0))])
+def test_a_connector_at_a_clamp_changes_nothing(part):
+    own = beam(KINDS[1])
+    model = cantilever(own, [bf.Gravity((0.0, -9.81))], [part(own.start)])
+    alone = cantilever(own, [bf.Gravity((0.0, -9.81))])
+    tips = [bf.simulate(each, 0.02, 1e-3).position(own.end) for each in (model, alone)]
+    assert tips[0] == pytest.approx(tips[1], abs=1e-8 * np.ptp(tips[1][:, 1]))
+
+
+@pytest.mark.parametrize("step", [1e-3, 0.1, 1.0])
+@pytest.mark.parametrize("density", [1.0, 1e-6, 1e-9])
+def test_connectors_may_hold_and_load_a_beam_of_hardly_any_mass(density, step):
+    """A rotor: a light shaft with a disc between springs; without them the band would have no digits."""
+    shaft = beam(bf.CRBF(2), elements=6, density=density)
+    springs = [Anchor(point, (1e6, 1e6, 0.0)) for point in (shaft.start, shaft.end)]
+    middle = shaft.at(0.5)
+    disc, tie = PointMass(middle, 10.0), SpringDamper(shaft.start, shaft.end, 1e4)
+    model = bf.Model([shaft], [], [bf.Gravity((0.0, -9.81))], connectors=[*springs, disc, tie])
+    motion = bf.simulate(model, 400 * step, step, integrator=bf.GeneralizedAlpha(0.0), save_every=400)
+    still = bf.solve_static(model)
+    if step == 1.0:
+        assert motion.displacement(middle)[-1, 1] == pytest.approx(still.displacement(middle)[-1, 1], rel=1e-4)
+    assert motion.displacement(middle)[-1, 1] < 0.0
+
+
+def test_a_force_that_is_undefined_at_an_iterate_is_tried_from_elsewhere():
+    """A wall that is defined up to some depth: iterates are rejected; if all are, the step fails in a sentence."""
+
+    class Shallow(Barrier):
+        def force(self, at):
+            outside = np.real(at.q[0, 1]) - self.level < -3.0 * self.width
+            return super().force(at) * (np.nan if outside else 1.0)
+
+    own, motions = beam(bf.CRBF(2)), []
+    for kind in (Shallow, Barrier):
+        model = cantilever(own, [bf.Gravity((0.0, -100.0))], [kind(own.end, -0.05, 1e4, 0.01)])
+        motions.append(bf.simulate(model, 1.2, 2e-2))
+    assert motions[0].p == pytest.approx(motions[1].p, abs=1e-8)
+    deep = cantilever(own, [bf.Gravity((0.0, -100.0))], [Shallow(own.end, -0.02, 1e5, 0.003)])
+    with pytest.raises(bf.ConvergenceError, match="did not converge") as caught:
+        bf.simulate(deep, 1.2, 2e-2)
+    assert len(caught.value.solution) == 5
+    assert np.isfinite(caught.value.solution.p).all()
+
+
+def test_an_error_of_a_connector_leaves_none_of_a_law_behind():
+    """The corrections that end the motion reach the law, which objects to them."""
+
+    @dataclass(frozen=True)
+    class Strict(LinearLaw):
+        def resultants(self, strain, material):
+            if not np.isfinite(strain).all():
+                raise ValueError("no strain")
+            return super().resultants(strain, material)
+
+    class Failing(PointMass):
+        def force(self, at):
+            if 0.0051 < np.real(at.time) < 0.0069:
+                raise ZeroDivisionError("no force there")
+            return super().force(at)
+
+    own = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(2), Strict(2e7, 7e6, 166.0, 0.78, 1e-5))
+    model = cantilever(own, [bf.Gravity((0.0, -9.81))], [Failing(own.end, 1.0)])
+    with pytest.raises(bf.InputError, match="no force there"):
+        bf.simulate(model, 0.01, 1e-3)
+    assert len(bf.simulate(model, 0.005, 1e-3)) == 6

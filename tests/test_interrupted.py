@@ -8,6 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from connectors import PointMass, cantilever
+from connectors import beam as connected_beam
+from section_laws import LinearLaw
 from typer.testing import CliRunner
 
 import beamfem as bf
@@ -116,3 +119,61 @@ def test_the_command_line_leaves_an_interrupt_ignored_that_was():
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith("error: ")
     assert "missing.h5" in done.stderr
+
+
+def hanging(force=None):
+    """Return a cantilever with a mass at its end, whose force may be another function."""
+    kind = PointMass if force is None else type("Interfering", (PointMass,), {"force": force})
+    own = connected_beam(bf.CRBF(2))
+    return cantilever(own, [bf.Gravity((0.0, -9.81))], [kind(own.end, 1.0)])
+
+
+def test_a_ctrl_c_in_a_force_ends_the_motion_between_two_steps():
+    """Python handles it where compiled code calls the force, which could neither catch nor pass on the exception."""
+
+    def force(self, at):
+        if 0.0201 < np.real(at.time) < 0.0219:
+            signal.raise_signal(signal.SIGINT)
+        return PointMass.force(self, at)
+
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt) as caught:
+            bf.simulate(hanging(force), 0.05, 1e-3)
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
+    found = caught.value.solution
+    assert 20 <= len(found) <= 22
+    assert found.p == pytest.approx(bf.simulate(hanging(), 0.05, 1e-3).p[: len(found)], abs=1e-15)
+
+
+class TimeUp(BaseException):
+    """What a signal's handler may raise."""
+
+
+@pytest.mark.parametrize("number", [1, 2, 3, 4, 5, 40])
+@pytest.mark.parametrize("function", ["guarded", "_fill"])
+def test_what_a_signal_raises_is_not_lost(function, number):
+    """It may come at the entry of a function that compiled code calls, too early to be caught there."""
+    own = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(2), LinearLaw(2e7, 7e6, 166.0, 0.78, 1e-5))
+    laws = cantilever(own, [bf.Gravity((0.0, -9.81))])
+    model, calls, before = hanging() if function == "guarded" else laws, [], sys.gettrace()
+    known = bf.simulate(model, 0.02, 1e-3)
+
+    def trace(frame, event, argument):
+        if frame.f_code.co_name == function:
+            calls.append(event)
+            if len(calls) == number:
+                sys.settrace(before)
+                raise TimeUp
+
+    try:
+        sys.settrace(trace)
+        with pytest.raises(TimeUp) as caught:
+            bf.simulate(model, 0.02, 1e-3)
+    finally:
+        sys.settrace(before)
+    found = getattr(caught.value, "solution", known)  # there is none before the first step
+    assert found.p == pytest.approx(known.p[: len(found)], abs=1e-15)
+    assert np.array_equal(bf.simulate(model, 0.02, 1e-3).p, known.p)

@@ -135,3 +135,27 @@ def test_a_stiff_spring_moves_like_a_link():
         bf.simulate(model, 0.2, 5e-4).position(point)[-1] for model, point in ((linked, two.end), (sprung, three.end))
     ]
     assert motions[1] == pytest.approx(motions[0], abs=1e-5)
+
+
+def test_a_motion_with_a_link_goes_on_where_another_one_ended():
+    """Velocities satisfy conditions to the order of the step only; what they are off by is lost as in an impact."""
+    two, model = crossbar(RigidLink)
+    whole = bf.simulate(model, 0.2, 1e-3)
+    half = bf.simulate(model, 0.1, 1e-3)
+    rest = bf.simulate(model, 0.1, 1e-3, start=half)
+    assert rest.position(two.end)[-1] == pytest.approx(whole.position(two.end)[-1], abs=2e-5)
+
+
+def test_a_link_that_is_set_between_moving_points_stops_their_distance_at_once():
+    """Two free masses on light beams of gradients: momentum stays, and half of the energy of the relative motion."""
+    one, other = (beam(bf.ANCF(), (x, 0.0), (x + 1.0, 0.0), 1) for x in (0.0, 2.0))
+    free = bf.Model([one, other])
+    flight = bf.simulate(free, 1e-3, 1e-3, velocity=lambda at: (1.0, 0.0) if at[0] < 1.5 else (0.0, 0.0))
+    linked = bf.Model([one, other], connectors=[RigidLink(one.end, other.start)])
+    motion = bf.simulate(linked, 1e-4, 1e-5, start=flight[0])
+    apart = motion.velocity(other.start)[0] - motion.velocity(one.end)[0]
+    assert apart[0] == pytest.approx(0.0, abs=1e-12)
+    assert motion.linear_momentum()[:, 0] == pytest.approx(
+        np.full(len(motion), flight.linear_momentum()[0, 0]), rel=1e-9
+    )
+    assert motion.energy().kinetic[0] < flight.energy().kinetic[0]

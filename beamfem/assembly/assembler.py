@@ -1,12 +1,14 @@
 """Evaluation of all equations of a model: residual and tangent in a state, for given weights."""
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from math import prod
+from typing import Any
 
 import numpy as np
 
 from beamfem.assembly.arena import Arena
+from beamfem.assembly.callbacks import Deferred
 from beamfem.assembly.element_group import ElementGroup
 from beamfem.assembly.loads_at import LoadsAt
 from beamfem.assembly.scratch import Scratch, new
@@ -232,8 +234,7 @@ class Assembler:
         self.place(p, v, a, residual, matrix)
         self.table[record.TANGENT] = int(matrix.size > 0)
         self.table[record.PREDICTED] = int(predicted and matrix.size > 0)
-        model_passes.balance(self.address)
-        self.raise_errors()
+        self.call(model_passes.balance.compiled, self.address)
 
     def predict(self, p: np.ndarray, step: np.ndarray, v: np.ndarray | None = None) -> None:
         """Predict `stresses` after a linearised step (n,) from p (n,); v: p' (n,), for damping."""
@@ -243,13 +244,29 @@ class Assembler:
         for field, address in zip(fields, states, strict=True):
             self.table[field] = address
         for work in self.works:
-            model_passes.predict_resultants(work.address, self.address, 0)
-        self.raise_errors()
+            self.call(model_passes.predict_resultants.compiled, work.address, self.address, 0)
 
-    def raise_errors(self) -> None:
-        """Raise the error of a section law in compiled code, if any; call this after every compiled driver."""
-        for law in self._laws:
-            law.raise_error()
+    @property
+    def calls_python(self) -> bool:
+        """Whether compiled code calls section laws in Python."""
+        return bool(self._laws)
+
+    def call(self, driver: Callable[..., Any], *arguments: Any) -> Any:
+        """Call a compiled driver and return its result. Raises the error of a section law in it, if there is one."""
+        if not self._laws:
+            return driver(*arguments)
+        with Deferred() as deferred:
+            result = driver(*arguments)
+        error = self.take_error()
+        deferred.deliver()
+        if error is not None:
+            raise error
+        return result
+
+    def take_error(self) -> BaseException | None:
+        """Return the first error of a section law in compiled code, if any, and forget all of them."""
+        errors = [law.take_error() for law in self._laws]
+        return next((error for error in errors if error is not None), None)
 
     def elastic(self, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return e, e'' and the elastic and damping forces (N, per_node) of the only group in a state p, p', p''.
@@ -262,8 +279,7 @@ class Assembler:
         table[[record.TANGENT, record.PREDICTED, record.LOADED]], table[record.RATED] = 0, 1
         self.require()
         node_passes.place_nodes(work.address, self.address, 1)
-        element_passes.add_elements(work.address, self.address)
-        self.raise_errors()
+        self.call(element_passes.add_elements.compiled, work.address, self.address)
         size, force = 2 * int(work.table[record.VECTORS]), int(work.table[record.FORCE])
         return work.rows(0, size), work.rows(size, size), work.rows(force, size)
 

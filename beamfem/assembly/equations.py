@@ -110,19 +110,18 @@ def _entries(system: System) -> np.ndarray:
 def tangent_of(system: System, matrix: np.ndarray, coupled: Sequence[np.ndarray]) -> Tangent:
     """Return the tangent with the entries of a matrix, flat as compiled code fills them.
 
-    coupled: tangent (k, k) of each connector; added to the entries of a sparse matrix in place.
+    coupled: tangent (k, k) of each connector; those that border no band are added to the matrix in place.
     """
     unknowns, multipliers = system.unknowns, len(system.connectors.multipliers)
     pattern = unknowns.pattern
+    for positions, tangent in zip(unknowns.coupled, coupled, strict=True):
+        mask = positions >= 0
+        np.add.at(matrix.reshape(-1), positions[mask], tangent[mask])
     if pattern is None:
         rows = matrix.reshape(-1, 2 * system.layouts[0].half_width + 1)[: unknowns.banded]
         band = BandTangent(rows, unknowns.reach[0])
-        if not coupled:
-            return band
-        return BorderedTangent(band, border_of(unknowns.banded, multipliers, unknowns.border, coupled))
-    for positions, tangent in zip(unknowns.coupled, coupled, strict=True):
-        mask = positions >= 0
-        np.add.at(matrix, positions[mask], tangent[mask])
+        border = border_of(unknowns.banded, multipliers, unknowns.border, coupled)
+        return BorderedTangent(band, border) if border.size else band
     whole = csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape)
     return SaddleTangent(SparseTangent(whole), multipliers) if multipliers else SparseTangent(whole)
 

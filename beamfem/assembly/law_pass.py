@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.assembly.callbacks import KeptErrors
 from beamfem.kernels import record
 from beamfem.kernels.point import POINT_ROWS, RESULTANT, STIFFNESS, STRAIN
 from beamfem.kernels.record import ROW
@@ -28,12 +29,12 @@ class LawPass:
     is resisted, by the linear stiffness in the tables of the compiled code.
 
     An error in a user's function cannot propagate through compiled code: it is stored, the resultants become nan, which
-    stops any iteration, and `raise_error` raises it.
+    stops any iteration, and `take_error` returns it.
     """
 
     def __init__(self, law: ConstitutiveLaw, points: int, thickness: bool) -> None:
         self._law, self._points, self._thickness = law, points, thickness
-        self._errors: list[BaseException] = []
+        self._errors = KeptErrors()
         self._pass = _Pass(self._fill)
         self.address = int(cast(self._pass, c_void_p).value or 0)
 
@@ -51,12 +52,9 @@ class LawPass:
         slopes[:, : self._points, :3, :3] = slope.reshape(*shape, 3)
         return result, slopes
 
-    def raise_error(self) -> None:
-        """Raise the first error since the last call, if there is one."""
-        if self._errors:
-            first = self._errors[0]
-            self._errors.clear()
-            raise first
+    def take_error(self) -> BaseException | None:
+        """Return the first error of this thread since the last call, if there is one."""
+        return self._errors.take()
 
     def _fill(
         self,
@@ -90,7 +88,7 @@ class LawPass:
                 own[RESULTANT : RESULTANT + _MEASURES] = np.nan
                 raise
         except BaseException as error:
-            self._errors.append(error)
+            self._errors.keep(error)
 
     def _fill_rows(self, own: np.ndarray, weight: np.ndarray, natural: np.ndarray, past: _Past, tangent: bool) -> None:
         strain = np.ascontiguousarray((own[STRAIN : STRAIN + 3] - natural).T)

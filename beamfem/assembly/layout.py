@@ -19,7 +19,7 @@ from beamfem.once import cached_property
 _FEW = 20_000  # coordinates; the order of larger models is not cached
 _NONE = np.empty(0, dtype=np.int64)
 _WIDEST_BAND = 64  # half width; wider models are solved faster by a sparse factorisation
-_WIDEST_BORDER = 48  # unknowns coupled beyond a band; for each of them, its factors are used once more
+_WIDEST_BORDER = 24  # unknowns coupled beyond a band; with more, a sparse factorisation is faster
 
 
 class Mesh(NamedTuple):
@@ -36,8 +36,8 @@ class Unknowns:
     free (n,): equation number of each coordinate, -1 if it is prescribed; dofs (unknown,): the coordinates in the
     order of the equations; layouts: one per block; pattern: the sparse matrix with room for its data, None for a band;
     coupled: positions of the entries (k, k) of each coupling that is not an element, -1 for entries without one;
-    border: equation numbers (k,) of each of them if they border a band; reach (2, banded): see `reaches`, empty for a
-    sparse matrix.
+    border: equation numbers (k,) of each of them that reaches beyond a band, which has no positions then, else none;
+    reach (2, banded): see `reaches`, empty for a sparse matrix.
     """
 
     free: np.ndarray
@@ -95,8 +95,7 @@ def order_unknowns(
         numbers = node.tobytes(), node.shape, dof.tobytes(), dof.shape
         return _cached_order(*numbers, size, prescribed.tobytes(), constrained.tobytes())
     mesh = [Mesh(block.node, block.dof) for block in blocks]
-    narrow = bordered and len(np.unique(np.concatenate([_NONE, *coupled]))) <= _WIDEST_BORDER
-    return _order(mesh, size, prescribed, joined, coupled, multipliers, constrained, narrow or not coupled)
+    return _order(mesh, size, prescribed, joined, coupled, multipliers, constrained, bordered or not coupled)
 
 
 @lru_cache(maxsize=64)  # studies repeatedly make models with the same numbering
@@ -142,10 +141,15 @@ def _order(
         # joined nodes that share some coordinates only may be further apart then
         if turned is not None and _half_width(blocks, _numbers(turned, size)) <= half_width:
             dofs = turned
-        free = _numbers(dofs, size)
-        layouts = tuple(Layout(free, half_width, none) for _ in blocks)
-        reach = reaches(blocks, free, len(dofs) - len(multipliers))
-        return Unknowns(free, dofs, layouts, None, (), tuple(free[coordinates] for coordinates in coupled), reach)
+        free, rows = _numbers(dofs, size), len(dofs) - len(multipliers)
+        beyond = tuple(_beyond(free[coordinates], half_width, rows) for coordinates in coupled)
+        if len(np.unique(np.concatenate([_NONE, *beyond]))) <= _WIDEST_BORDER:
+            inside = [free[own] for own, numbers in zip(coupled, beyond, strict=True) if not len(numbers)]
+            layouts = tuple(Layout(free, half_width, none) for _ in blocks)
+            places = tuple(
+                _places(free[own], half_width, not len(numbers)) for own, numbers in zip(coupled, beyond, strict=True)
+            )
+            return Unknowns(free, dofs, layouts, None, places, beyond, reaches(blocks, free, rows, inside))
     dofs = _scattered(blocks, size, coupled)
     dofs = _multipliers_last(dofs[mask[dofs]], multipliers)
     free = _numbers(dofs, size)
@@ -183,10 +187,25 @@ def _half_width(blocks: Sequence[Mesh], free: np.ndarray) -> int:
     return widest
 
 
-def reaches(blocks: Sequence[Mesh], free: np.ndarray, unknown: int) -> np.ndarray:
+def _beyond(numbers: np.ndarray, half_width: int, rows: int) -> np.ndarray:
+    """Return the equation numbers (k,) of a coupling if they reach beyond a band of `rows` equations, else none."""
+    unknown = numbers[numbers >= 0]
+    fits = not len(unknown) or (int(np.ptp(unknown)) <= half_width and int(unknown.max()) < rows)
+    return _NONE if fits else numbers
+
+
+def _places(numbers: np.ndarray, half_width: int, inside: bool) -> np.ndarray:
+    """Return the positions (k, k) of the entries of a coupling in a band, -1 where it has none."""
+    row, column = numbers[:, None], numbers[None, :]
+    places = row * (2 * half_width + 1) + half_width + column - row
+    return np.where((row >= 0) & (column >= 0) & inside, places, -1)
+
+
+def reaches(blocks: Sequence[Mesh], free: np.ndarray, unknown: int, coupled: Sequence[np.ndarray] = ()) -> np.ndarray:
     """Return the envelope (2, unknown) of a band: the end of what an equation and those before it are coupled to.
 
-    The second row is the same with the equations counted from the last one, in the order of the first.
+    The second row is the same with the equations counted from the last one, in the order of the first. coupled:
+    equation numbers (k,) of each coupling that is not an element, -1 for what is no unknown.
     """
     numbers = np.arange(unknown, dtype=np.int32)
     end, begin = numbers + 1, numbers.copy()
@@ -196,6 +215,10 @@ def reaches(blocks: Sequence[Mesh], free: np.ndarray, unknown: int) -> np.ndarra
         mask = high >= 0
         np.maximum.at(end, low[mask], (high[mask] + 1).astype(np.int32))
         np.minimum.at(begin, high[mask], low[mask].astype(np.int32))
+    for own in (each[each >= 0] for each in coupled):
+        if len(own):
+            end[own.min()] = max(int(end[own.min()]), int(own.max()) + 1)
+            begin[own.max()] = min(int(begin[own.max()]), int(own.min()))
     first = np.minimum.accumulate(begin[::-1])[::-1]
     return np.stack([np.maximum.accumulate(end), unknown - first])
 

@@ -33,8 +33,8 @@ class Law(Protocol):
         """Address of its pass, valid as long as this object exists."""
         ...
 
-    def raise_error(self) -> None:
-        """Raise the error that occurred in a call from compiled code, which cannot raise it, if there was one."""
+    def take_error(self) -> BaseException | None:
+        """Return the error that occurred in a call from compiled code, which cannot raise it, if there was one."""
         ...
 
     def linearised(

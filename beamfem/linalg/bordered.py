@@ -24,16 +24,23 @@ class Border(NamedTuple):
     multipliers: int
     entries: np.ndarray
 
+    @property
+    def size(self) -> int:
+        """Number t + k of coupled unknowns and multipliers."""
+        return len(self.entries)
+
 
 def border_of(size: int, multipliers: int, coupled: Sequence[np.ndarray], matrices: Sequence[np.ndarray]) -> Border:
     """Return the border of a band (size, size).
 
-    coupled: equation numbers (m,) of each matrix (m, m), -1 for what is no unknown.
+    coupled: equation numbers (m,) of each matrix (m, m), -1 for what is no unknown, or none if it is not in the border.
     """
     everything = np.concatenate([*coupled, np.arange(size, size + multipliers)])
     numbers = np.unique(everything[everything >= 0])
     entries = np.zeros((len(numbers), len(numbers)))
     for own, matrix in zip(coupled, matrices, strict=True):
+        if not len(own):
+            continue
         mask = own >= 0
         place = np.searchsorted(numbers, own[mask])
         entries[np.ix_(place, place)] += matrix[np.ix_(mask, mask)]
@@ -56,15 +63,18 @@ class BorderedFactors:
         small = entries.copy()
         small[:count] = self._columns[:, border.numbers].T @ entries[:count]
         small[:count, :count] += np.eye(count)
-        self._factors, self._exchanged, singular = dgetrf(small, overwrite_a=True)
-        if singular or not np.isfinite(self._factors).all():
-            raise LinAlgError("the tangent is singular")
         self._coupling = entries[:count]
+        if border.size:  # LAPACK refuses empty matrices
+            self._factors, self._exchanged, singular = dgetrf(small, overwrite_a=True)
+            if singular or not np.isfinite(self._factors).all():
+                raise LinAlgError("the tangent is singular")
 
-    def solve(self, right: np.ndarray) -> None:
+    def solve_in_place(self, right: np.ndarray) -> None:
         """Replace a right-hand side (n + k,) by the solution."""
         numbers, x, rest = self._border.numbers, right[: self._size], right[self._size :]
         self._solve(x)
+        if not self._border.size:
+            return
         coupled, _ = dgetrs(self._factors, self._exchanged, np.concatenate([x[numbers], rest]))
         x -= (self._coupling @ coupled) @ self._columns
         rest[:] = coupled[len(numbers) :]

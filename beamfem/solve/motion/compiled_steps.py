@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from beamfem.assembly.callbacks import Deferred
 from beamfem.assembly.motion_workspace import MotionWorkspace
 from beamfem.assembly.system import System
 from beamfem.kernels import record
@@ -35,6 +36,8 @@ class CompiledSteps:
         space.assembler.require("tangent", "prediction")
         space.solver[record.STATISTICS] = address_of(statistics)
         self._coupled = CoupledStages(system, space) if sparse or connected else None
+        self._deferred: Deferred | None = None
+        self._error: BaseException | None = None
 
     @property
     def why(self) -> str:
@@ -55,6 +58,8 @@ class CompiledSteps:
                 return number
             state[0] = history.committed((state[0], state[1], state[2]), time, self._system.imposing(time), self._step)
             here.keep_state(0, state)
+            if self._deferred is not None and self._deferred.interrupted:
+                return number + 1
         return len(times)
 
     def _advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
@@ -95,15 +100,25 @@ class CompiledSteps:
         }
         for field, value in (numbers | {field: address_of(array) for field, array in arrays.items()}).items():
             solver[field] = value
-        if self._coupled is not None:
-            self._coupled.state, self._coupled.times = state, times
-            completed = int(march(assembler.address, solver, self._coupled.routines))
-            self._coupled.raise_error()
-        else:
+        if self._coupled is None and not assembler.calls_python:
             with routines(self._system, space.in_two) as calls:
-                completed = int(march(assembler.address, solver, calls))
-        assembler.raise_errors()
-        return completed
+                return int(march(assembler.address, solver, calls))
+        with Deferred() as self._deferred:
+            if self._coupled is None:
+                with routines(self._system, space.in_two) as calls:
+                    completed = int(march(assembler.address, solver, calls))
+            else:
+                completed = self._coupled.march(assembler.address, solver, state, times, self._deferred)
+        errors = () if self._coupled is None else (self._coupled.take_error(),)
+        self._error = next((error for error in (*errors, assembler.take_error()) if error is not None), None)
+        return completed if self._deferred.lost is None else 0
+
+    def raise_error(self) -> None:
+        """Raise what has ended the last call early, if it was an error or a Ctrl-C."""
+        if self._deferred is not None:
+            self._deferred.deliver()
+        if self._error is not None:
+            raise self._error
 
 
 def acceleration(system: System, space: MotionWorkspace, motion: np.ndarray, time: float) -> np.ndarray | None:
@@ -120,8 +135,7 @@ def acceleration(system: System, space: MotionWorkspace, motion: np.ndarray, tim
     states = address, address + row, address + 2 * row
     assembler.place_at(states, space.residual, space.rows, space.arrays[record.ROWS].size)
     with routines(system, space.in_two) as calls:
-        ratio = solve_once(assembler.address, solver, calls)
-    assembler.raise_errors()
+        ratio = assembler.call(solve_once, assembler.address, solver, calls)
     return np.array(space.arrays[record.RIGHT]) if ratio > SMALLEST_PIVOT else None
 
 

@@ -6,7 +6,7 @@ from scipy.sparse import block_array, csc_array
 
 from beamfem.assembly.connector import Motion
 from beamfem.assembly.connector_checks import follows_time
-from beamfem.assembly.equations import STATICS, linearise
+from beamfem.assembly.equations import INERTIA, STATICS, linearise
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.linalg.saddle import SaddleTangent
@@ -49,11 +49,31 @@ def constrained_acceleration(
     motion: p, p' and p'' of prescribed coordinates; unbalanced (n,): residual r without multipliers; mass: M, between
     coordinates.
     """
-    (p, v, a), k, zeros = motion, len(system.connectors.multipliers), np.zeros(len(motion[0]))
-    inertia = mass.sparse(UNROTATED)[:-k, :-k]
-    conditions = linearise(system, p, zeros, zeros, time, STATICS)[1].sparse(UNROTATED)[-k:, :-k]
+    (p, v, a), k = motion, len(system.connectors.multipliers)
     right = -unbalanced[system.free_dofs]
     right[-k:] = -_change_of_rates(system, p, v, a)
+    return _with_conditions(system, p, mass, right, time)
+
+
+def stopped_by_conditions(system: System, p: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return the change of p' (n,) by the impulses of conditions that a start p, p' (n,) does not satisfy at once.
+
+    Momentum changes along the gradients of the conditions only, M x + G' l = 0 with G (p' + x) = 0.
+    """
+    zeros, multipliers = np.zeros(len(p)), system.connectors.multipliers
+    mass = linearise(system, p, zeros, zeros, 0.0, INERTIA)[1]
+    right, result = np.zeros(len(system.free_dofs)), zeros.copy()
+    right[-len(multipliers) :] = -system.connectors.conditions(p, v)[1]
+    result[system.free_dofs] = _with_conditions(system, p, mass, right, 0.0)
+    result[multipliers] = 0.0
+    return result
+
+
+def _with_conditions(system: System, p: np.ndarray, mass: Tangent, right: np.ndarray, time: float) -> np.ndarray:
+    """Return x and multipliers (unknown,), with [M, G'; G, 0] [x, l] = right."""
+    k, zeros = len(system.connectors.multipliers), np.zeros(len(p))
+    inertia = mass.sparse(UNROTATED)[:-k, :-k]
+    conditions = linearise(system, p, zeros, zeros, time, STATICS)[1].sparse(UNROTATED)[-k:, :-k]
     whole = SaddleTangent(SparseTangent(csc_array(block_array([[inertia, conditions.T], [conditions, None]]))), k)
     try:
         return whole.solve(right, system.rotated)

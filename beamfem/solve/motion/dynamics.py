@@ -15,7 +15,7 @@ from beamfem.model.turns import rotation_pairs
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.results.turns import first_turns
-from beamfem.solve.motion.conditions import require_met
+from beamfem.solve.motion.conditions import require_met, stopped_by_conditions
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.impact import impact
 from beamfem.solve.motion.initial_velocity import start_velocity
@@ -59,8 +59,8 @@ def simulate(
         such as Newmark's method, or any other `Integrator`.
     start : State or Solution, optional
         State to start from: a state of any solution, static or a motion, or a solution for its last state; by default
-        the reference at rest. It may come from a model with other supports, which have to hold its points where they
-        are; velocities that they stop are lost at once, as in a plastic impact.
+        the reference at rest. It may come from a model with other supports or connectors, which have to hold its points
+        where they are; velocities that they stop are lost at once, as in a plastic impact.
     velocity : RigidVelocity or callable, optional
         Initial velocity: of a rigid motion, or a function of the reference position (2,) [m] of the axis, which returns
         (vx, vy) [m/s]. With a function, sections do not rotate at first, unless their element ties them to the axis.
@@ -117,6 +117,8 @@ def simulate(
     if stopped.any():
         state[1] += impact(system, state[0], stopped)
     if len(system.connectors.multipliers):
+        if start is not None and velocity is None:
+            state[1] += stopped_by_conditions(system, state[0], state[1])
         require_met(system, state[0], state[1], duration)
     state[2] = initial_acceleration(system, state, parts[0].loads_from)
     state[3] = state[2]

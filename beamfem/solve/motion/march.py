@@ -124,6 +124,7 @@ def march(
                     if part.whole and completed:
                         last.reach(done, state[:3], rotations)
                         report(float(part.times[begun]))
+                    motion.raise_error()
                     if part.whole and spent < _CHUNK_SECONDS and is_scheme(integrator):
                         size *= 4
             if failed is not None:

@@ -42,6 +42,9 @@ class OwnSteps:
             self._time = time
         return len(times)
 
+    def raise_error(self) -> None:
+        """Raise nothing: an error of an integrator is raised where it occurs."""
+
     def _step(self, before: np.ndarray, time: float) -> np.ndarray | None:
         """Return p, p', p'' (3, n) at the end of a step from a state (4, n), None if it fails."""
         p, v, a, _ = before.copy()

@@ -44,8 +44,7 @@ class BandProblem:
     def correct(self) -> Correction:
         """Take corrections until one is small or stagnant. Raises LinAlgError if pivoting is needed."""
         space, found = self.space, self.space.found
-        factorised = iterate.compiled(*space.addresses)
-        space.assembler.raise_errors()
+        factorised = space.assembler.call(iterate.compiled, *space.addresses)
         if not factorised:
             raise LinAlgError("a pivot is tiny")
         space.prescribed_step[:] = space.prescribed_force[:] = 0.0
@@ -73,9 +72,7 @@ class BandProblem:
         space = self.space
         space.step[:] = space.linear - self.start
         space.p[:] = self.start
-        count = int(count_after_step.compiled(*space.addresses))
-        space.assembler.raise_errors()
-        return count
+        return int(space.assembler.call(count_after_step.compiled, *space.addresses))
 
     def give_back(self) -> None:
         """Release the workspace for the next solve."""

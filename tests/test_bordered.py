@@ -48,7 +48,7 @@ def test_a_motion_is_that_of_the_sparse_matrix(number, monkeypatch):
 
     bordered, unknowns = run()
     assert unknowns.pattern is None
-    monkeypatch.setattr(layout, "_WIDEST_BORDER", -1)
+    monkeypatch.setattr(layout, "WIDEST_BORDER", -1)
     sparse, unknowns = run()
     assert unknowns.pattern is not None
     coordinates = slice(bordered.model.coordinates)
@@ -63,7 +63,7 @@ def test_a_motion_is_that_of_the_sparse_matrix(number, monkeypatch):
 def test_its_tangent_is_that_of_the_sparse_matrix(number, monkeypatch, rng):
     found = []
     for widest in (48, -1):
-        monkeypatch.setattr(layout, "_WIDEST_BORDER", widest)
+        monkeypatch.setattr(layout, "WIDEST_BORDER", widest)
         system = System(list(of_all_kinds())[number], static=False)
         moved = system.reference + 1e-2 * np.random.default_rng(0).standard_normal(len(system.reference))
         _, tangent = linearise(system, moved, 0.0 * moved, 0.0 * moved, 0.0, (1.0, 2.0, 3.0))
@@ -222,3 +222,39 @@ def test_an_error_of_a_connector_leaves_none_of_a_law_behind():
     with pytest.raises(bf.InputError, match="no force there"):
         bf.simulate(model, 0.01, 1e-3)
     assert len(bf.simulate(model, 0.005, 1e-3)) == 6
+
+
+@pytest.mark.parametrize("element", KINDS, ids=lambda element: element.name)
+def test_equilibria_with_connectors_of_one_point_are_those_of_the_sparse_matrix(element, monkeypatch):
+    """Friction makes the tangent unsymmetric; the wall is met on the way."""
+    found = []
+    for band in (True, False):
+        if not band:
+            monkeypatch.setattr(layout, "_WIDEST_BAND", -1)
+        own = beam(element)
+        parts = [Rest(own.at(0.75), -1e-3, 1e4, 0.3), Barrier(own.end, -1e-2, 1e3, 1e-3), PointMass(own.end, 3.0)]
+        loads = [bf.Gravity((1.0, -9.81)), bf.PointForce(own.end, (3.0, -10.0))]
+        model = cantilever(own, loads, parts)
+        solution = bf.solve_static(model, steps=4)
+        assert (system_of(model, static=True).unknowns.pattern is None) == band
+        found.append(solution)
+    one, other = found
+    assert one.p == pytest.approx(other.p, abs=1e-10)
+    assert one.statistics.iterations == other.statistics.iterations
+    assert np.array_equal(one.stable, other.stable)
+    assert np.abs(one.displacement(one.model.beams[0].end)[-1]).max() > 1e-3
+
+
+def test_an_error_of_a_connector_in_statics_is_raised_and_leaves_none_behind():
+    class Failing(Anchor):
+        def force(self, at):
+            if 0.6 < np.real(at.time) < 0.8:
+                raise ZeroDivisionError("no force there")
+            return super().force(at)
+
+    own = beam(KINDS[1])
+    model = cantilever(own, [bf.Gravity((0.0, -9.81))], [Failing(own.end, (1e3, 1e3, 0.0))])
+    with pytest.raises(bf.InputError, match="no force there") as caught:
+        bf.solve_static(model, steps=4)
+    assert caught.value.solution.load_factor.tolist()[:2] == [0.0, 0.25]
+    assert bf.solve_static(model, steps=2).load_factor[-1] == 1.0

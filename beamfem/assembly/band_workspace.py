@@ -1,8 +1,13 @@
 """Workspace of the compiled Newton iteration with a band matrix, reused by the next solve of the same model."""
 
+from collections.abc import Callable
+from typing import Any
+
 from beamfem.assembly import scratch
 from beamfem.assembly.arena import Arena
+from beamfem.assembly.connected_balance import ConnectedBalance
 from beamfem.assembly.equations import STATICS
+from beamfem.assembly.loads_at import LoadsAt
 from beamfem.assembly.system import System
 from beamfem.kernels import newton_record, record
 from beamfem.kernels.pointers import address_of
@@ -43,9 +48,27 @@ class BandWorkspace:
         self.prescribed_step, self.prescribed_force = arrays[record.PRESCRIBED_STEP], arrays[record.PRESCRIBED_FORCE]
         states = addresses.pop("p"), addresses[record.STEP], addresses[record.STEP]
         self.assembler.place_at(states, addresses.pop("residual"), addresses[record.ROWS], arrays[record.ROWS].size)
-        tables = system.solver_table.filled(addresses), system.solver_table.routines(moving=False)
+        routines = system.solver_table.routines(moving=False)
+        self._connected = None
+        if system.connectors.items:
+            own = self.p, self.residual, arrays[record.ROWS]
+            self._connected = ConnectedBalance(system, self.assembler, *own)
+            routines = routines.copy()
+            routines[record.BALANCE] = self._connected.address
+        tables = system.solver_table.filled(addresses), routines
         self._tables, self.addresses = tables, (self.assembler.address, *map(address_of, tables))
         self._entries = arrays[record.ROWS].size
+
+    def begin(self, loads: LoadsAt, load_factor: float) -> None:
+        """Set the loads of an iteration."""
+        self.assembler.take(loads)
+        if self._connected is not None:
+            self._connected.load_factor = load_factor
+
+    def call(self, driver: Callable[..., Any]) -> Any:
+        """Call a compiled driver and return its result. Raises errors of section laws and connectors in it."""
+        caller = self.assembler if self._connected is None else self._connected
+        return caller.call(driver, *self.addresses)
 
     def give_back(self, system: System) -> None:
         """Return the scratch memory, and keep the workspace for the next solve if it is small."""

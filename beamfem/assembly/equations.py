@@ -107,6 +107,13 @@ def _entries(system: System) -> np.ndarray:
     return np.empty(unknown * (2 * system.layouts[0].half_width + 1) if pattern is None else len(pattern.data))
 
 
+def add_coupled(system: System, matrix: np.ndarray, coupled: Sequence[np.ndarray]) -> None:
+    """Add the tangents (k, k) of connectors to the entries of a matrix; those that border a band have none there."""
+    for positions, tangent in zip(system.unknowns.coupled, coupled, strict=True):
+        mask = positions >= 0
+        np.add.at(matrix.reshape(-1), positions[mask], tangent[mask])
+
+
 def tangent_of(system: System, matrix: np.ndarray, coupled: Sequence[np.ndarray]) -> Tangent:
     """Return the tangent with the entries of a matrix, flat as compiled code fills them.
 
@@ -114,9 +121,7 @@ def tangent_of(system: System, matrix: np.ndarray, coupled: Sequence[np.ndarray]
     """
     unknowns, multipliers = system.unknowns, len(system.connectors.multipliers)
     pattern = unknowns.pattern
-    for positions, tangent in zip(unknowns.coupled, coupled, strict=True):
-        mask = positions >= 0
-        np.add.at(matrix.reshape(-1), positions[mask], tangent[mask])
+    add_coupled(system, matrix, coupled)
     if pattern is None:
         rows = matrix.reshape(-1, 2 * system.layouts[0].half_width + 1)[: unknowns.banded]
         band = BandTangent(rows, unknowns.reach[0])

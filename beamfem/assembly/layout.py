@@ -19,7 +19,7 @@ from beamfem.once import cached_property
 _FEW = 20_000  # coordinates; the order of larger models is not cached
 _NONE = np.empty(0, dtype=np.int64)
 _WIDEST_BAND = 64  # half width; wider models are solved faster by a sparse factorisation
-_WIDEST_BORDER = 24  # unknowns coupled beyond a band; with more, a sparse factorisation is faster
+WIDEST_BORDER = 24  # unknowns coupled beyond a band; with more, a sparse factorisation is faster
 
 
 class Mesh(NamedTuple):
@@ -82,20 +82,20 @@ def order_unknowns(
     coupled: Sequence[np.ndarray] = (),
     multipliers: Sequence[int] = (),
     constrained: np.ndarray = _NONE,
-    bordered: bool = False,
+    border: int = 0,
 ) -> Unknowns:
     """Return the order of the unknown coordinates: that of the nodes for a single chain, renumbered for joined beams.
 
-    coupled: coordinates (k,) of each coupling that is not an element, which requires a sparse matrix unless they may
-    border a band (bordered); multipliers: coordinates that come last, since they have no stiffness; constrained: those
-    that supports prescribe, at which a band of statics ends.
+    coupled: coordinates (k,) of each coupling that is not an element; multipliers: coordinates that come last, since
+    they have no stiffness; constrained: those that supports prescribe, at which a band of statics ends; border: how
+    many unknowns may be coupled beyond a band before the matrix is sparse, -1 if it is as soon as any are coupled.
     """
     if len(blocks) == 1 and not joined and not coupled and size <= _FEW:
         node, dof = blocks[0].node, blocks[0].dof
         numbers = node.tobytes(), node.shape, dof.tobytes(), dof.shape
         return _cached_order(*numbers, size, prescribed.tobytes(), constrained.tobytes())
     mesh = [Mesh(block.node, block.dof) for block in blocks]
-    return _order(mesh, size, prescribed, joined, coupled, multipliers, constrained, bordered or not coupled)
+    return _order(mesh, size, prescribed, joined, coupled, multipliers, constrained, border)
 
 
 @lru_cache(maxsize=64)  # studies repeatedly make models with the same numbering
@@ -110,7 +110,7 @@ def _cached_order(
 ) -> Unknowns:
     whole = np.frombuffer(node, dtype=np.int64).reshape(nodes), np.frombuffer(dof, dtype=np.int64).reshape(dofs)
     known, supported = (np.frombuffer(each, dtype=np.int64) for each in (prescribed, constrained))
-    return _order([Mesh(*whole)], size, known, False, (), (), supported, True)
+    return _order([Mesh(*whole)], size, known, False, (), (), supported, 0)
 
 
 def _order(
@@ -121,7 +121,7 @@ def _order(
     coupled: Sequence[np.ndarray],
     multipliers: Sequence[int],
     constrained: np.ndarray,
-    banded: bool,
+    border: int,
 ) -> Unknowns:
     mask = np.ones(size, dtype=bool)
     mask[prescribed] = False
@@ -135,15 +135,15 @@ def _order(
         # short beams get the band width of long ones, for which there is compiled code
         half_width = max(half_width, *(int((block.dof[block.node[0]] >= 0).sum()) - 1 for block in blocks))
     none = np.empty((0, 0, 0), dtype=np.int32)
-    if half_width <= _WIDEST_BAND and banded:
+    if half_width <= _WIDEST_BAND and (border >= 0 or not coupled):
         dofs = _multipliers_last(order[mask[order]], multipliers)
         turned = _to_support(blocks, order, mask, constrained)
         # joined nodes that share some coordinates only may be further apart then
         if turned is not None and _half_width(blocks, _numbers(turned, size)) <= half_width:
-            dofs = turned
+            dofs = _multipliers_last(turned, multipliers)
         free, rows = _numbers(dofs, size), len(dofs) - len(multipliers)
         beyond = tuple(_beyond(free[coordinates], half_width, rows) for coordinates in coupled)
-        if len(np.unique(np.concatenate([_NONE, *beyond]))) <= _WIDEST_BORDER:
+        if len(np.unique(np.concatenate([_NONE, *beyond]))) <= max(border, 0):
             inside = [free[own] for own, numbers in zip(coupled, beyond, strict=True) if not len(numbers)]
             layouts = tuple(Layout(free, half_width, none) for _ in blocks)
             places = tuple(

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.assembly import layout
 from beamfem.assembly.actions import Actions, build_actions
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.blocks import build_block
@@ -13,7 +14,7 @@ from beamfem.assembly.connectors import Connectors, connectors_of
 from beamfem.assembly.element_group import make_group
 from beamfem.assembly.grounded_springs import grounded_springs
 from beamfem.assembly.history import History
-from beamfem.assembly.layout import Unknowns, order_unknowns
+from beamfem.assembly.layout import Unknowns
 from beamfem.assembly.loads_at import LoadsAt, body_loads
 from beamfem.assembly.prescribed import PrescribedCoordinate, inclined_rollers, prescribed_coordinates
 from beamfem.assembly.pressures import pressures_have_potential
@@ -261,8 +262,8 @@ class System:
         known = np.concatenate((self.prescribed_dofs, self.history.numbers))
         constrained = [*self.prescribed_dofs.tolist(), *(dof for dof, _ in self.inclined)] if self.static else []
         order = self.blocks, self.model.size, known, joined, coupled, connectors.multipliers.tolist()
-        bordered = not self.static and not self.inclined
-        return order_unknowns(*order, np.array(constrained, dtype=np.int64), bordered)
+        border = 0 if self.static else -1 if self.inclined else layout.WIDEST_BORDER
+        return layout.order_unknowns(*order, np.array(constrained, dtype=np.int64), border)
 
     @cached_property
     def connectors(self) -> Connectors:

@@ -31,7 +31,7 @@ class BandProblem:
         self.system, self.start, self.space = system, start, band_workspace(system)
         loads, space = system.loads_at(load_factor), self.space
         self.load = load_size(system, loads)
-        space.assembler.take(loads)
+        space.begin(loads, load_factor)
         space.p[:], space.step[:], space.found[:] = start, 0.0, 0.0
         space.found[r.CORRECTION] = space.found[r.CORRECTION_BEFORE] = np.inf
         space.prescribed_step[:], space.prescribed_force[:] = step.step, step.force
@@ -44,7 +44,7 @@ class BandProblem:
     def correct(self) -> Correction:
         """Take corrections until one is small or stagnant. Raises LinAlgError if pivoting is needed."""
         space, found = self.space, self.space.found
-        factorised = space.assembler.call(iterate.compiled, *space.addresses)
+        factorised = space.call(iterate.compiled)
         if not factorised:
             raise LinAlgError("a pivot is tiny")
         space.prescribed_step[:] = space.prescribed_force[:] = 0.0
@@ -72,7 +72,7 @@ class BandProblem:
         space = self.space
         space.step[:] = space.linear - self.start
         space.p[:] = self.start
-        return int(space.assembler.call(count_after_step.compiled, *space.addresses))
+        return int(space.call(count_after_step.compiled))
 
     def give_back(self) -> None:
         """Release the workspace for the next solve."""

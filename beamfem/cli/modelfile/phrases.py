@@ -54,8 +54,6 @@ _PHRASES = (
         "velocity must be a RigidVelocity or a function",
         "velocity must be a table with vector and angular, or a function",
     ),
-    ("use GeneralizedAlpha, or", "leave `integrator` out, or"),
-    ("use GeneralizedAlpha", "leave `integrator` out"),
     (
         "integrator must be a GeneralizedAlpha(rho_inf=...), an object with rule(step) as it has, or one with "
         "step(motion, begin, end)",

@@ -77,10 +77,15 @@ _PHRASES = (
     ("Section(..., height=) gives it", "their key `height` gives it"),
     ("needs Structural() or ElasticLine() forces", 'needs an element with `forces = "structural"` or "elastic-line"'),
     (
-        "needs Structural forces, such as CRBF(order=2)",
-        'needs structural forces, such as `{ kind = "CRBF", order = 2 }`',
+        "needs Structural forces, such as CRBF(order=2) or ANCF(Structural())",
+        'needs structural forces, such as `{ kind = "CRBF", order = 2 }` or `{ kind = "ANCF", forces = "structural" }`',
     ),
-    ("use CRBF(order=2)", 'use `{ kind = "CRBF", order = 2 }`'),
+    (
+        "use CRBF(order=3), ANCF(Structural()), ANCFCRBF(Structural()) or, without shear at the nodes, "
+        'ShearRigid(stretchable=False, integration="reduced")',
+        'use `{ kind = "CRBF", order = 3 }`, "ANCF" or "ANCFCRBF" with `forces = "structural"` or, without shear at '
+        'the nodes, `{ kind = "ShearRigid", stretchable = false, integration = "reduced" }`',
+    ),
     (
         "use Structural or ElasticLine forces, or a Section with a material",
         'use `forces = "structural"` or "elastic-line", or a section of kind "moments" with a material',

@@ -4,8 +4,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-import beamfem as bf
-
 STEP = 1e-11  # of the model: a correction that ends an iteration
 
 
@@ -17,26 +15,28 @@ class Radau:
     """
 
     table: tuple[tuple[float, float], ...] = ((5.0 / 12.0, -1.0 / 12.0), (3.0 / 4.0, 1.0 / 4.0))
-    iterations: int = 20
 
     def step(self, motion, begin, end):
         h, table, free = end - begin.at, np.array(self.table), motion.free
         of_p, of_v, at = h**2 * table @ table, h * table, begin.at + h * table.sum(axis=1)
         a = np.tile(begin.a, (2, 1))
-        for _ in range(self.iterations):
-            p = begin.p + np.outer(at - begin.at, begin.v) + of_p @ a
-            v = begin.v + of_v @ a
-            states = [(p[i], v[i], a[i], float(at[i])) for i in (0, 1)]
+
+        def stages():
+            return begin.p + np.outer(at - begin.at, begin.v) + of_p @ a, begin.v + of_v @ a
+
+        def linearise():
+            states = [(*state, float(time)) for *state, time in zip(*stages(), a, at, strict=True)]
             left = np.array([motion.residual(*state) for state in states])
-            tangents = [
-                [motion.tangent(*states[i], (of_p[i, j], of_v[i, j], float(i == j))) for j in (0, 1)] for i in (0, 1)
-            ]
-            change = motion.solve(tangents, -left)
+            weights = [[(of_p[i, j], of_v[i, j], float(i == j)) for j in (0, 1)] for i in (0, 1)]
+            return left, [[motion.tangent(*states[i], weights[i][j]) for j in (0, 1)] for i in (0, 1)]
+
+        def move(change):
             a[:, free] += change
-            if np.abs(of_p @ change / motion.scale).max() < STEP:
-                p, v = begin.p + h * begin.v + of_p[1] @ a, begin.v + of_v[1] @ a
-                return replace(begin, p=p, v=v, a=a[1], at=end)
-        raise bf.ConvergenceError("the stages of a step did not converge")
+            return of_p @ change
+
+        motion.iterate(linearise, move, STEP)
+        p, v = stages()
+        return replace(begin, p=p[1], v=v[1], a=a[1], at=end)
 
 
 @dataclass(frozen=True)
@@ -55,19 +55,21 @@ class EnergyMomentum:
         mass = motion.tangent(begin.p, rest, rest, end, (0.0, 0.0, 1.0))
         before = motion.energy(begin.p, begin.at)
         p = begin.p + h * begin.v
-        for _ in range(self.iterations):
+
+        def linearise():
             moved = p - begin.p
-            v = 2.0 * moved / h - begin.v
             middle = 0.5 * (begin.p + p)
             gradient = motion.residual(middle, rest, rest, middle_time)
             d = moved[free] / scale**2
             missing = motion.energy(p, end) - before - float(gradient @ moved[free])
             between = gradient + missing * d / max(float(d @ moved[free]), 1e-300)
-            left = mass @ (v - begin.v)[free] / h + between
-            tangent = motion.tangent(middle, rest, rest, middle_time, (0.5, 0.0, 2.0 / h**2))
-            change = motion.solve([[tangent]], -left[None])[0]
-            p[free] += change
-            if np.abs(change / scale).max() < STEP:
-                v = 2.0 * (p - begin.p) / h - begin.v
-                return replace(begin, p=p, v=v, a=2.0 * (v - begin.v) / h - begin.a, at=end)
-        raise bf.ConvergenceError("a step between two states did not converge")
+            left = mass @ (2.0 * moved / h - 2.0 * begin.v)[free] / h + between
+            return left, [[motion.tangent(middle, rest, rest, middle_time, (0.5, 0.0, 2.0 / h**2))]]
+
+        def move(change):
+            p[free] += change[0]
+            return change
+
+        motion.iterate(linearise, move, STEP, self.iterations)
+        v = 2.0 * (p - begin.p) / h - begin.v
+        return replace(begin, p=p, v=v, a=2.0 * (v - begin.v) / h - begin.a, at=end)

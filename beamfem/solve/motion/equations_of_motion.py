@@ -1,6 +1,6 @@
 """User-defined time integrators, and the equations that they solve."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -16,6 +16,11 @@ from beamfem.linalg.superlu import superlu
 from beamfem.linalg.tangent import UNROTATED, rotation_to_normals
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
+from beamfem.solve.newton.convergence import Correction
+from beamfem.solve.newton.iteration import Termination
+from beamfem.solve.newton.loop import iterate
+
+_NOISE = 1e-9  # of the model: smaller corrections that no longer decrease are round-off
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,6 +167,75 @@ class EquationsOfMotion:
         except LinAlgError as error:
             raise ConvergenceError("the tangent of a step is singular") from error
         return np.asarray(rotation.T @ solution).reshape(right.shape)
+
+    def iterate(
+        self,
+        linearise: Callable[[], tuple[np.ndarray, Sequence[Sequence[csr_array]]]],
+        move: Callable[[np.ndarray], np.ndarray],
+        tolerance: float = 1e-11,
+        iterations: int = 20,
+    ) -> int:
+        """Find a step by Newton's method, the loop of all solvers of the package.
+
+        It ends if corrections are small, or if small ones no longer decrease.
+
+        Parameters
+        ----------
+        linearise : callable
+            Returns the left-hand sides (s, unknown) of the equations of the step in the present state, zero for a
+            solution, and their s x s tangents.
+        move : callable
+            Takes a change (s, unknown) of what is sought, adds it, and returns how much p changes (..., unknown).
+        tolerance : float, [-], default 1e-11
+            Largest change of p relative to `scale` that ends the iteration.
+        iterations : int, default 20
+            Largest number of iterations.
+
+        Returns
+        -------
+        int
+            Number of iterations.
+
+        Raises
+        ------
+        ConvergenceError
+            If no solution is found.
+        """
+        problem = _Step(self, linearise, move, tolerance)
+        found = iterate(problem, iterations)
+        if not found.ended.good:
+            raise ConvergenceError(f"{found.ended.value}, and the last of them was {problem.size:.2e} of the model")
+        return found.iterations
+
+
+class _Step:
+    """The equations of a step of a user-defined integrator."""
+
+    def __init__(
+        self,
+        motion: EquationsOfMotion,
+        linearise: Callable[[], tuple[np.ndarray, Sequence[Sequence[csr_array]]]],
+        move: Callable[[np.ndarray], np.ndarray],
+        tolerance: float,
+    ) -> None:
+        self._motion, self._linearise, self._move, self._tolerance = motion, linearise, move, tolerance
+        self._number, self.size = 0, np.inf
+
+    def correct(self) -> Correction:
+        """Take the next correction. Raises ConvergenceError."""
+        left, tangents = self._linearise()
+        moved = self._move(self._motion.solve(tangents, -np.atleast_2d(left)))
+        before, self.size = self.size, float(np.max(np.abs(moved / self._motion.scale), initial=0.0))
+        self._number += 1
+        return Correction(self._number, self.size, before, 0)
+
+    def check(self, correction: Correction) -> Termination | None:
+        """See `loop.Problem`."""
+        if correction.diverges:
+            return Termination.DIVERGED
+        number, size, before, _ = correction
+        noise = number > 2 and 0.5 * before < size < _NOISE
+        return Termination.CONVERGED if size <= self._tolerance or noise else None
 
 
 class Integrator(Protocol):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamfem.assembly.equations import residual
+from beamfem.assembly.equations import STATICS, residual
 from beamfem.assembly.round_off import MOST_DIGITS, load_size, row_floors
 from beamfem.assembly.system import System
 from beamfem.solve.newton.iteration import Newton, Termination
@@ -43,7 +43,8 @@ class Balance(NamedTuple):
     """Balance of forces in a state p (n,): residual (n,), its largest unconstrained component, and the largest force.
 
     Forces are multiplied by the scale of their coordinate, so that they can be compared with moments [N m]. inverted:
-    whether an element is inverted somewhere, which polynomial elastic forces do not prevent.
+    whether an element is inverted somewhere, which polynomial elastic forces do not prevent; gap: the largest movement,
+    relative to the scale of the coordinates, that a condition of a connector is away from being met.
     """
 
     p: np.ndarray
@@ -51,6 +52,7 @@ class Balance(NamedTuple):
     largest: float
     force: float
     inverted: bool
+    gap: float = 0.0
 
     @property
     def digits(self) -> float:
@@ -66,11 +68,7 @@ def balance_of(system: System, p: np.ndarray, load_factor: float) -> Balance:
 
 
 def balance_with(system: System, p: np.ndarray, load_factor: float, unbalanced: np.ndarray, jacobian: float) -> Balance:
-    """Return the balance of a state whose residual (n,) and smallest r0' x d are known.
-
-    Conditions of connectors are no forces: they are met as soon as corrections are small, since these contain all that
-    is left of them.
-    """
+    """Return the balance of a state whose residual (n,) and smallest r0' x d are known."""
     # without reactions the largest load counts
     load = load_size(system, system.loads_at(load_factor))
     forces = np.abs(unbalanced) * system.scale
@@ -79,7 +77,20 @@ def balance_with(system: System, p: np.ndarray, load_factor: float, unbalanced: 
     if len(multipliers):
         forces[multipliers] = free[system.unknowns.free[multipliers]] = 0.0
     largest, force = float(np.max(free, initial=0.0)), float(np.max(forces, initial=0.0))
-    return Balance(p, unbalanced, largest, max(force, load), jacobian <= 0.0)
+    gap = _largest_gap(system, p, load_factor, unbalanced) if len(multipliers) else 0.0
+    return Balance(p, unbalanced, largest, max(force, load), jacobian <= 0.0, gap)
+
+
+def _largest_gap(system: System, p: np.ndarray, load_factor: float, unbalanced: np.ndarray) -> float:
+    """Return the largest gap of a condition, see `Balance`; its gradient makes it a movement, whatever its unit is."""
+    zeros, connectors = np.zeros(len(p)), system.connectors
+    largest = 0.0
+    tangents = connectors.tangents((p, zeros, zeros), load_factor, STATICS)
+    for item, tangent in zip(connectors.items, tangents, strict=True):
+        gradients = np.abs(tangent[len(item.dofs) :, : len(item.dofs)])
+        gaps = np.abs(unbalanced[item.own]) / (gradients @ system.scale[item.dofs])
+        largest = max(largest, float(np.max(gaps, initial=0.0)))
+    return largest
 
 
 def check_convergence(system: System, balance: Balance, newton: Newton, correction: Correction) -> Termination | None:
@@ -88,7 +99,8 @@ def check_convergence(system: System, balance: Balance, newton: Newton, correcti
     If the residual is above the tolerance, each row must have reached its round-off floor, and the next correction must
     be below the round-off of the movement.
     """
-    if correction.size <= newton.tolerance and balance.largest <= newton.residual_tolerance * balance.force:
+    met = balance.gap <= newton.tolerance and balance.largest <= newton.residual_tolerance * balance.force
+    if correction.size <= newton.tolerance and met:
         ended = Termination.CONVERGED
     elif _settled(system, balance.p, correction) and bool(
         (np.abs(system.along_free(balance.residual)) <= row_floors(system, balance.p)[system.unknowns.chosen]).all()

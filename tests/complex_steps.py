@@ -170,7 +170,7 @@ def accelerations(mesh, solution: bf.Solution, row: int) -> np.ndarray:
     result = np.zeros(e.shape[1:])
     for carrier, nodes in mesh.node_kinds:
         names = labels(carrier, mesh.vectors)
-        frame = mesh.carried.frame[nodes]
+        frame = mesh.kinematics.frame[nodes]
         result[nodes] = nodal_rates(carrier, mesh.vectors, p[:, nodes], a[:, nodes], frame)[0]
         if names[-1] != "theta":
             continue
@@ -213,12 +213,12 @@ def to_coordinates(mesh, p: np.ndarray, force: np.ndarray, size: int) -> np.ndar
     np.add.at(nodal, mesh.node, force.reshape(mesh.elements, mesh.node.shape[1], -1, 2))
     table, result = mesh.table(p[None]), np.zeros(size)
     for carrier, nodes in mesh.node_kinds:
-        names, frame = labels(carrier, mesh.vectors), mesh.carried.frame[nodes]
+        names, frame = labels(carrier, mesh.vectors), mesh.kinematics.frame[nodes]
         for column in range(len(names)):
             unit = np.zeros(table[:, nodes].shape)
             unit[:, :, column] = 1.0
             rates = nodal_rates(carrier, mesh.vectors, table[:, nodes], unit, frame)[0]
-            np.add.at(result, mesh.carried.dof[nodes, column], np.einsum("nvc,nvc->n", rates, nodal[nodes]))
+            np.add.at(result, mesh.kinematics.dof[nodes, column], np.einsum("nvc,nvc->n", rates, nodal[nodes]))
     return result
 
 

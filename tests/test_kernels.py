@@ -119,7 +119,7 @@ def test_uniform_stretch_is_a_patch(element):
             p[dofs] *= 1.1
     rest = np.zeros_like(p)
     force, _ = linearise(system, p, rest, rest, 0.0, (1.0, 0.0, 0.0))
-    inner = force[mesh.carried.dof[1:-1, :2]]
+    inner = force[mesh.kinematics.dof[1:-1, :2]]
     assert np.abs(inner).max() <= 1e-12 * np.abs(force).max()
 
 

@@ -300,7 +300,15 @@ def _numbers(value):
 @pytest.mark.parametrize("curve", [bf.Line((0, 0), (1, 0)), bf.Arc((0, 0), 1.0, 0.0, 1.0)])
 def test_what_is_shared_cannot_be_overwritten(curve, nothing_known):
     mesh = bf.Model([bf.Beam(curve, 3, bf.CRBF(2), SECTION, STEEL)]).meshes[0]
-    for values in (mesh.position, mesh.tangent, mesh.arc, mesh.lengths, mesh.node, *mesh.carried, *mesh.classes):
+    for values in (
+        mesh.position,
+        mesh.tangent,
+        mesh.arc,
+        mesh.lengths,
+        mesh.node,
+        *mesh.kinematics,
+        *mesh.classes,
+    ):
         with pytest.raises(ValueError, match="read-only"):
             values[...] = 0
 

@@ -75,13 +75,13 @@ def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
     if len(beam_meshes) > 1:
         node += np.repeat(np.cumsum(nodes) - nodes, elements)[:, None]
     home = homes(node, int(nodes.sum())) if len(node) > _FEW else _cached_homes(node.tobytes(), node.shape)
-    width = max(mesh.carried.dof.shape[1] for mesh in beam_meshes)
+    width = max(mesh.kinematics.dof.shape[1] for mesh in beam_meshes)
     return {
         "node": node,
         "beam": np.array([number for number, _ in meshes]).repeat(elements),
-        "node_kind": _joined([mesh.carried.node_kind for mesh in beam_meshes]),
-        "frame": _joined([mesh.carried.frame for mesh in beam_meshes]),
-        "dof": _joined([_widened(mesh.carried.dof, width) for mesh in beam_meshes]),
+        "node_kind": _joined([mesh.kinematics.node_kind for mesh in beam_meshes]),
+        "frame": _joined([mesh.kinematics.frame for mesh in beam_meshes]),
+        "dof": _joined([_widened(mesh.kinematics.dof, width) for mesh in beam_meshes]),
         "home": home,
     }
 

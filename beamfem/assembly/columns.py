@@ -17,7 +17,7 @@ def coordinate_columns(mesh: BeamMesh) -> Columns:
 
     Joined nodes with gradients share r_y, rotated by the angle between them; it is listed at the first of them only.
     """
-    return columns_of(mesh.carried.node_kind, mesh.carried.dof, mesh.vectors)
+    return columns_of(mesh.kinematics.node_kind, mesh.kinematics.dof, mesh.vectors)
 
 
 def columns_of(node_kinds: np.ndarray, dof: np.ndarray, vectors: tuple[str, ...]) -> Columns:

@@ -25,7 +25,7 @@ def pressures_have_potential(model: Model, prescribed: set[int]) -> bool:
         if not load.uniform or along != 0.0:
             return False
         mesh = model.mesh_of(load.beam.start)
-        first, last = mesh.carried.dof[mesh.node[0, 0], 0], mesh.carried.dof[mesh.node[-1, -1], 0]
+        first, last = mesh.kinematics.dof[mesh.node[0, 0], 0], mesh.kinematics.dof[mesh.node[-1, -1], 0]
         for dof, sign in ((int(first), -1.0), (int(last), 1.0)):
             ends[id(amplitude), load.scale, dof] += sign * across
     return all(left == 0.0 or dof in prescribed or dof + 1 in prescribed for (_, _, dof), left in ends.items())

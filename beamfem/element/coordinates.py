@@ -90,10 +90,10 @@ def nodal_vectors(node_kind: int, vectors: tuple[str, ...], p: np.ndarray, frame
     p = p[..., : len(labels(node_kind, vectors))]
     if kind is not None:
         angle = np.cos(p[..., -1]), np.sin(p[..., -1])
-        return _carried(kind, p, *_turned(*angle, frame), frame)
+        return _vectors_of(kind, p, *_rotated(*angle, frame), frame)
     result = p.reshape(*p.shape[:2], len(vectors), 2).copy()
     if node_kind == ROTATED_GRADIENTS:
-        result[:, :, -1] = np.stack(_turned(result[:, :, -1, 0], result[:, :, -1, 1], frame), axis=-1)
+        result[:, :, -1] = np.stack(_rotated(result[:, :, -1, 0], result[:, :, -1, 1], frame), axis=-1)
     return result
 
 
@@ -105,12 +105,14 @@ def nodal_rates(
     if kind is None:
         return nodal_vectors(node_kind, vectors, v, frame)
     p, v = p[..., :count], v[..., :count]
-    c, s = _turned(np.cos(p[..., -1]), np.sin(p[..., -1]), frame)
+    c, s = _rotated(np.cos(p[..., -1]), np.sin(p[..., -1]), frame)
     spin = 1j * _STEP * v[..., -1]
-    return _carried(kind, p + 1j * _STEP * v, c - spin * s, s + spin * c, frame).imag / _STEP
+    return _vectors_of(kind, p + 1j * _STEP * v, c - spin * s, s + spin * c, frame).imag / _STEP
 
 
-def _carried(kind: kinematics.Kinematics, p: np.ndarray, c: np.ndarray, s: np.ndarray, frame: np.ndarray) -> np.ndarray:
+def _vectors_of(
+    kind: kinematics.Kinematics, p: np.ndarray, c: np.ndarray, s: np.ndarray, frame: np.ndarray
+) -> np.ndarray:
     """Return the nodal vectors (steps, nodes, vectors, 2) of nodes with the section normal (c, s)."""
     count = len(kind.coordinates)
     vectors = kind.vectors(tuple(np.moveaxis(p[..., -count:], -1, 0)), c, s, frame[:, 2])
@@ -125,6 +127,6 @@ def across(vector: np.ndarray) -> np.ndarray:
     return result
 
 
-def _turned(x: np.ndarray, y: np.ndarray, frame: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _rotated(x: np.ndarray, y: np.ndarray, frame: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the components of vectors (x, y) rotated by the reference angle of each node."""
     return frame[:, 0] * x - frame[:, 1] * y, frame[:, 1] * x + frame[:, 0] * y

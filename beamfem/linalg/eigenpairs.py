@@ -54,7 +54,7 @@ def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarra
     there are no more pairs. Raises ConvergenceError.
     """
     n = mass.shape[0]
-    carried = mass @ known
+    weighted = mass @ known
 
     def dense() -> Pairs:
         root = cholesky(mass.toarray(), lower=True)
@@ -82,8 +82,8 @@ def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarra
         return 1.0 / reciprocal[order], solved_once_more(x[:, order])
 
     def projected(b: np.ndarray) -> np.ndarray:
-        solved = factors.solve(b - carried @ (known.T @ b))
-        return np.asarray(solved - known @ (carried.T @ solved))
+        solved = factors.solve(b - weighted @ (known.T @ b))
+        return np.asarray(solved - known @ (weighted.T @ solved))
 
     def solved_once_more(x: np.ndarray) -> np.ndarray:
         # The last vectors of a multiple eigenvalue come from round-off and have parts along stiff directions, which are
@@ -94,7 +94,7 @@ def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarra
 
     mu, x = first_that_works(dense, few, n, count)
     for _ in range(2):
-        x = x - known @ (carried.T @ x)
+        x = x - known @ (weighted.T @ x)
     return mu[:count], x[:, :count]
 
 

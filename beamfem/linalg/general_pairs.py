@@ -16,10 +16,10 @@ def general_pairs(mass: csr_array, stiffness: csr_array, factors: Solver, count:
     again, with x^T mass x = 1. Raises ConvergenceError if some were missed.
     """
     n = mass.shape[0]
-    carried = mass @ known[1]
+    weighted = mass @ known[1]
 
     def solved(b: np.ndarray) -> np.ndarray:
-        return factors.solve(b - carried @ (known[1].T @ b))
+        return factors.solve(b - weighted @ (known[1].T @ b))
 
     def search(basis: np.ndarray, wanted: int) -> Pairs:
         found = mass @ basis
@@ -40,5 +40,5 @@ def general_pairs(mass: csr_array, stiffness: csr_array, factors: Solver, count:
     values, x = repeated(search, lambda b: solved(mass @ b), mass, count, np.abs)
     values, x = values[:count], x[:, :count]
     # Wielandt's deflation preserves the other eigenvalues, but changes their vectors along the known ones
-    fractions = known[0][:, None] * (carried.T @ x) / (values - known[0][:, None])
+    fractions = known[0][:, None] * (weighted.T @ x) / (values - known[0][:, None])
     return values, x + known[1] @ fractions

@@ -103,7 +103,9 @@ def join(meshes: Sequence[BeamMesh]) -> BeamMesh:
     )
     node = np.concatenate([mesh.node for mesh in meshes]) + shift[:, None]
     grid = first.beam, _NONE, _NONE, first.rate, node, arc, position, tangent, speed
-    return JoinedMesh(*grid, _carried(meshes), 0, first.block, first.history[:0], tuple(meshes), moved=first.moved)
+    return JoinedMesh(
+        *grid, _joined_kinematics(meshes), 0, first.block, first.history[:0], tuple(meshes), moved=first.moved
+    )
 
 
 @kept_with
@@ -124,12 +126,14 @@ def _kind(model: Model, mesh: BeamMesh) -> Hashable:
     return mesh.block, mesh.straight, counted, by_value(beam.section), by_value(beam.material)
 
 
-def _carried(meshes: Sequence[BeamMesh]) -> Nodes:
+def _joined_kinematics(meshes: Sequence[BeamMesh]) -> Nodes:
     """Return the nodes of all meshes; coordinates that a node does not have are -1."""
-    width = max(mesh.carried.dof.shape[1] for mesh in meshes)
+    width = max(mesh.kinematics.dof.shape[1] for mesh in meshes)
     dofs = [
         np.pad(dof, ((0, 0), (0, width - dof.shape[1])), constant_values=-1) if dof.shape[1] < width else dof
-        for dof in (mesh.carried.dof for mesh in meshes)
+        for dof in (mesh.kinematics.dof for mesh in meshes)
     ]
-    kind, frame = (np.concatenate([getattr(mesh.carried, name) for mesh in meshes]) for name in ("node_kind", "frame"))
+    kind, frame = (
+        np.concatenate([getattr(mesh.kinematics, name) for mesh in meshes]) for name in ("node_kind", "frame")
+    )
     return Nodes(kind, np.concatenate(dofs), frame)

@@ -17,12 +17,12 @@ from beamfem.once import cached_property
 class BeamMesh(Grid):
     """Grid of a beam with its numbers in the model.
 
-    carried: kinematics and coordinates of the nodes; first_element: first element of the beam in its block; block:
+    kinematics: kinematics and coordinates of the nodes; first_element: first element of the beam in its block; block:
     number of this block; history (ne, nq, k): numbers of the history variables at the quadrature points, empty without
     history.
     """
 
-    carried: Nodes
+    kinematics: Nodes
     first_element: int
     block: int
     history: np.ndarray
@@ -55,17 +55,17 @@ class BeamMesh(Grid):
     @cached_property
     def node_kinds(self) -> tuple[tuple[int, np.ndarray], ...]:
         """Each kind of nodal coordinates, by its number in compiled code, with its nodes (n,)."""
-        codes = self.carried.node_kind
+        codes = self.kinematics.node_kind
         return tuple((int(code), np.flatnonzero(codes == code)) for code in np.unique(codes))
 
     def labels(self, node: int) -> tuple[str, ...]:
         """Return the names of the coordinates of a node."""
-        return labels(int(self.carried.node_kind[node]), self.vectors)
+        return labels(int(self.kinematics.node_kind[node]), self.vectors)
 
     def coordinates_of(self, node: int) -> dict[str, int]:
         """Return the number in the model of each coordinate of a node, by name."""
-        return dict(zip(self.labels(node), self.carried.dof[node].tolist(), strict=False))
+        return dict(zip(self.labels(node), self.kinematics.dof[node].tolist(), strict=False))
 
     def table(self, p: np.ndarray) -> np.ndarray:
         """Return the coordinates (steps, nodes, npn) of states p (steps, n); unused columns of a node hold anything."""
-        return p[:, self.carried.dof]
+        return p[:, self.kinematics.dof]

@@ -52,10 +52,12 @@ def numbered_meshes(model: "Model") -> NumberedMeshes:
     blocks = model.blocks_of_beams
     filled, meshes = [0] * len(model.groups), []
     behind = size + sum(connector.unknowns + len(remembered(connector)) for connector in model.connectors)
-    for grid, carried, block in zip(grids, nodes, blocks, strict=True):
+    for grid, kinematics, block in zip(grids, nodes, blocks, strict=True):
         parts = {name: getattr(grid, name) for name in _GRID}
         history = _history(grid, behind)
-        meshes.append(BeamMesh(**parts, carried=carried, first_element=filled[block], block=block, history=history))
+        meshes.append(
+            BeamMesh(**parts, kinematics=kinematics, first_element=filled[block], block=block, history=history)
+        )
         for values in (history, *parts.values()):
             if isinstance(values, np.ndarray):
                 values.setflags(write=False)  # models that are alike share it

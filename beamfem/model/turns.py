@@ -36,5 +36,5 @@ def rotation_pairs(model: Model) -> np.ndarray:
     for mesh in uncounted(model):
         vector = "r_x" if mesh.beam.element.forces.turns_with == "r_x" else "r_y"
         column = mesh.labels(0).index(f"{vector}^x")
-        pairs.append(mesh.carried.dof[0, column : column + 2])
+        pairs.append(mesh.kinematics.dof[0, column : column + 2])
     return np.array(pairs, dtype=np.int64).reshape(-1, 2)

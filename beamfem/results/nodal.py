@@ -33,11 +33,11 @@ def nodal_velocities(mesh: BeamMesh, p: np.ndarray, v: np.ndarray, some: np.ndar
 
 def _nodes(mesh: BeamMesh, some: np.ndarray | None) -> tuple[np.ndarray, np.ndarray, Sequence[tuple[int, np.ndarray]]]:
     """Return coordinates (k, npn) and frames (k, 3) of some nodes (k,) or all, and each kind with its nodes."""
-    carried = mesh.carried
+    nodes = mesh.kinematics
     if some is None:
-        return carried.dof, carried.frame, mesh.node_kinds
-    kind = carried.node_kind[some]
-    return carried.dof[some], carried.frame[some], [(own, np.flatnonzero(kind == own)) for own in set(kind.tolist())]
+        return nodes.dof, nodes.frame, mesh.node_kinds
+    kind = nodes.node_kind[some]
+    return nodes.dof[some], nodes.frame[some], [(own, np.flatnonzero(kind == own)) for own in set(kind.tolist())]
 
 
 def axis(mesh: BeamMesh, vectors: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:
@@ -72,5 +72,5 @@ def has_angles(mesh: BeamMesh) -> bool:
 def nodal_angles(mesh: BeamMesh, p: np.ndarray, some: np.ndarray) -> np.ndarray:
     """Return the rotations (steps, k) [rad] of some nodes (k,) of a beam that has them as coordinates."""
     last = {node_kind: len(coordinates.labels(node_kind, mesh.vectors)) - 1 for node_kind, _ in mesh.node_kinds}
-    column = [last[node_kind] for node_kind in mesh.carried.node_kind[some].tolist()]
-    return np.asarray(p[:, mesh.carried.dof[some, column]])
+    column = [last[node_kind] for node_kind in mesh.kinematics.node_kind[some].tolist()]
+    return np.asarray(p[:, mesh.kinematics.dof[some, column]])

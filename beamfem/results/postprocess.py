@@ -132,7 +132,7 @@ def position(mesh: BeamMesh, p: np.ndarray, fraction: float) -> np.ndarray:
     """Return the position (steps, 2) [m] of a point of the axis; at a node without interpolation."""
     node = mesh.node_near(fraction)
     if node is not None:
-        return np.asarray(p[:, mesh.carried.dof[node, :2]])
+        return np.asarray(p[:, mesh.kinematics.dof[node, :2]])
     element, xi = mesh.locate(fraction)
     return axis_at(mesh, p, np.array([element]), np.array([xi])).r[:, 0]
 

@@ -63,7 +63,7 @@ def _of_field(system: System, velocity: Callable[[np.ndarray], np.ndarray], p: n
             for column, label in enumerate(names):
                 name, _, axis = label.partition("^")
                 if name in rates:
-                    dofs = mesh.carried.dof[nodes, column]
+                    dofs = mesh.kinematics.dof[nodes, column]
                     total[dofs] += rates[name][:, "xy".index(axis)] if axis else rates[name]
                     times[dofs] += 1.0
     return total / np.maximum(times, 1.0)

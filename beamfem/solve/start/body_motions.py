@@ -39,7 +39,7 @@ class Conditions:
     def __init__(self, system: System, body: np.ndarray, p: np.ndarray) -> None:
         model = system.model
         self.model, self.body, self.extent = model, body, system.extent
-        self.nodes = [p[mesh.carried.dof[:, :2]] for mesh in model.meshes]
+        self.nodes = [p[mesh.kinematics.dof[:, :2]] for mesh in model.meshes]
         self.centre = np.mean([positions.mean(axis=0) for positions in self.nodes], axis=0)
         self.bodies = int(body.max() + 1)
         self.entries: list[tuple[int, int, float]] = []

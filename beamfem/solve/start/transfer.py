@@ -39,7 +39,7 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
         values, rates = _by_label(old, state)
         for label, nodes, dofs in coordinate_columns(new):
             # a rotated vector belongs to the first of the joined nodes
-            mask = new.carried.node_kind[nodes] != ROTATED_GRADIENTS if label.startswith("r_y") else slice(None)
+            mask = new.kinematics.node_kind[nodes] != ROTATED_GRADIENTS if label.startswith("r_y") else slice(None)
             p[dofs[mask]], v[dofs[mask]] = values[label][nodes[mask]], rates[label][nodes[mask]]
         if _keeps_history(old, new):
             p[new.history] = state.p[old.history]

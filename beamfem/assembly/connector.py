@@ -20,8 +20,8 @@ Motion = tuple[np.ndarray, np.ndarray, np.ndarray]  # p, p', p'' (n,)
 class Connector:
     """A contribution and the numbers of the coordinates that it acts on.
 
-    dofs (3 m,): x, y and rotation of each point; own (k,): its multipliers; memory (h,): its history variables;
-    reference (m, 3): q in the reference.
+    dofs (d,): x, y and rotation of each of m points, x and y alone if it has no rotations; own (k,): its multipliers;
+    memory (h,): its history variables; reference (m, 3): q in the reference.
     """
 
     item: Contribution
@@ -32,7 +32,7 @@ class Connector:
 
     @cached_property
     def all(self) -> np.ndarray:
-        """Numbers (3 m + k,) of all coordinates that the force belongs to."""
+        """Numbers (d + k,) of all coordinates that the force belongs to."""
         return np.concatenate([self.dofs, self.own])
 
     @cached_property
@@ -54,31 +54,66 @@ class Connector:
     def name(self) -> str:
         return type(self.item).__name__
 
+    @property
+    def per_point(self) -> int:
+        """Number of coordinates of a point, 3 with its rotation or 2 without."""
+        return len(self.dofs) // len(self.reference)
+
+    @cached_property
+    def undeformed(self) -> np.ndarray:
+        """Coordinates (d,) in the reference."""
+        return self.reference[:, : self.per_point].ravel()
+
+    @cached_property
+    def turns(self) -> np.ndarray:
+        """Which of the coordinates (d,) are rotations."""
+        return np.arange(len(self.dofs)) % self.per_point == 2
+
     @cached_property
     def units(self) -> np.ndarray:
-        """Natural unit (3 m,) of each coordinate: the length [m] of the longest connected beam, and 1 rad."""
+        """Natural unit (d,) of each coordinate: the length [m] of the longest connected beam, and 1 rad."""
         size = max(point.beam.curve.length for point in self.item.points)
-        return np.tile([size, size, 1.0], len(self.reference))
+        return np.tile([size, size, 1.0][: self.per_point], len(self.reference))
+
+    def by_point(self, values: np.ndarray) -> np.ndarray:
+        """Return values (..., d) of the coordinates as (..., m, 3), zero for rotations that are none of them."""
+        result = values.reshape(*values.shape[:-1], len(self.reference), self.per_point)
+        if self.per_point == 3:
+            return result
+        return np.concatenate([result, np.zeros_like(result[..., :1])], axis=-1)
 
     def at(self, motion: Motion, time: float, gravity: np.ndarray) -> At:
         """Return the state at which the contribution is evaluated; the motion may be complex."""
-        q, rate, second = (values[self.dofs].reshape(-1, 3) for values in motion)
+        q, rate, second = (self.by_point(values[self.dofs]) for values in motion)
         memory = motion[0][self.memory].real
         return At(q, rate, second, motion[0][self.own], memory, self.reference, time, gravity)
 
     def force(self, at: At) -> np.ndarray:
-        """Return the force (3 m + k,). Raises InputError for an invalid result."""
+        """Return the force (d + k,). Raises InputError for an invalid result."""
         with np.errstate(all="ignore"):  # far from equilibrium a force may overflow; the iteration recovers from it
             force = np.asarray(called(f"force of {self.name}", self.item.force, at))
-        if force.shape != (len(self.dofs) + len(self.own),) or force.dtype.kind not in "fic":
-            count = len(self.dofs) + len(self.own)
+        count = self.reference.size + len(self.own)
+        if force.shape != (count,) or force.dtype.kind not in "fic":
             flat = "; .ravel() makes it flat" if force.size == count and force.ndim > 1 else ""
             raise InputError(
                 f"force of {self.name} must return {count} numbers, fx, fy and moment at each of its "
                 f"{len(self.reference)} points and {len(self.own)} conditions, as an array ({count},), got "
                 f"{force.dtype} {force.shape}{flat}"
             )
-        return force
+        return force if self.per_point == 3 else self._without_moments(force)
+
+    def _without_moments(self, force: np.ndarray) -> np.ndarray:
+        """Return the force (2 m + k,) of one (3 m + k,) whose moments are zero. Raises InputError if they are not."""
+        table, conditions = np.split(force, [self.reference.size])
+        table = table.reshape(-1, 3)
+        forces, moments = table[:, :2].ravel(), table[:, 2]
+        if moments.any() and np.isfinite(forces).all():  # of forces that overflow, moments may be 0 times inf
+            number = int(np.flatnonzero(moments)[0])
+            raise InputError(
+                f"{self.name} has rotations = False, so its moments must be zero, but its force has the moment "
+                f"{moments[number].real:g} at points[{number}]; leave out rotations = False"
+            )
+        return np.concatenate([forces, conditions])
 
     def remember(self, at: At) -> np.ndarray:
         """Return the history variables (h,) after an accepted step. Raises InputError for an invalid result."""
@@ -112,7 +147,7 @@ class Connector:
         gravity: np.ndarray,
         weights: Sequence[float],
     ) -> np.ndarray:
-        """Return the tangent (3 m + k, 3 m + k) of the force for weights of p, p' and p'', by complex steps.
+        """Return the tangent (d + k, d + k) of the force for weights of p, p' and p'', by complex steps.
 
         Raises LinAlgError if it is not finite.
         """

@@ -1,6 +1,7 @@
 """Checks of connectors: analytic, symmetric if they have a potential, and with energies that match their forces."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -71,6 +72,21 @@ def require_energies(item: Connector) -> None:
         )
 
 
+def require_no_rotations(item: Connector) -> None:
+    """Raise InputError if a connector that has no rotations depends on them or has moments."""
+    if item.per_point == 3:
+        return
+    at = item.at(somewhere_near(item), TIMES[0], gravity_of(item))
+    turn = np.random.default_rng(13).standard_normal((3, *at.q.shape)) * (0.0, 0.0, 1.0)
+    turned = replace(at, q=at.q + turn[0], v=at.v + turn[1], a=at.a + turn[2])
+    for name, values in (("force", item.force), ("energy", item.energy)):
+        if not np.array_equal(values(at), values(turned), equal_nan=True):
+            raise InputError(
+                f"{item.name} has rotations = False, but its {name} depends on the rotations of its points; leave out "
+                "rotations = False"
+            )
+
+
 def resists_rates(item: Connector) -> bool:
     """Return whether the force depends on velocities."""
     alone = item.alone
@@ -92,7 +108,7 @@ def somewhere_near(item: Connector) -> Motion:
     p, v, a = (_NEAR * rng.standard_normal(item.variables) for _ in range(3))
     for values in (p, v, a):
         values[item.dofs] *= item.units
-    p[item.dofs] += item.reference.ravel()
+    p[item.dofs] += item.undeformed
     p[item.memory] = remembered(item.item)
     return p, v, a
 
@@ -109,12 +125,12 @@ def gravity_of(item: Connector) -> np.ndarray:
 
 
 def scales_of(item: Connector) -> np.ndarray:
-    """Return the natural unit (3 m + k,) of each coordinate and multiplier."""
+    """Return the natural unit (d + k,) of each coordinate and multiplier."""
     return np.concatenate([item.units, np.ones(len(item.own))])
 
 
 def _same(item: Connector, one: np.ndarray, other: np.ndarray) -> bool:
-    """Return whether forces or momenta (3 m,) agree, each by its work."""
+    """Return whether forces or momenta (d,) agree, each by its work."""
     one, other = one * item.units, other * item.units
     return bool(np.all(np.abs(one - other) <= AGREE * np.maximum(np.abs(one).max(), np.abs(other).max())))
 
@@ -122,7 +138,7 @@ def _same(item: Connector, one: np.ndarray, other: np.ndarray) -> bool:
 def _require_same(
     item: Connector, name: str, of: str, exact: np.ndarray, slopes: np.ndarray, errors: np.ndarray
 ) -> None:
-    """Raise InputError if derivatives (r, 3 m + k) differ; the rows are forces and conditions, or an energy.
+    """Raise InputError if derivatives (r, d + k) differ; the rows are forces and conditions, or an energy.
 
     errors (r,): see `_slopes`.
     """
@@ -142,7 +158,7 @@ def _require_same(
 
 
 def _momentum(item: Connector, motion: Motion) -> np.ndarray:
-    """Return the derivative (3 m,) of the kinetic energy by the velocities, by complex steps."""
+    """Return the derivative (d,) of the kinetic energy by the velocities, by complex steps."""
     return np.array([_kinetic_rate(item, motion, dof) for dof in item.dofs.tolist()])
 
 
@@ -159,7 +175,7 @@ def _kinetic_rate(item: Connector, motion: Motion, dof: int) -> float:
 def _slopes(
     item: Connector, values: Callable[..., np.ndarray], motion: Motion, kind: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the derivative (r, 3 m + k) of `values` with respect to p, p' or p'' (kind 0, 1 or 2), and errors (r,).
+    """Return the derivative (r, d + k) of `values` with respect to p, p' or p'' (kind 0, 1 or 2), and errors (r,).
 
     It is a central difference. The errors are those that the round-off of all terms of a value leaves per natural unit
     of a coordinate.

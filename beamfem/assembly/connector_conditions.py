@@ -48,7 +48,7 @@ def require_workless(item: Connector) -> None:
         )
     if least == np.inf or _knows_what_slides(item):
         return
-    point, direction = divmod(least_row, 3)
+    point, direction = divmod(least_row, item.per_point)
     raise InputError(
         f"force of {item.name}: the forces of its multipliers do work in motions that its conditions allow; "
         f"{('fx', 'fy', 'the moment')[direction]} at points[{point}] is not the multipliers times the derivatives of "
@@ -66,7 +66,7 @@ def _on_the_conditions(item: Connector) -> Iterator[Motion]:
         moved, multipliers = far * units * rng.standard_normal(len(item.dofs)), rng.standard_normal(len(item.own))
         for side in (1.0, -1.0):  # a contact may be open for one of them
             p, zeros = np.zeros(item.variables), np.zeros(item.variables)
-            p[item.dofs], p[item.own] = item.reference.ravel() + moved, side * multipliers
+            p[item.dofs], p[item.own] = item.undeformed + moved, side * multipliers
             p[item.memory] = remembered(item.item)
             if _meets(item, (p, zeros, zeros)):
                 yield p, zeros, zeros
@@ -90,7 +90,7 @@ def _meets(item: Connector, motion: Motion) -> bool:
 
 
 def _derivatives(item: Connector, motion: Motion) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return the derivatives (3 m, k) of the forces by the multipliers, and (3 m, k) of the conditions by q.
+    """Return the derivatives (d, k) of the forces by the multipliers, and (d, k) of the conditions by q.
 
     None if the conditions depend on multipliers or velocities there.
     """

@@ -89,7 +89,7 @@ def _tolerance(item: Connector) -> float:
 
 
 def _directions(item: Connector) -> tuple[np.ndarray, np.ndarray]:
-    """Return a change (3 m + k,) of all coordinates and one of all multipliers, each of about its natural unit."""
+    """Return a change (d + k,) of all coordinates and one of all multipliers, each of about its natural unit."""
     rng, number = np.random.default_rng(11), len(item.dofs)
     changes = rng.choice([-1.0, 1.0], len(item.all)) * rng.uniform(0.5, 1.0, len(item.all)) * scales_of(item)
     changes = exact_steps(somewhere_near(item)[0][: len(changes)], WIDTH * changes) / WIDTH

@@ -6,10 +6,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.assembly.connector import COMPLEX_STEP, Connector, Motion
-from beamfem.assembly.connector_checks import follows_time, require_analytic, require_energies, resists_rates
+from beamfem.assembly.connector_checks import (
+    follows_time,
+    require_analytic,
+    require_energies,
+    require_no_rotations,
+    resists_rates,
+)
 from beamfem.assembly.connector_conditions import require_workless
 from beamfem.assembly.connector_directions import passes
-from beamfem.model.contribution import remembered
+from beamfem.model.contribution import remembered, uses_rotations
 from beamfem.model.load import factor
 from beamfem.model.model import Model
 from beamfem.once import cached_property, kept_with
@@ -75,7 +81,7 @@ class Connectors:
             np.add.at(residual, item.all, item.force(item.at(motion, time, gravity)).real)
 
     def tangents(self, motion: Motion, time: float, weights: Sequence[float]) -> list[np.ndarray]:
-        """Return the tangent (3 m + k, 3 m + k) of each connector for weights of p, p' and p''."""
+        """Return the tangent (d + k, d + k) of each connector for weights of p, p' and p''."""
         gravity = self.gravity(time) if self.items else np.zeros(2)
         return [item.tangent(motion, time, gravity, weights) for item in self.items]
 
@@ -97,7 +103,7 @@ class Connectors:
                 moved = p.real, v, a.real
                 momenta[number] = np.imag(item.energy(item.alone.at(moved, time, gravity))[0]) / COMPLEX_STEP
             for (x, y), (px, py, turn) in zip(
-                motion[0][item.dofs].reshape(-1, 3)[:, :2], momenta.reshape(-1, 3), strict=True
+                item.by_point(motion[0][item.dofs])[:, :2], item.by_point(momenta), strict=True
             ):
                 result += px, py, x * py - y * px + turn
         return result
@@ -117,8 +123,7 @@ class Connectors:
         if not self.items:
             return result
         for item, stiffness in zip(self.items, self._stiffness, strict=True):
-            turns = np.arange(len(item.all)) % 3 == 2
-            turns[len(item.dofs) :] = True
+            turns = np.append(item.turns, np.ones(len(item.own), dtype=bool))
             for row, columns in zip(result, (~turns, turns), strict=True):
                 np.add.at(row, item.all, np.abs(stiffness[:, columns]).sum(axis=1))
         return result
@@ -130,13 +135,14 @@ class Connectors:
             forces = stiffness[: len(item.dofs), : len(item.dofs)].copy()
             # makes moments comparable with forces
             length = max(point.beam.curve.length for point in item.item.points)
-            forces[2::3] /= length
+            forces[item.turns] /= length
             sizes = np.abs(forces).max(axis=1, initial=0.0)
             forces[sizes <= _ROUND_OFF * sizes.max(initial=0.0)] = 0.0
             conditions = stiffness[len(item.dofs) :, : len(item.dofs)]
             rows = np.vstack([forces, conditions])
             sizes = np.abs(rows).max(axis=1, initial=0.0)
-            result.append((item, rows[sizes > 0.0] / sizes[sizes > 0.0, None]))
+            motions = rows[sizes > 0.0] / sizes[sizes > 0.0, None]
+            result.append((item, item.by_point(motions).reshape(len(motions), item.reference.size)))
         return result
 
     @cached_property
@@ -144,7 +150,7 @@ class Connectors:
         """Tangent of each connector in the reference."""
         p, zeros = np.zeros(self.model.size), np.zeros(self.model.size)
         for item in self.items:
-            p[item.dofs] = item.reference.ravel()
+            p[item.dofs] = item.undeformed
         p[self.memory] = self.start
         return self.tangents((p, zeros, zeros), 0.0, (1.0, 0.0, 0.0))
 
@@ -165,7 +171,7 @@ def _checked_connectors(model: Model) -> tuple[Connector, ...]:
             mesh = model.mesh_of(point)
             node = mesh.node_at(point.fraction)
             numbers = mesh.coordinates_of(node)
-            dofs += [numbers[name] for name in _COORDINATES]
+            dofs += [numbers[name] for name in _COORDINATES[: 3 if uses_rotations(item) else 2]]
             positions.append([*mesh.position[node].tolist(), 0.0])
         multipliers = np.arange(first, first + item.unknowns)
         first += item.unknowns
@@ -180,6 +186,7 @@ def _checked_connectors(model: Model) -> tuple[Connector, ...]:
 
 def _require_right(item: Connector, known: set[type]) -> None:
     """Raise InputError for an inconsistent connector; known: classes of which one has passed all checks."""
+    require_no_rotations(item)
     kind = type(item.item)
     if kind in known and passes(item):
         require_workless(item)

@@ -19,7 +19,8 @@ class At:
     Parameters
     ----------
     q : array, (m, 3)
-        x, y [m] and rotation from the reference [rad] of its points.
+        x, y [m] and rotation from the reference [rad] of its points. Rotations are zero here and in `v` and `a` if the
+        contribution has `rotations = False`.
     v : array, (m, 3)
         Velocities [m/s] and angular velocities [rad/s] of its points, zero in statics.
     a : array, (m, 3)
@@ -56,6 +57,10 @@ class Contribution(Protocol):
     Tangents are complex-step derivatives of `force`, exact to round-off, so it must consist of analytic functions:
     `x**2` and `np.sqrt`, not `abs`, `np.hypot` or `np.linalg.norm`. This is tested when a model is solved. Cases such
     as contact are distinguished by real parts, `np.where(gap.real < 0.0, ...)`.
+
+    A class attribute or field `rotations = False` is optional. The force then must not depend on rotations, and its
+    moments must be zero. Otherwise each point has an angle as a coordinate, which keeps the thickness of elements with
+    gradients constant there.
 
     Attributes
     ----------
@@ -151,8 +156,9 @@ class Remembering(Contribution, Protocol):
 
 
 def require_connector(connector: Contribution) -> None:
-    """Raise InputError if points, unknowns or conservative of a connector are invalid."""
+    """Raise InputError if points, unknowns, conservative or rotations of a connector are invalid."""
     name = type(connector).__name__
+    flag(f"rotations of {name}", uses_rotations(connector))
     points = items(f"points of {name}", connector.points)
     if not points:
         raise InputError(f"{name} has no points: it needs one point of a beam at least")
@@ -166,6 +172,11 @@ def require_connector(connector: Contribution) -> None:
         raise InputError(f"{name} has a memory, but no remember(at) that returns it anew after a step")
     remembered(connector)
     flag(f"conservative of {name}", connector.conservative)
+
+
+def uses_rotations(connector: Contribution) -> bool:
+    """Return whether a connector depends on rotations of its points, which then have an angle as a coordinate."""
+    return getattr(connector, "rotations", True)
 
 
 def remembered(connector: Contribution) -> np.ndarray:

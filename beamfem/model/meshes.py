@@ -11,7 +11,7 @@ from beamfem.element.law_points import law_points
 from beamfem.kernels.block import NO_HISTORY
 from beamfem.model.beam import Point
 from beamfem.model.body import require_body
-from beamfem.model.contribution import remembered
+from beamfem.model.contribution import remembered, uses_rotations
 from beamfem.model.gaps import close_gaps
 from beamfem.model.grid import Grid
 from beamfem.model.grids import make_grids
@@ -41,9 +41,9 @@ def numbered_meshes(model: "Model") -> NumberedMeshes:
     require_room(model.beams)
     fractions = [[fraction for fraction, _ in requested] for requested in nodes_asked(model)]
     grids = make_grids(model.beams, fractions)
-    connected = [point for connector in model.connectors for point in connector.points]
     turned = [support.point for support in model.point_supports if _turns(support)]
-    angled = _places(model, grids, turned + connected)
+    turned += [point for connector in model.connectors if uses_rotations(connector) for point in connector.points]
+    angled = _places(model, grids, turned)
     turning, moving = _joined(model, grids)
     grids = close_gaps(grids, moving)
     for grid in grids:

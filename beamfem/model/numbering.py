@@ -38,7 +38,8 @@ def number_nodes(
 ) -> tuple[list[Nodes], int]:
     """Return the nodes of each grid and the total number of coordinates.
 
-    angled (m, 2): (grid, node) whose rotation is prescribed or has a spring; such a node has an angle as a coordinate.
+    angled (m, 2): (grid, node) whose rotation is prescribed, has a spring or is that of a connector; such a node has an
+    angle as a coordinate.
     moving, turning (n, 4): pairs (grid, node, grid, node) with a common position, and with a common rotation.
     """
     kinds = tuple(_node_kinds(grid) for grid in grids)

@@ -36,7 +36,7 @@ def connector_force(solution: "Solution", connector: Contribution) -> np.ndarray
     system, times = loading(solution)
     item = _bound(solution, connector)
     forces = [
-        -item.force(item.at(motion, at, system.connectors.gravity(at)))[: len(item.dofs)]
+        item.by_point(-item.force(item.at(motion, at, system.connectors.gravity(at)))[: len(item.dofs)])
         for motion, at in _states(solution, times)
     ]
     return np.array(forces).reshape(len(solution), -1, 3)

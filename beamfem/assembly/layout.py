@@ -9,10 +9,10 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_array, csc_array, eye_array
-from scipy.sparse.csgraph import laplacian, reverse_cuthill_mckee
-from scipy.sparse.linalg import spilu
+from scipy.sparse import csc_array
 
+from beamfem.assembly.orders import Mesh, narrow_order, scattered_order, towards_support
+from beamfem.assembly.pattern import sparsity_pattern
 from beamfem.kernels.block import Block, Layout
 from beamfem.once import cached_property
 
@@ -20,13 +20,6 @@ _FEW = 20_000  # coordinates; the order of larger models is not cached
 _NONE = np.empty(0, dtype=np.int64)
 _WIDEST_BAND = 64  # half width; wider models are solved faster by a sparse factorisation
 WIDEST_BORDER = 24  # unknowns coupled beyond a band; with more, a sparse factorisation is faster
-
-
-class Mesh(NamedTuple):
-    """Nodes (ne, nn) of the elements of a block, and coordinates (N, npn) of its nodes."""
-
-    node: np.ndarray
-    dof: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,28 +67,37 @@ class Unknowns:
         return np.array(positions, dtype=np.int64)
 
 
+class Couplings(NamedTuple):
+    """Couplings of coordinates that are not elements.
+
+    coordinates: those (k,) of each; multipliers: coordinates that come last, since they have no stiffness; border: how
+    many unknowns they may couple beyond a band before the matrix is sparse, None if any coupling makes it sparse.
+    """
+
+    coordinates: Sequence[np.ndarray] = ()
+    multipliers: Sequence[int] = ()
+    border: int | None = None
+
+
 def order_unknowns(
     blocks: Sequence[Block],
     size: int,
     prescribed: np.ndarray,
     joined: bool,
-    coupled: Sequence[np.ndarray] = (),
-    multipliers: Sequence[int] = (),
-    constrained: np.ndarray = _NONE,
-    border: int = 0,
+    couplings: Couplings,
+    constrained: np.ndarray,
 ) -> Unknowns:
     """Return the order of the unknown coordinates: that of the nodes for a single chain, renumbered for joined beams.
 
-    coupled: coordinates (k,) of each coupling that is not an element; multipliers: coordinates that come last, since
-    they have no stiffness; constrained: those that supports prescribe, at which a band of statics ends; border: how
-    many unknowns may be coupled beyond a band before the matrix is sparse, -1 if it is as soon as any are coupled.
+    prescribed: coordinates that are known; joined: whether beams are joined; constrained: coordinates that supports
+    prescribe, at which a band of statics ends.
     """
-    if len(blocks) == 1 and not joined and not coupled and size <= _FEW:
+    if len(blocks) == 1 and not joined and not couplings.coordinates and size <= _FEW:
         node, dof = blocks[0].node, blocks[0].dof
         numbers = node.tobytes(), node.shape, dof.tobytes(), dof.shape
         return _cached_order(*numbers, size, prescribed.tobytes(), constrained.tobytes())
     mesh = [Mesh(block.node, block.dof) for block in blocks]
-    return _order(mesh, size, prescribed, joined, coupled, multipliers, constrained, border)
+    return _order(mesh, size, prescribed, joined, couplings, constrained)
 
 
 @lru_cache(maxsize=64)  # studies repeatedly make models with the same numbering
@@ -110,7 +112,7 @@ def _cached_order(
 ) -> Unknowns:
     whole = np.frombuffer(node, dtype=np.int64).reshape(nodes), np.frombuffer(dof, dtype=np.int64).reshape(dofs)
     known, supported = (np.frombuffer(each, dtype=np.int64) for each in (prescribed, constrained))
-    return _order([Mesh(*whole)], size, known, False, (), (), supported, 0)
+    return _order([Mesh(*whole)], size, known, False, Couplings(), supported)
 
 
 def _order(
@@ -118,43 +120,56 @@ def _order(
     size: int,
     prescribed: np.ndarray,
     joined: bool,
-    coupled: Sequence[np.ndarray],
-    multipliers: Sequence[int],
+    couplings: Couplings,
     constrained: np.ndarray,
-    border: int,
 ) -> Unknowns:
     mask = np.ones(size, dtype=bool)
     mask[prescribed] = False
     order = np.arange(size)
     if joined:
-        narrow = _narrow(blocks, size)
+        narrow = narrow_order(blocks, size)
         widths = [_half_width(blocks, _numbers(each[mask[each]], size)) for each in (narrow, order)]
         order = narrow if widths[0] < widths[1] else order
     half_width = _half_width(blocks, _numbers(order[mask[order]], size))
     if not joined:
         # short beams get the band width of long ones, for which there is compiled code
         half_width = max(half_width, *(int((block.dof[block.node[0]] >= 0).sum()) - 1 for block in blocks))
+    if half_width > _WIDEST_BAND:
+        return _sparse(blocks, size, mask, couplings)
+    dofs = order[mask[order]]
+    turned = towards_support(blocks, order, mask, constrained)
+    # joined nodes that share some coordinates only may be further apart then
+    if turned is not None and _half_width(blocks, _numbers(turned, size)) <= half_width:
+        dofs = turned
+    banded = _banded(blocks, size, _multipliers_last(dofs, couplings.multipliers), half_width, couplings)
+    return banded or _sparse(blocks, size, mask, couplings)
+
+
+def _banded(
+    blocks: Sequence[Mesh], size: int, dofs: np.ndarray, half_width: int, couplings: Couplings
+) -> Unknowns | None:
+    """Return the unknowns of a band in the order of `dofs`, None if too many are coupled beyond it."""
+    free, rows = _numbers(dofs, size), len(dofs) - len(couplings.multipliers)
+    coupled = [free[coordinates] for coordinates in couplings.coordinates]
+    beyond = tuple(_beyond(numbers, half_width, rows) for numbers in coupled)
+    if coupled and couplings.border is None:
+        return None
+    if len(np.unique(np.concatenate([_NONE, *beyond]))) > (couplings.border or 0):
+        return None
     none = np.empty((0, 0, 0), dtype=np.int32)
-    if half_width <= _WIDEST_BAND and (border >= 0 or not coupled):
-        dofs = _multipliers_last(order[mask[order]], multipliers)
-        turned = _to_support(blocks, order, mask, constrained)
-        # joined nodes that share some coordinates only may be further apart then
-        if turned is not None and _half_width(blocks, _numbers(turned, size)) <= half_width:
-            dofs = _multipliers_last(turned, multipliers)
-        free, rows = _numbers(dofs, size), len(dofs) - len(multipliers)
-        beyond = tuple(_beyond(free[coordinates], half_width, rows) for coordinates in coupled)
-        if len(np.unique(np.concatenate([_NONE, *beyond]))) <= max(border, 0):
-            inside = [free[own] for own, numbers in zip(coupled, beyond, strict=True) if not len(numbers)]
-            layouts = tuple(Layout(free, half_width, none) for _ in blocks)
-            places = tuple(
-                _places(free[own], half_width, not len(numbers)) for own, numbers in zip(coupled, beyond, strict=True)
-            )
-            return Unknowns(free, dofs, layouts, None, places, beyond, reaches(blocks, free, rows, inside))
-    dofs = _scattered(blocks, size, coupled)
-    dofs = _multipliers_last(dofs[mask[dofs]], multipliers)
+    inside = [own for own, numbers in zip(coupled, beyond, strict=True) if not len(numbers)]
+    places = (_places(own, half_width, not len(numbers)) for own, numbers in zip(coupled, beyond, strict=True))
+    layouts = tuple(Layout(free, half_width, none) for _ in blocks)
+    return Unknowns(free, dofs, layouts, None, tuple(places), beyond, reaches(blocks, free, rows, inside))
+
+
+def _sparse(blocks: Sequence[Mesh], size: int, unknown: np.ndarray, couplings: Couplings) -> Unknowns:
+    """Return the unknowns of a sparse matrix; unknown (size,): mask of the coordinates."""
+    dofs = scattered_order(blocks, size, couplings.coordinates)
+    dofs = _multipliers_last(dofs[unknown[dofs]], couplings.multipliers)
     free = _numbers(dofs, size)
-    numbers = [*(_numbers_of(block, free) for block in blocks), *(free[coordinates][None] for coordinates in coupled)]
-    pattern, slots = _pattern(numbers, len(dofs))
+    coupled = [free[coordinates][None] for coordinates in couplings.coordinates]
+    pattern, slots = sparsity_pattern([*(_numbers_of(block, free) for block in blocks), *coupled], len(dofs))
     layouts = tuple(Layout(free, -1, slot) for slot in slots[: len(blocks)])
     return Unknowns(free, dofs, layouts, pattern, tuple(slot[0] for slot in slots[len(blocks) :]))
 
@@ -221,119 +236,3 @@ def reaches(blocks: Sequence[Mesh], free: np.ndarray, unknown: int, coupled: Seq
             begin[own.max()] = min(int(begin[own.max()]), int(own.min()))
     first = np.minimum.accumulate(begin[::-1])[::-1]
     return np.stack([np.maximum.accumulate(end), unknown - first])
-
-
-def _narrow(blocks: Sequence[Mesh], size: int) -> np.ndarray:
-    """Order the coordinates (size,) by reverse Cuthill-McKee on the nodes, whose coordinates stay together."""
-    owner = _owners(blocks, size)
-    rows, columns = [], []
-    for block in blocks:
-        first = owner[block.dof[block.node, 0]]
-        # adjacent nodes of an element, and its ends, which connect it to other elements
-        rows += [first[:, :-1].ravel(), first[:, 0]]
-        columns += [first[:, 1:].ravel(), first[:, -1]]
-    row, column = np.concatenate(rows), np.concatenate(columns)
-    graph = coo_array((np.ones(len(row)), (row, column)), shape=(size, size)).tocsr()
-    order = reverse_cuthill_mckee(graph + graph.T, symmetric_mode=True)
-    rank = np.empty(size, dtype=np.int64)
-    rank[order] = np.arange(size)
-    return np.lexsort((np.arange(size), rank[owner]))
-
-
-def _to_support(
-    blocks: Sequence[Mesh], order: np.ndarray, unknown: np.ndarray, constrained: np.ndarray
-) -> np.ndarray | None:
-    """Return the unknown coordinates with the nodes reversed if the order begins closer to a support than it ends.
-
-    None if it does not. Elimination from a free end meets the stiffness of single elements only. In the other
-    direction the last pivots are the stiffness of the whole cantilever, a difference of much larger numbers that has no
-    digits in long ones. order (size,): all coordinates; unknown (size,): mask of the unknown ones.
-    """
-    if not len(constrained):
-        return None
-    owner = _owners(blocks, len(order))
-    supported = np.zeros(len(order), dtype=bool)
-    supported[owner[constrained]] = True
-    places = np.flatnonzero(supported[owner[order]])
-    left = unknown[order]
-    if np.count_nonzero(left[: places[0]]) >= np.count_nonzero(left[places[-1] + 1 :]):
-        return None
-    own = owner[order]
-    starts = np.flatnonzero(np.append(True, own[1:] != own[:-1]))
-    counts = np.diff(np.append(starts, len(order)))[::-1]
-    turned = order[np.repeat(starts[::-1] - np.cumsum(counts) + counts, counts) + np.arange(len(order))]
-    return np.asarray(turned[unknown[turned]])
-
-
-def _scattered(blocks: Sequence[Mesh], size: int, coupled: Sequence[np.ndarray] = ()) -> np.ndarray:
-    """Order the coordinates (size,) by multiple minimum degree on the nodes, for low fill-in."""
-    owner = _owners(blocks, size)
-    nodes, number = np.unique(owner, return_inverse=True)
-    pairs = []
-    for block in blocks:
-        node = number[block.dof[block.node, 0]]
-        i, j = np.triu_indices(node.shape[1], 1)
-        pairs.append((node[:, i].ravel(), node[:, j].ravel()))
-    for dofs in coupled:
-        node = number[dofs]
-        i, j = np.triu_indices(len(node), 1)
-        apart = node[i] != node[j]
-        pairs.append((node[i[apart]], node[j[apart]]))
-    ends = np.concatenate(pairs, axis=1)
-    shape = len(nodes), len(nodes)
-    graph = coo_array((np.ones(ends.shape[1]), tuple(ends)), shape=shape)
-    # SuperLU has no ordering without factorisation: one that drops all entries costs little more
-    dominant = csc_array(laplacian(graph + graph.T) + eye_array(len(nodes)))
-    options = {"SymmetricMode": True}
-    order = spilu(dominant, drop_tol=1.0, fill_factor=1.0, permc_spec="MMD_AT_PLUS_A", options=options).perm_c
-    return np.lexsort((np.arange(size), order[number]))
-
-
-def _owners(blocks: Sequence[Mesh], size: int) -> np.ndarray:
-    """Return the first coordinate (size,) of the node of each coordinate, by which those of a node stay together."""
-    owner = np.arange(size)
-    for block in blocks:
-        for dof in block.dof.T[1:]:
-            mask = dof >= 0
-            owner[dof[mask]] = np.minimum(owner[dof[mask]], block.dof[mask, 0])
-    return np.asarray(owner[owner])
-
-
-def _pattern(numbers: Sequence[np.ndarray], unknown: int) -> tuple[csc_array, list[np.ndarray]]:
-    """Return the sparsity pattern of matrices with equation numbers (ne, k), and the positions of their entries.
-
-    It includes the diagonal.
-    """
-    rows, columns, masks = [], [], []
-    for number in (table.astype(np.int32) for table in numbers):
-        i, j = np.broadcast_arrays(number[:, :, None], number[:, None, :])
-        mask = (i >= 0) & (j >= 0)
-        rows.append(i[mask])
-        columns.append(j[mask])
-        masks.append(mask)
-    diagonal = np.arange(unknown, dtype=np.int32)
-    row, column = np.concatenate([*rows, diagonal]), np.concatenate([*columns, diagonal])
-    order = _sorted_by(row, unknown)
-    order = order[_sorted_by(column[order], unknown)]
-    row, column = row[order], column[order]
-    new = np.ones(len(order), dtype=bool)
-    new[1:] = (row[1:] != row[:-1]) | (column[1:] != column[:-1])
-    position = np.empty(len(order), dtype=np.int32)
-    position[order] = np.cumsum(new, dtype=np.int32) - 1
-    starts = np.concatenate([[0], np.cumsum(np.bincount(column[new], minlength=unknown))])
-    entries = np.ones(int(new.sum()), dtype=np.int8), row[new], starts.astype(np.int32)
-    slots, begin = [], 0
-    for mask in masks:
-        end = begin + int(mask.sum())
-        slot = np.full(mask.shape, -1, dtype=np.int32)
-        slot[mask] = position[begin:end]
-        slots.append(slot)
-        begin = end
-    return csc_array(entries, shape=(unknown, unknown)), slots
-
-
-def _sorted_by(keys: np.ndarray, count: int) -> np.ndarray:
-    """Return the stable sorting order of keys (n,) below a count, in linear time."""
-    single = np.arange(len(keys) + 1, dtype=np.int32)
-    # with one column per key, the conversion from CSC to CSR is a counting sort
-    return csc_array((np.ones(len(keys), dtype=np.int8), keys, single), shape=(count, len(keys))).tocsr().indices

@@ -258,12 +258,12 @@ class System:
     def unknowns(self) -> Unknowns:
         """The order of the coordinates that are not prescribed."""
         connectors, joined = self.connectors, bool(self.model.joints)
-        coupled = [item.all for item in connectors.items]
+        border = 0 if self.static else None if self.inclined else layout.WIDEST_BORDER
+        coupled, multipliers = [item.all for item in connectors.items], connectors.multipliers.tolist()
         known = np.concatenate((self.prescribed_dofs, self.history.numbers))
         constrained = [*self.prescribed_dofs.tolist(), *(dof for dof, _ in self.inclined)] if self.static else []
-        order = self.blocks, self.model.size, known, joined, coupled, connectors.multipliers.tolist()
-        border = 0 if self.static else -1 if self.inclined else layout.WIDEST_BORDER
-        return layout.order_unknowns(*order, np.array(constrained, dtype=np.int64), border)
+        order = self.blocks, self.model.size, known, joined, layout.Couplings(coupled, multipliers, border)
+        return layout.order_unknowns(*order, np.array(constrained, dtype=np.int64))
 
     @cached_property
     def connectors(self) -> Connectors:

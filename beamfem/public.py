@@ -101,7 +101,7 @@ from beamfem.solve.paths.trace import trace_equilibrium as trace_equilibrium
 from beamfem.solve.stability.buckling import Buckling as Buckling
 from beamfem.solve.stability.buckling import solve_buckling as solve_buckling
 from beamfem.solve.statics.statics import solve_static as solve_static
-from beamfem.sweeps.sweep import Sweep as _Sweep
+from beamfem.sweeps.result import Sweep as _Sweep
 from beamfem.sweeps.sweep import sweep as sweep
 
 _check_classes(list(vars().values()))

@@ -12,14 +12,12 @@ import pytest
 import beamfem as bf
 from beamfem.convergence.result import Convergence
 from beamfem.section.protocol import CrossSection, HasParts
-from beamfem.sweeps.sweep import Sweep
+from beamfem.sweeps.result import Sweep
 
 RETURNED = {"Convergence": Convergence, "Sweep": Sweep}  # by public functions
 EXTENDED = {"CrossSection": CrossSection, "HasParts": HasParts}  # by user-defined sections, see docs/extending.md
 PROTOCOLS = (bf.Curve,)  # of public classes that do not derive from them
 WITHOUT_RETURNS = ("to_vtk", "to_csv", "save")
-# methods without sections, each with the reason
-SHORT = {"Sweep.column": "its file would exceed the length that test_rooms.py allows"}
 
 
 def public() -> dict[str, Any]:
@@ -79,7 +77,7 @@ def taken(thing: Any) -> list[str]:
 
 
 # methods, as the getters of properties take self only
-WITH_PARAMETERS = [name for name, thing in PUBLIC.items() if "." in name and name not in SHORT and taken(thing)]
+WITH_PARAMETERS = [name for name, thing in PUBLIC.items() if "." in name and taken(thing)]
 
 
 @pytest.mark.parametrize("name", DESCRIBED)
@@ -117,12 +115,6 @@ def test_methods_with_parameters_have_sections_for_all_of_them(name):
         return
     assert sorted(described(found.get("Parameters", []))) == sorted(taken(PUBLIC[name]))
     assert "Returns" in found or name.split(".")[1] in WITHOUT_RETURNS
-
-
-@pytest.mark.parametrize("name", SHORT)
-def test_methods_without_sections_still_lack_them(name):
-    assert name in PUBLIC
-    assert "Parameters" not in sections(PUBLIC[name].__doc__)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 import beamfem as bf
 from beamfem.convergence.result import Convergence
 from beamfem.errors import UnknownKeywordError
-from beamfem.sweeps.sweep import Sweep
+from beamfem.sweeps.result import Sweep
 
 BEAM = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Rectangle(0.1, 0.1), bf.Material(1e9, 0.3, 1e3))
 SOLUTION = bf.solve_static(bf.Model([BEAM], [bf.Clamp(BEAM.start)]))

@@ -15,7 +15,7 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 
 import beamfem as bf
 from beamfem.convergence.result import Convergence
-from beamfem.sweeps.sweep import Sweep
+from beamfem.sweeps.result import Sweep
 from beamfem.view.page import Part, write_page
 from studies import all as main_job
 from studies.paper import pendulum, pendulum_figures, pendulum_page

@@ -96,3 +96,14 @@ def test_traction_on_a_turned_section_is_the_force_per_area(tmp_path):
     middle = [4 + 2 * (n - 1) + 1, 4 + (n - 1), *range(6 + 2 * (n - 1), 6 + 3 * (n - 1))]
     mean = (cells[:, low] + 4.0 * cells[:, middle] + cells[:, high]) / 6.0
     np.testing.assert_allclose(mean.reshape(-1, 2), np.tile([400.0, 900.0], (4 * (n + 1), 1)) / SECTION.area, rtol=1e-6)
+
+
+@pytest.mark.parametrize(("plane_stress", "coefficient"), [(False, 1.5), (True, 0.78 / 0.91)])
+def test_stress_of_strains_of_a_continuum_is_hookes(plane_stress, coefficient):
+    """lambda tr(E) + 2 mu E: mu = 1, and lambda = E nu / ((1 + nu)(1 - 2 nu)) = 1.5 or E nu / (1 - nu^2)."""
+    forces, material = bf.ContinuumMechanics(plane_stress), bf.Material(2.6, 0.3, 1.0)
+    found = forces.stress(np.array([[0.1], [0.0]]), np.array([[0.2], [0.0]]), np.array([[0.03], [1.0]]), material)
+    trace = 0.3 * coefficient
+    expected = ([[trace + 0.2], [0.0]], [[trace + 0.4], [0.0]], [[0.06], [2.0]])
+    for part, own in zip(found, expected, strict=True):
+        np.testing.assert_allclose(part, own, rtol=1e-14)

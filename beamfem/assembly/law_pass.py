@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 
 from beamfem.assembly.callbacks import KeptErrors
+from beamfem.element.thickness_law import THICKNESS, ThicknessLaw
 from beamfem.kernels import record
 from beamfem.kernels.point import POINT_ROWS, RESULTANT, STIFFNESS, STRAIN
 from beamfem.kernels.record import ROW
 from beamfem.section.law import ConstitutiveLaw
 
 _MEASURES = 4  # stretch, shear, curvature and thickness stretch; a law has only the first three
-_THICKNESS = 3
 _PAIRS = np.array([(i, j) for i in range(_MEASURES) for j in range(i, _MEASURES)]).T
 _KNOWN = np.flatnonzero((_PAIRS < 3).all(axis=0))
 _ENTRIES = len(_PAIRS[0])
@@ -46,8 +46,9 @@ class LawPass:
         shape, flat = acting.shape, acting.reshape(-1, 3)
         resultants, slope = self._law.linearised(flat, history.reshape(len(flat), -1))
         result, slopes = np.zeros(strain.shape), np.zeros(stiffness.shape)
-        slopes[..., _THICKNESS, _THICKNESS] = stiffness[..., _THICKNESS, _THICKNESS]
-        result[..., _THICKNESS] = slopes[..., _THICKNESS, _THICKNESS] * strain[..., _THICKNESS]
+        thickness = ThicknessLaw(stiffness[..., THICKNESS, THICKNESS])
+        slopes[..., THICKNESS, THICKNESS] = thickness.stiffness
+        result[..., THICKNESS] = thickness.resultants(strain[..., THICKNESS])
         result[:, : self._points, :3] = resultants.reshape(shape)
         slopes[:, : self._points, :3, :3] = slope.reshape(*shape, 3)
         return result, slopes
@@ -77,8 +78,10 @@ class LawPass:
                 if tangent:
                     own[STIFFNESS : STIFFNESS + _ENTRIES] = 0.0
                 if self._thickness:
-                    stiffness = weights * _rows(c, _ENTRIES)[_ENTRIES - 1, :count]
-                    _fill_thickness(own, stiffness, natural[_THICKNESS], tangent != 0)
+                    thickness = ThicknessLaw(weights * _rows(c, _ENTRIES)[_ENTRIES - 1, :count])
+                    own[RESULTANT + THICKNESS] = thickness.resultants(own[STRAIN + THICKNESS] - natural[THICKNESS])
+                    if tangent:
+                        own[STIFFNESS + _ENTRIES - 1] = thickness.stiffness
                 if number < self._points:
                     past = _NOTHING
                     if self._law.remembers:
@@ -98,13 +101,6 @@ class LawPass:
         resultants, slope = self._law.linearised(strain, *past)
         own[RESULTANT : RESULTANT + 3] = weight * resultants.T
         own[STIFFNESS + _KNOWN] = weight * slope[:, _PAIRS[0, _KNOWN], _PAIRS[1, _KNOWN]].T
-
-
-def _fill_thickness(own: np.ndarray, stiffness: np.ndarray, natural: np.ndarray, tangent: bool) -> None:
-    """Fill the rows of the thickness stretch; natural (count,): where its stress is zero."""
-    own[RESULTANT + _THICKNESS] = stiffness * (own[STRAIN + _THICKNESS] - natural)
-    if tangent:
-        own[STIFFNESS + _ENTRIES - 1] = stiffness
 
 
 def _past(group: int, system: int, elements: slice, number: int, points: int) -> _Past:

@@ -10,7 +10,7 @@ from beamfem.cli.report import FAILED, print_json
 
 if TYPE_CHECKING:
     from beamfem.cli.modelfile.read import Job
-    from beamfem.sweeps.sweep import Sweep
+    from beamfem.sweeps.result import Sweep
 
 
 def run_sweep(

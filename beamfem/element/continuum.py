@@ -204,9 +204,7 @@ class ContinuumMechanics(_Body):
         >>> bf.ContinuumMechanics().stress(*strain, steel)[0].round(-6) / 1e6  # MPa
         array([283.])
         """
-        mu = material.shear_modulus
-        trace = material.lame_lambda(self.plane_stress) * (xx + yy)
-        return trace + 2 * mu * xx, trace + 2 * mu * yy, 2 * mu * xy
+        return tuple(np.tensordot(self._law(material), np.array([xx, yy, 2.0 * xy]), axes=1))
 
 
 @dataclass(frozen=True)
@@ -263,26 +261,6 @@ class SplitContinuum(_Body):
                 matrix[..., 0, 3] += extra
                 matrix[..., 3, 0] += extra
         return matrix
-
-    def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
-        """Return the stress of given strains away from the centreline, where there is no Poisson coupling.
-
-        The stress is E exx, E eyy and 2 mu exy.
-
-        Parameters
-        ----------
-        xx, yy, xy : array, [-]
-            Strain components of points of the body; xy is half the engineering shear strain.
-        material : Material
-            Material at the points.
-
-        Returns
-        -------
-        xx, yy, xy : array, [Pa]
-            Stress components.
-        """
-        modulus = material.youngs_modulus
-        return modulus * xx, modulus * yy, 2.0 * material.shear_modulus * xy
 
 
 def _over_section(section: CrossSection, material: Material | None, reference: Axis, law: Law) -> np.ndarray:

@@ -101,26 +101,6 @@ class ElasticLine:
         products[..., 3] = 0.5 * free[:, None, :, 3] * free[None, :, :, 3]
         return free[:, :, [0, 2, 1, 3]], products
 
-    def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
-        """Return the stress of given strains, without Poisson coupling.
-
-        The stress is E exx, E eyy and 2 G exy.
-
-        Parameters
-        ----------
-        xx, yy, xy : array, [-]
-            Strain components of points of the body; xy is half the engineering shear strain.
-        material : Material
-            Material at the points.
-
-        Returns
-        -------
-        xx, yy, xy : array, [Pa]
-            Stress components.
-        """
-        modulus = material.youngs_modulus
-        return modulus * xx, modulus * yy, 2.0 * material.shear_modulus * xy
-
     def points(self, degree: int, director_degree: int) -> int:
         """Return the number of Gauss points of full integration.
 

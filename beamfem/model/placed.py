@@ -1,4 +1,4 @@
-"""What loads ask of states of a model: the directions of the axis there, and displacements from the reference."""
+"""What loads and supports ask of states of a model: directions of the axis, and displacements from the reference."""
 
 from collections.abc import Iterable
 from typing import Literal, Protocol
@@ -42,7 +42,7 @@ class Placed(Protocol):
 
 
 class Displaced(Protocol):
-    """States of a model, with the displacements from the reference by which loads do work."""
+    """States of a model, with the displacements from the reference by which loads do work and springs store it."""
 
     def __len__(self) -> int:
         """Return the number of states."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point, require_beam, require_point_of
+from beamfem.model.placed import Displaced
 from beamfem.model.shapes import Constraint, Springs, SpringsAlong, SupportShape
 from beamfem.validation import called, finite, function_of_one, positive, require_known, shown, squared, vector
 
@@ -27,6 +28,21 @@ class Support(ABC):
     @abstractmethod
     def shapes(self) -> tuple[SupportShape, ...]:
         """Return the shapes to draw."""
+
+    def energy(self, displaced: Displaced) -> np.ndarray:
+        """Return the energy of springs along a beam; that of springs at points is summed over all nodal coordinates.
+
+        Parameters
+        ----------
+        displaced : Displaced
+            States of the model, with the displacements of the beams.
+
+        Returns
+        -------
+        array, [J], (steps,)
+            Energy, zero in the reference.
+        """
+        return np.zeros(len(displaced))
 
     @abstractmethod
     def require_valid(self) -> None:
@@ -137,6 +153,11 @@ class LineSupport(Support):
     def shapes(self) -> tuple[SupportShape, ...]:
         """Return the shapes to draw."""
         return (SpringsAlong(self.beam, self.stiffness),)
+
+    def energy(self, displaced: Displaced) -> np.ndarray:
+        """Return the energy of the springs along the beam, see `Support.energy`."""
+        moved, weight, _ = displaced.along(self.beam)
+        return np.asarray(0.5 * np.einsum("sqc,c,q->s", moved**2, np.array(self.stiffness), weight))
 
     def require_valid(self) -> None:
         """Raise InputError for invalid members of a user-defined support."""

@@ -1,4 +1,4 @@
-"""Displacements of a solution from the reference, by which loads do work."""
+"""Displacements of a solution from the reference, by which loads do work and springs store it."""
 
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
@@ -20,7 +20,7 @@ _Found = TypeVar("_Found")
 
 
 class Displacements:
-    """The rows of a solution, with the members that the work of loads needs.
+    """The rows of a solution, with the members that the work of loads and the energy of supports need.
 
     first: integral of the position over the mass of each beam (steps, 2) [kg m]. What was asked along a beam is kept
     until another one is asked for, since that of all beams may be larger than the solution.

@@ -66,7 +66,7 @@ def potential(solution: "Solution", first_moments: Sequence[np.ndarray]) -> np.n
     first_moments: integral of the position over the mass of each beam (steps, 2) [kg m].
     """
     displaced = Displacements(solution, first_moments)
-    return _of_loads(solution, displaced) + _of_springs(solution, displaced) + potential_of_connectors(solution)
+    return _of_loads(solution, displaced) + _of_supports(solution, displaced) + potential_of_connectors(solution)
 
 
 def dissipated(solution: "Solution", by_sections: np.ndarray) -> np.ndarray:
@@ -101,10 +101,9 @@ def _factors(solution: "Solution", load: Load) -> np.ndarray:
     return np.array([factor(load, at, system.static) for at in times])
 
 
-def _of_springs(solution: "Solution", displaced: Displacements) -> np.ndarray:
+def _of_supports(solution: "Solution", displaced: Displacements) -> np.ndarray:
     springs = loading(solution)[0].springs
     result = 0.5 * (solution.p[:, springs.dof] - springs.rest) ** 2 @ springs.stiffness
-    for support in solution.model.line_supports:
-        moved, weight, _ = displaced.along(support.beam)
-        result += 0.5 * np.einsum("sqc,c,q->s", moved**2, np.array(support.stiffness), weight)
+    for support in solution.model.supports:
+        result += support.energy(displaced)
     return np.asarray(result)

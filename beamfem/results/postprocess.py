@@ -10,6 +10,7 @@ from beamfem.element import body, coordinates
 from beamfem.element.axis import Axis, cross, dot
 from beamfem.element.law_points import law_points
 from beamfem.element.structural import section_frame
+from beamfem.element.thickness_law import THICKNESS, ThicknessLaw
 from beamfem.model.distributions import distributions
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import (
@@ -267,7 +268,8 @@ def strain_energies(mesh: BeamMesh, p: np.ndarray, imposed: np.ndarray | float =
     strains = mesh.beam.element.forces.strains(now) - reference - imposed
     if mesh.beam.law is not None:
         result = _energies_of_law(mesh, mesh.beam.law, p, strains, weight)
-        result[:, 0] += 0.5 * strains[..., 3] ** 2 @ (stiffness[:, 3, 3] * weight)
+        thickness = ThicknessLaw(stiffness[:, THICKNESS, THICKNESS] * weight)
+        result[:, 0] += thickness.energy(strains[..., THICKNESS])
         return result
     stored = 0.5 * np.einsum("sqi,qij,sqj->sq", strains, stiffness, strains) @ weight
     return np.stack([stored, np.zeros(len(p))], axis=-1)

@@ -10,7 +10,7 @@ from beamfem.validation import require_known, shown
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 
 if TYPE_CHECKING:
-    from beamfem.sweeps.sweep import Sweep
+    from beamfem.sweeps.result import Sweep
 
 _MARKERS = "osD^vP*X<>"
 _NAMED = 12  # curves in a legend

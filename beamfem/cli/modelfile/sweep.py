@@ -9,7 +9,8 @@ from beamfem.cli.modelfile.outputs import Output
 from beamfem.cli.modelfile.read import Job, job_of
 from beamfem.cli.modelfile.table import Table
 from beamfem.cli.modelfile.varied import Varied, with_values
-from beamfem.sweeps.sweep import Sweep, sweep
+from beamfem.sweeps.result import Sweep
+from beamfem.sweeps.sweep import sweep
 
 _NUMBERED = {
     "load_factors": "load factor",

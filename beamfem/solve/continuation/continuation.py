@@ -13,9 +13,10 @@ from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.linalg.tangent import Factorised
 from beamfem.once import cached_property
-from beamfem.solve.newton.convergence import Balance, Correction, balance_of
+from beamfem.solve.newton.convergence import Balance, balance_of
 from beamfem.solve.newton.equilibrium import find_equilibrium
 from beamfem.solve.newton.iteration import Newton, Termination
+from beamfem.solve.newton.loop import SingleCorrections
 from beamfem.solve.start.functions_of_time import FunctionOfTime, functions_of_time
 
 _SLOPE_WIDTH = 1e-4  # of the load scale: differences of loads keep digits, and prescribed motions are smooth over it
@@ -214,7 +215,7 @@ class Continuation:
         return balance, along, factors
 
 
-class _InPlane:
+class _InPlane(SingleCorrections):
     """The equilibrium in the plane through `start` (n + 1,) normal to `normal` (n + 1,), with unknown load factor.
 
     stresses: for the first geometric tangent; farthest: length of the correction beyond which the iteration is given
@@ -232,13 +233,13 @@ class _InPlane:
         farthest: float,
         counted: bool,
     ) -> None:
+        super().__init__()
         self.line, self.system, self.start = line, line.system, start
         self.stresses, self.normal, self.farthest, self.counted = stresses, normal, farthest, counted
         self.state = line.hold(start)
         self.counts = np.iinfo(int).max, 0
-        self.number, self.size, self.first, self.second = 0, np.inf, np.nan, 0
 
-    def correct(self) -> Correction:
+    def take(self) -> tuple[float, int]:
         """Take the next correction. Raises LinAlgError if the tangent is singular or the path lies in the plane."""
         line, y = self.line, self.state
         balance, along, factors = line.solve(y, self.stresses)
@@ -250,26 +251,16 @@ class _InPlane:
         change = -(line.dot(self.normal, y - self.start) + line.dot(self.normal, balance)) / reach
         self.state = line.hold(y + balance + change * along)
         self.stresses = line.stresses(y, self.state - y)
-        before, self.size = self.size, float(np.max(np.abs(self.state - y) / line.scale))
-        self.number += 1
-        if self.number == 1:
-            self.first = self.size
-        elif self.number == 2:
-            self.second = negative
         away = line.length(self.state - self.start) > self.farthest
-        return Correction(self.number, np.inf if away else self.size, before, negative)
+        return np.inf if away else float(np.max(np.abs(self.state - y) / line.scale)), negative
 
     def balance(self) -> Balance:
         """Return the balance of forces in the state reached."""
         return balance_of(self.system, self.state[:-1], float(self.state[-1]))
 
-    def after_first(self) -> tuple[float, int]:
-        """Return the size of the first correction and the negative pivots of the second tangent."""
-        return self.first, self.second
-
     def count_after_linear(self) -> int:
         """Return the negative pivots of the second tangent, since there is no load step."""
-        return self.second
+        return self.after_first()[1]
 
 
 def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> tuple[Continuation, PathPoint]:

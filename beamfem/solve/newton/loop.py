@@ -1,7 +1,9 @@
 """Newton's iteration, the same for every problem: linearise, correct, check."""
 
+from abc import ABC, abstractmethod
 from typing import NamedTuple, Protocol
 
+import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.solve.newton.convergence import Correction
@@ -18,6 +20,33 @@ class Problem(Protocol):
     def check(self, correction: Correction) -> Termination | None:
         """Return why the iteration ends after a correction, None if it goes on."""
         ...
+
+
+class SingleCorrections(ABC):
+    """Base class of problems that take one correction at a time: it counts them and remembers the first two."""
+
+    def __init__(self) -> None:
+        self.taken, self._size = 0, np.inf
+        self._first, self._second = np.nan, 0
+
+    @abstractmethod
+    def take(self) -> tuple[float, int]:
+        """Take the next correction; return its size and the negative pivots of its tangent. Raises LinAlgError."""
+
+    def correct(self) -> Correction:
+        """Take the next correction. Raises LinAlgError."""
+        before = self._size
+        self._size, negative = self.take()
+        self.taken += 1
+        if self.taken == 1:
+            self._first = self._size
+        elif self.taken == 2:
+            self._second = negative
+        return Correction(self.taken, self._size, before, negative)
+
+    def after_first(self) -> tuple[float, int]:
+        """Return the size of the first correction and the negative pivots of the second tangent."""
+        return self._first, self._second
 
 
 class Iterated(NamedTuple):

@@ -6,15 +6,16 @@ import numpy as np
 
 from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import System
-from beamfem.solve.newton.convergence import Balance, Correction, balance_with
+from beamfem.solve.newton.convergence import Balance, balance_with
 from beamfem.solve.newton.cut_chain import substructures_of
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.newton.linear_step import count_after
+from beamfem.solve.newton.loop import SingleCorrections
 from beamfem.solve.newton.prescribed_step import PrescribedStep
 from beamfem.solve.newton.substructures import correct, joined, negative_pivots
 
 
-class SubstructuredProblem:
+class SubstructuredProblem(SingleCorrections):
     """The equilibrium at a load factor, from the state `start` (n,); pool: provides a second thread."""
 
     counts_digits = True
@@ -28,22 +29,15 @@ class SubstructuredProblem:
         step: PrescribedStep,
         pool: Executor,
     ) -> None:
+        super().__init__()
         self.system, self.start, self.load_factor, self.newton = system, start, load_factor, newton
         self.step, self.pool, self.substructures = step, pool, substructures_of(system, start, load_factor)
-        self.number, self.size, self.first, self.second = 0, np.inf, np.nan, 0
 
-    def correct(self) -> Correction:
-        """Take the next correction. Raises LinAlgError if pivoting is needed."""
-        change = (self.step.step, self.step.force) if self.number == 0 else None
-        before = self.size
-        self.size, shared = correct(self.substructures, self.pool, self.newton.independent_stresses, change)
-        negative = negative_pivots(self.substructures, shared)
-        self.number += 1
-        if self.number == 1:
-            self.first = self.size
-        elif self.number == 2:
-            self.second = negative
-        return Correction(self.number, self.size, before, negative)
+    def take(self) -> tuple[float, int]:
+        """Take the next correction, see `SingleCorrections`. Raises LinAlgError if pivoting is needed."""
+        change = (self.step.step, self.step.force) if self.taken == 0 else None
+        size, shared = correct(self.substructures, self.pool, self.newton.independent_stresses, change)
+        return size, negative_pivots(self.substructures, shared)
 
     @property
     def state(self) -> np.ndarray:
@@ -57,10 +51,6 @@ class SubstructuredProblem:
         """Return the balance of forces in the state reached."""
         p, unbalanced, jacobian = joined(self.substructures, self.pool)
         return balance_with(self.system, p, self.load_factor, unbalanced, jacobian)
-
-    def after_first(self) -> tuple[float, int]:
-        """Return the size of the first correction and the negative pivots of the second tangent."""
-        return self.first, self.second
 
     def count_after_linear(self) -> int:
         """Return the negative pivots at the start with the stresses of a linear step, repeated here; -1 if singular."""

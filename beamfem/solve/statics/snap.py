@@ -12,7 +12,7 @@ from beamfem.assembly.system import System
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.solve.newton.convergence import Correction
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
-from beamfem.solve.newton.loop import iterate
+from beamfem.solve.newton.loop import SingleCorrections, iterate
 from beamfem.solve.newton.newton import solve_equilibrium
 
 _STEPS = 2000
@@ -89,27 +89,25 @@ def _step(system: System, p: np.ndarray, load_factor: float, time: float) -> tup
     return step.state if stepped.ended.good else None, stepped.iterations
 
 
-class _EulerStep:
+class _EulerStep(SingleCorrections):
     """An implicit Euler step from a state p (n,).
 
     It fails if it is so long that several states are possible at its end, some in other potential wells.
     """
 
     def __init__(self, system: System, p: np.ndarray, load_factor: float, time: float) -> None:
+        super().__init__()
         self.system, self.before, self.state, self.load_factor, self.time = system, p, p.copy(), load_factor, time
         self.mass = _mass(system, p, load_factor)
-        self.number, self.size = 0, np.inf
 
-    def correct(self) -> Correction:
-        """Take the next correction. Raises LinAlgError."""
+    def take(self) -> tuple[float, int]:
+        """Take the next correction, see `SingleCorrections`. Raises LinAlgError."""
         system, p, free, zeros = self.system, self.state, self.system.free_dofs, np.zeros(len(self.state))
         unbalanced, tangent = linearise(system, p, zeros, zeros, self.load_factor, (1.0, 0.0, 1.0 / self.time))
         factors = tangent.factorised(system.rotated)
         change = factors.solve(-unbalanced[free] - self.mass @ (p - self.before)[free] / self.time)
         p[free] += change
-        before, self.size = self.size, float(np.max(np.abs(change) / system.scale[free]))
-        self.number += 1
-        return Correction(self.number, self.size, before, factors.negative_pivots)
+        return float(np.max(np.abs(change) / system.scale[free])), factors.negative_pivots
 
     def check(self, correction: Correction) -> Termination | None:
         """See `loop.Problem`."""

@@ -95,3 +95,10 @@ def test_gradients_do_not_lock_in_thickness(gradients, rotations, elements, slen
 def test_orders_outside_the_table_are_refused(order):
     with pytest.raises(bf.InputError, match="order"):
         bf.CRBF(order)
+
+
+@pytest.mark.parametrize("forces", [bf.Structural(), bf.ElasticLine(), bf.SplitContinuum()], ids=lambda f: f.name)
+def test_stress_of_strains_without_poisson_coupling_is_hookes(forces):
+    """E times the strains, and G times the angle of shear, twice the strain component: E = 2.6, nu = 0.3, G = 1."""
+    found = forces.stress(np.array(0.1), np.array(0.2), np.array(0.03), bf.Material(2.6, 0.3, 1.0))
+    assert found == pytest.approx((0.26, 0.52, 0.06))

@@ -10,6 +10,7 @@ from beamfem.element.axis import Axis
 from beamfem.element.body import strain_of_measures
 from beamfem.element.coordinates import Coordinates, Gradients
 from beamfem.element.structural import section_frame
+from beamfem.element.uncoupled_stress import UncoupledStress
 from beamfem.kernels.block import GREEN_LAGRANGE
 from beamfem.material import Material
 from beamfem.physics.measures import evaluate, green_lagrange
@@ -208,7 +209,7 @@ class ContinuumMechanics(_Body):
 
 
 @dataclass(frozen=True)
-class SplitContinuum(_Body):
+class SplitContinuum(UncoupledStress, _Body):
     """Green-Lagrange strain, with Poisson coupling on the centreline only.
 
     Over the section the stress is E exx, E eyy, 2 k_s mu exy; on the centreline, the Poisson coupling of plane stress

@@ -7,6 +7,7 @@ import numpy as np
 
 from beamfem.element.axis import Axis
 from beamfem.element.coordinates import Coordinates, Gradients
+from beamfem.element.uncoupled_stress import UncoupledStress
 from beamfem.kernels.block import ELASTIC_LINE
 from beamfem.material import Material
 from beamfem.physics.measures import elastic_line, evaluate
@@ -14,7 +15,7 @@ from beamfem.section.protocol import CrossSection
 
 
 @dataclass(frozen=True)
-class ElasticLine:
+class ElasticLine(UncoupledStress):
     """Elastic line with stretch |r_x| - 1, curvature (r_x x r_xx) / |r_x|^2, r_x.r_y and (r_y.r_y - 1) / 2.
 
     The stiffnesses are E A, E I, G A and, with gradients, E A. The curvature is the derivative of the angle of r_x by

@@ -7,6 +7,7 @@ import numpy as np
 
 from beamfem.element.axis import Axis
 from beamfem.element.coordinates import Coordinates, Gradients
+from beamfem.element.uncoupled_stress import UncoupledStress
 from beamfem.kernels.block import STRUCTURAL
 from beamfem.material import Material
 from beamfem.physics.measures import evaluate, structural
@@ -14,7 +15,7 @@ from beamfem.section.protocol import CrossSection
 
 
 @dataclass(frozen=True)
-class Structural:
+class Structural(UncoupledStress):
     """Geometrically exact beam with the section along d.
 
     The stiffnesses are E A for stretch, k_s G A for shear, E I for curvature and, with gradients, E A for thickness.

@@ -231,3 +231,29 @@ def test_what_a_step_raises_names_the_integrator_and_the_time():
     with pytest.raises(KeyError, match="'x'") as caught:
         bf.simulate(model, 0.01, 1e-3, integrator=Broken())
     assert caught.value.__notes__[0] == "raised by step of Broken, in the step to 0.003 s"
+
+
+@pytest.mark.parametrize(
+    ("left", "move", "options", "said"),
+    [
+        (lambda left: left[:-1], lambda change: change, {}, "linearise must return left-hand sides"),
+        (lambda left: left[:, None], lambda change: change, {}, "linearise must return left-hand sides"),
+        (lambda left: left, lambda change: change[:0], {}, "move must return how much p changes"),
+        (lambda left: left, lambda change: change.T, {}, "move must return how much p changes"),
+        (lambda left: left, lambda change: change, {"iterations": 0}, "iterations"),
+        (lambda left: left, lambda change: change, {"tolerance": -1.0}, "tolerance"),
+    ],
+)
+def test_wrong_shapes_in_an_iteration_are_named(left, move, options, said):
+    class Wrong:
+        def step(self, motion, begin, end):
+            def linearise():
+                state = begin.p, begin.v, begin.a, end
+                return left(motion.residual(*state)), [[motion.tangent(*state, (1.0, 0.0, 1.0))]]
+
+            motion.iterate(linearise, move, **options)
+            return replace(begin, at=end)
+
+    _, model = pendulum(bf.CRBF(2))
+    with pytest.raises(bf.InputError, match=said):
+        bf.simulate(model, 0.01, 1e-3, integrator=Wrong())

@@ -2,9 +2,18 @@
 
 import signal
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from threading import current_thread, get_ident, main_thread
 from types import FrameType, TracebackType
 from typing import Self
+
+# those whose handlers may raise; others have none, or end the process
+_SIGNALS = {
+    getattr(signal, name)
+    for name in ("SIGINT", "SIGTERM", "SIGALRM", "SIGHUP", "SIGUSR1", "SIGUSR2", "SIGVTALRM", "SIGPROF")
+    if hasattr(signal, name)
+}
 
 
 class KeptErrors:
@@ -44,19 +53,21 @@ class Deferred:
 
     def __enter__(self) -> Self:
         if self._main:
-            self._hook, self._handler = sys.unraisablehook, signal.getsignal(signal.SIGINT)
-            if callable(self._handler):
-                signal.signal(signal.SIGINT, self._note)
-            sys.unraisablehook = self._keep
+            with _signals_waiting():
+                self._hook, self._handler = sys.unraisablehook, signal.getsignal(signal.SIGINT)
+                if callable(self._handler):
+                    signal.signal(signal.SIGINT, self._note)
+                sys.unraisablehook = self._keep
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         if self._main:
-            sys.unraisablehook = self._hook
-            if callable(self._handler):
-                signal.signal(signal.SIGINT, self._handler)
+            with _signals_waiting():
+                sys.unraisablehook = self._hook
+                if callable(self._handler):
+                    signal.signal(signal.SIGINT, self._handler)
 
     def deliver(self) -> None:
         """Raise what was to be raised inside."""
@@ -69,7 +80,27 @@ class Deferred:
         self.interrupted = True
 
     def _keep(self, unraisable: "sys.UnraisableHookArgs") -> None:
-        if "ctypes callback" in (unraisable.err_msg or ""):
+        if current_thread() is main_thread() and _is_of_package(unraisable):
             self.lost = unraisable.exc_value
         else:
             self._hook(unraisable)
+
+
+@contextmanager
+def _signals_waiting() -> Iterator[None]:
+    """Let signals wait, so that none is handled between two of the statements inside, where systems can."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _is_of_package(unraisable: "sys.UnraisableHookArgs") -> bool:
+    """Return whether an exception was ignored at the entry of a function of the package that compiled code calls."""
+    function = unraisable.object  # from Python 3.13 on it stands in the message only
+    text = f"{unraisable.err_msg} {function!r} {getattr(function, '__module__', '')}"
+    return "ctypes callback" in text and ("beamfem." in text or "CoupledStages." in text)

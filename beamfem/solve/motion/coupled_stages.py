@@ -23,7 +23,7 @@ class CoupledStages:
     """The routines of a motion with connectors or a sparse tangent.
 
     An error in them cannot propagate through compiled code: it is kept, the corrections become nan, which ends any
-    iteration, and `take_error` returns it. So do they after a Ctrl-C, and where a tangent cannot be formed.
+    iteration, and `take_error` returns it. So do they where a tangent cannot be formed.
     """
 
     def __init__(self, system: System, space: MotionWorkspace) -> None:
@@ -61,7 +61,7 @@ class CoupledStages:
 
         def guarded(*arguments: int) -> float | None:
             try:
-                if not (self._errors.waiting or self._deferred.interrupted or self._deferred.lost):
+                if not (self._errors.waiting or self._deferred.lost):
                     return function(*arguments)
             except LinAlgError:
                 self._factors = None

@@ -11,7 +11,7 @@ from scipy.sparse import block_array, block_diag, csc_array, csr_array, dia_arra
 from beamfem.assembly.equations import linearise, residual
 from beamfem.assembly.system import System
 from beamfem.brief import brief
-from beamfem.errors import ConvergenceError
+from beamfem.errors import ConvergenceError, InputError
 from beamfem.linalg.superlu import superlu
 from beamfem.linalg.tangent import UNROTATED, rotation_to_normals
 from beamfem.results.solution import Solution, State
@@ -19,6 +19,7 @@ from beamfem.results.status import Statistics
 from beamfem.solve.newton.convergence import Correction
 from beamfem.solve.newton.iteration import Termination
 from beamfem.solve.newton.loop import iterate
+from beamfem.validation import count, positive
 
 _NOISE = 1e-9  # of the model: smaller corrections that no longer decrease are round-off
 
@@ -200,9 +201,11 @@ class EquationsOfMotion:
         ------
         ConvergenceError
             If no solution is found.
+        InputError
+            For results of another shape, or an invalid tolerance or number of iterations.
         """
-        problem = _Step(self, linearise, move, tolerance)
-        found = iterate(problem, iterations)
+        problem = _Step(self, linearise, move, positive("tolerance", tolerance))
+        found = iterate(problem, count("iterations", iterations))
         if not found.ended.good:
             raise ConvergenceError(f"{found.ended.value}, and the last of them was {problem.size:.2e} of the model")
         return found.iterations
@@ -224,7 +227,15 @@ class _Step:
     def correct(self) -> Correction:
         """Take the next correction. Raises ConvergenceError."""
         left, tangents = self._linearise()
-        moved = self._move(self._motion.solve(tangents, -np.atleast_2d(left)))
+        rows, unknown = np.atleast_2d(left), len(self._motion.free)
+        if rows.shape != (len(tangents), unknown) or any(len(row) != len(tangents) for row in tangents):
+            raise InputError(
+                f"linearise must return left-hand sides ({len(tangents)}, {unknown}), a row for each row of tangents, "
+                f"which are as many a row; got {np.shape(left)} and rows of {[len(row) for row in tangents]}"
+            )
+        moved = np.asarray(self._move(self._motion.solve(tangents, -rows)), dtype=float)
+        if not moved.size or moved.shape[-1] != unknown:
+            raise InputError(f"move must return how much p changes, as an array (..., {unknown}), got {moved.shape}")
         before, self.size = self.size, float(np.max(np.abs(moved / self._motion.scale), initial=0.0))
         self._number += 1
         return Correction(self._number, self.size, before, 0)

@@ -94,7 +94,9 @@ def march(
     # see initial_acceleration; laws with history know rates by differences only
     relaxed = is_scheme(integrator) and (bool(system.history.laws) or (damped and not _keeps_rates(integrator)))
     # a user-defined integrator may raise any exception; the states reached before are kept
-    size = max(_FIRST_CHUNK // system.model.size, 1) if is_scheme(integrator) else 1
+    calls_python = bool(system.connectors.items) or any(block.law is not None for block in system.blocks)
+    first_chunk = _FIRST_CHUNK // 50 if calls_python else _FIRST_CHUNK
+    size = max(first_chunk // system.model.size, 1) if is_scheme(integrator) else 1
     rotations = record.rotations[0].copy()
     counting = record.pairs, rotations, record.rotations
     with progress("time [s]", float(parts[-1].times[-1])) as report:

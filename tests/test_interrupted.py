@@ -15,6 +15,7 @@ from section_laws import LinearLaw
 from typer.testing import CliRunner
 
 import beamfem as bf
+from beamfem.assembly.callbacks import Deferred
 from beamfem.cli.app import app
 from beamfem.solve.motion.compiled_steps import CompiledSteps
 
@@ -215,3 +216,24 @@ def test_what_a_signal_raises_is_not_lost(function, number):
     found = getattr(caught.value, "solution", known)  # there is none before the first step
     assert found.p == pytest.approx(known.p[: len(found)], abs=1e-15)
     assert np.array_equal(bf.simulate(model, 0.02, 1e-3).p, known.p)
+
+
+def test_a_handler_that_could_not_be_restored_passes_a_ctrl_c_on():
+    """Another signal's handler may raise before the context restores it; the next one does."""
+
+    def left_behind():
+        Deferred().__enter__()
+
+    before, hook = signal.signal(signal.SIGINT, signal.default_int_handler), sys.unraisablehook
+    try:
+        left_behind()
+        assert signal.getsignal(signal.SIGINT) is not signal.default_int_handler
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        with Deferred() as deferred:
+            signal.raise_signal(signal.SIGINT)
+        assert deferred.interrupted
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
+        sys.unraisablehook = hook

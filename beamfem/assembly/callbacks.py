@@ -2,18 +2,9 @@
 
 import signal
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from threading import current_thread, get_ident, main_thread
 from types import FrameType, TracebackType
-from typing import Self
-
-# those whose handlers may raise; others have none, or end the process
-_SIGNALS = {
-    getattr(signal, name)
-    for name in ("SIGINT", "SIGTERM", "SIGALRM", "SIGHUP", "SIGUSR1", "SIGUSR2", "SIGVTALRM", "SIGPROF")
-    if hasattr(signal, name)
-}
+from typing import Any, Self
 
 
 class KeptErrors:
@@ -47,27 +38,28 @@ class Deferred:
     def __init__(self) -> None:
         self.interrupted, self.lost = False, None
         self._main = current_thread() is main_thread()  # other threads handle no signals
+        self._owner: FrameType | None = None
 
     interrupted: bool
     lost: BaseException | None
 
     def __enter__(self) -> Self:
         if self._main:
-            with _signals_waiting():
-                self._hook, self._handler = sys.unraisablehook, signal.getsignal(signal.SIGINT)
-                if callable(self._handler):
-                    signal.signal(signal.SIGINT, self._note)
-                sys.unraisablehook = self._keep
+            self._owner, self._hook = sys._getframe(1), sys.unraisablehook
+            self._handler = _without_leftovers(signal.getsignal(signal.SIGINT))
+            if callable(self._handler):
+                signal.signal(signal.SIGINT, self._note)
+            sys.unraisablehook = self._keep
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         if self._main:
-            with _signals_waiting():
-                sys.unraisablehook = self._hook
-                if callable(self._handler):
-                    signal.signal(signal.SIGINT, self._handler)
+            sys.unraisablehook = self._hook
+            if callable(self._handler):
+                signal.signal(signal.SIGINT, self._handler)
+            self._owner = None
 
     def deliver(self) -> None:
         """Raise what was to be raised inside."""
@@ -76,27 +68,32 @@ class Deferred:
         if self.lost is not None:
             raise self.lost
 
+    @property
+    def inside(self) -> bool:
+        """Whether the context has not been left; another signal may have kept it from restoring the handlers."""
+        frame: FrameType | None = sys._getframe(1)
+        while frame is not None and frame is not self._owner:
+            frame = frame.f_back
+        return frame is not None
+
     def _note(self, number: int, frame: FrameType | None) -> None:
-        self.interrupted = True
+        if self.inside:
+            self.interrupted = True
+        elif callable(self._handler):
+            self._handler(number, frame)
 
     def _keep(self, unraisable: "sys.UnraisableHookArgs") -> None:
-        if current_thread() is main_thread() and _is_of_package(unraisable):
+        if current_thread() is main_thread() and self.inside and _is_of_package(unraisable):
             self.lost = unraisable.exc_value
         else:
             self._hook(unraisable)
 
 
-@contextmanager
-def _signals_waiting() -> Iterator[None]:
-    """Let signals wait, so that none is handled between two of the statements inside, where systems can."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+def _without_leftovers(handler: Any) -> Any:
+    """Return a handler, or that which a context replaced by it and could not restore."""
+    while isinstance(owner := getattr(handler, "__self__", None), Deferred) and not owner.inside:
+        handler = owner._handler
+    return handler
 
 
 def _is_of_package(unraisable: "sys.UnraisableHookArgs") -> bool:

@@ -76,7 +76,7 @@ def test_an_arm_that_yields_under_a_force_is_that_of_other_elements(element):
         lost.append(solution.energy().dissipated[-1])
     errors = [np.abs(tip - tips[0]).max() for tip in tips[1:]]
     assert errors[1] < 0.5 * errors[0] < 4e-3
-    assert lost[2] == pytest.approx(lost[0], rel=5e-3)
+    assert lost[2] == pytest.approx(lost[0], rel=5e-4)  # meshes of 32 and 64: 3e-4 at most
 
 
 @pytest.mark.parametrize("law", [YIELDING, Viscous(**SECTION, retardation=0.3)], ids=lambda law: type(law).__name__)
@@ -109,7 +109,7 @@ def test_a_motion_that_yields_is_that_of_other_elements(element):
         moved.append(motion.displacement(beam.end)[:, 1])
         lost.append(energy.dissipated[-1])
     assert np.abs(moved[1] - moved[0]).max() < 3e-3 * np.ptp(moved[0])
-    assert lost[1] == pytest.approx(lost[0], rel=5e-3)
+    assert lost[1] == pytest.approx(lost[0], rel=5e-4)  # meshes of 16 and 32: 3e-4 at most
 
 
 @new
@@ -146,7 +146,7 @@ def test_a_creeping_section_under_a_moment_turns_on(element):
     beam, model = arm(Creeping(**LIGHT, relaxation=0.5), element, load)
     motion = bf.simulate(model, 1.0, 0.1, start=bf.solve_static(model)[-1])
     assert motion.rotation(beam.end) == pytest.approx(0.1 * (1.0 + motion.at / 0.5), rel=1e-4)
-    assert motion.energy().dissipated == pytest.approx(2.0 * motion.at, rel=1e-3, abs=1e-3)
+    assert motion.energy().dissipated == pytest.approx(2.0 * motion.at, rel=1e-5, abs=1e-5)
 
 
 @new
@@ -180,7 +180,7 @@ def test_slender_arms_yield_as_others_do(element, slenderness):
     for own in (bf.CRBF(order=3), element):
         beam, model = arm(stiff, own, at_tip(0.0, 80.0), elements=32)
         tips.append(bf.solve_static(model, steps=4).displacement(beam.end)[-1])
-    assert tips[1] == pytest.approx(tips[0], rel=5e-3)
+    assert tips[1] == pytest.approx(tips[0], rel=5e-4)  # 32 elements with a linear director: 3e-4
 
 
 def test_elements_of_all_kinds_share_a_model():

@@ -58,7 +58,8 @@ _CONTENTS = {
         "LimitPointError FileError MissingPackageError"
     ),
     "Warnings": (
-        "UnstableWarning RoundOffWarning SeveralTurnsWarning UnknownStressWarning\n"
+        "UnstableWarning RoundOffWarning LockingWarning LargeStrainWarning EnergyWarning TimeStepWarning\n"
+        "UnitsWarning SeveralTurnsWarning UnknownStressWarning\n"
         "NotJoinedWarning NotReadWarning NotStoredWarning ChangedCodeWarning"
     ),
 }

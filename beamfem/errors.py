@@ -87,6 +87,26 @@ class RoundOffWarning(UserWarning):
     """Round-off leaves few digits of the forces of a solution, or of a critical load."""
 
 
+class LockingWarning(UserWarning):
+    """Elements lock: displacements are likely wrong by 1 % or more."""
+
+
+class UnitsWarning(UserWarning):
+    """Values that no material, section or load has in the units that the model names."""
+
+
+class LargeStrainWarning(UserWarning):
+    """Strains beyond the range of a linear law, or a utilisation of the strength above 1."""
+
+
+class EnergyWarning(UserWarning):
+    """The energy of a motion rises or falls by more than work and damping explain."""
+
+
+class TimeStepWarning(UserWarning):
+    """The step of a motion changes the frequencies that carry its energy by more than their damping allows."""
+
+
 class NotJoinedWarning(UserWarning):
     """Lines of a mesh end close to others without being joined to them."""
 

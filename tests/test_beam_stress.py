@@ -226,3 +226,21 @@ def test_stations_of_stresses_are_exactly_those_of_section_forces(rng):
         arc = solution.stresses(own).arc_length
         assert np.array_equal(arc, solution.section_forces(own).arc_length)
         assert (np.diff(arc) >= 0.0).all()
+
+
+def test_a_section_with_fewer_layers_has_the_strength_of_its_own_layers():
+    """Three layers up to the middle, two behind it: in pure bending each half is used as if it were the whole beam."""
+    weak = bf.Material(1e11, 0.3, 1000.0, strength=1e6)
+    strong = bf.Material(2e11, 0.3, 1000.0, strength=1e9)
+    three = bf.Layered([bf.Layer(weak, 0.01), bf.Layer(strong, 0.01), bf.Layer(weak, 0.01)], 0.02)
+    two = bf.Layered([bf.Layer(weak, 0.015), bf.Layer(strong, 0.015)], 0.02)
+
+    def used(section):
+        own = bf.Beam(bf.Line((0.0, 0.0), (1.0, 0.0)), 4, bf.CRBF(3), section)
+        model = bf.Model([own], [bf.Clamp(own.start)], [bf.PointMoment(own.end, 10.0)])
+        return bf.solve_static(model).stresses(own).utilisation[-1]
+
+    both = used(lambda s: three if s < 0.5 else two)
+    half = len(both) // 2
+    assert both[:half].max() == pytest.approx(used(three).max(), rel=1e-6)
+    assert both[half + 1 :].max() == pytest.approx(used(two).max(), rel=1e-6)

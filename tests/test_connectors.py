@@ -24,6 +24,48 @@ from tests.connectors import (
 names = pytest.mark.parametrize("element", KINDS, ids=lambda element: element.name)
 
 
+@dataclass(frozen=True)
+class Body:
+    """A mass [kg] with a moment of inertia [kg m^2]."""
+
+    point: bf.Point
+    mass: float
+    inertia: float
+    unknowns = 0
+    conservative = True
+
+    @property
+    def points(self):
+        return (self.point,)
+
+    def force(self, at):
+        return np.array([self.mass, self.mass, self.inertia]) * at.a[0]
+
+    def energy(self, at):
+        return 0.5 * (np.array([self.mass, self.mass, self.inertia]) * at.v[0] ** 2).sum(), 0.0
+
+
+@dataclass(frozen=True)
+class Follower:
+    """A force [N] that turns with the section."""
+
+    point: bf.Point
+    size: float
+    unknowns = 0
+    conservative = False
+
+    @property
+    def points(self):
+        return (self.point,)
+
+    def force(self, at):
+        turn = at.q[0, 2]
+        return np.array([self.size * np.sin(turn), -self.size * np.cos(turn), 0.0 * turn])
+
+    def energy(self, at):
+        return 0.0, 0.0
+
+
 @names
 def test_an_anchor_is_a_spring_support(element):
     own = beam(element)
@@ -216,3 +258,24 @@ def test_a_bar_that_lies_on_connectors_has_digits():
     assert found[1].statistics.digits > 6.0
     expected, other = (solution.displacement(bar.at(0.5))[-1] for solution in found)
     assert other == pytest.approx(expected, rel=1e-7, abs=1e-12)
+
+
+@pytest.mark.parametrize("turning", [0.0, 3.0])
+def test_the_angular_momentum_of_a_mass_is_its_moment_of_momentum_about_the_origin(turning):
+    """m (x vy - y vx) + J theta' for a body at (1, 2), beside what the bar has."""
+    bar = bf.Beam(bf.Line((0, 2), (1, 2)), 2, bf.CRBF(2), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    velocity = bf.RigidVelocity((4.0, 5.0), turning, (0.0, 0.0))
+    vx, vy = 4.0 - turning * 2.0, 5.0 + turning * 1.0
+    body = Body(bar.end, 0.3, 0.02)
+    with_body, without = (
+        bf.simulate(bf.Model([bar], connectors=items), 1e-6, 1e-6, velocity=velocity).angular_momentum()[0]
+        for items in ([body], [])
+    )
+    assert with_body - without == pytest.approx(0.3 * (1.0 * vy - 2.0 * vx) + 0.02 * turning, rel=1e-9)
+
+
+def test_dissipation_is_unknown_beside_a_connector_that_is_not_conservative():
+    bar = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    stop = Follower(bar.end, 1.0)
+    solution = bf.solve_static(bf.Model([bar], [bf.Clamp(bar.start)], connectors=[stop]))
+    assert np.isnan(solution.energy().dissipated).all()

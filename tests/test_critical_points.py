@@ -183,3 +183,9 @@ def test_bifurcations_are_in_balance_though_no_equilibrium_is_solved_for_there()
         alone = bf.Solution(model, True, np.array([state.at]), state.p[None], rest, rest, statistics)
         found = balance(alone)
         assert found.holds, found
+
+
+@pytest.mark.parametrize(("symmetric", "expected"), [(True, -2), (False, 0)])
+def test_pivots_of_an_unsymmetric_tangent_are_counted_by_the_sign_of_its_determinant(symmetric, expected):
+    pivots = lambda x: SimpleNamespace(negative_pivots=3 if x == 0.0 else 1)  # noqa: E731
+    assert Segment.change(SimpleNamespace(at=pivots, symmetric=symmetric), 0.0, 1.0) == expected

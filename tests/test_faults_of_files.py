@@ -126,3 +126,19 @@ def test_a_link_to_a_file_stays_a_link(tmp_path, solution):
     solution.save(tmp_path / "link.h5")
     assert (tmp_path / "link.h5").is_symlink()
     assert len(bf.load(tmp_path / "there.h5")) == len(solution)
+
+
+@pytest.mark.parametrize(
+    ("name", "before", "after"),
+    [("model", b"7800.0", b"7900.0"), ("statistics", b'"iterations": 1', b'"iterations": 2')],
+)
+def test_another_model_or_other_statistics_than_were_written_are_refused(tmp_path, solution, name, before, after):
+    """A bit that flips in a chunk of HDF5 is seen by the checksum of beamfem alone."""
+    path = tmp_path / "good.h5"
+    solution.save(path)
+    with h5py.File(path, "r+") as file:
+        (text,) = file[name][:]
+        assert before in text
+        file[name][:] = [text.replace(before, after)]
+    with pytest.raises(bf.InputError, match=f"its {name} is damaged"):
+        bf.load(path)

@@ -309,3 +309,19 @@ def test_a_law_of_a_section_takes_imposed_strains_off_too():
     by_moment = bf.solve_static(clamped(own, bf.PointMoment(own.end, moment))).rotation(own.end)[-1]
     both = clamped(own, bf.PointMoment(own.end, moment), bf.Actuation(own, curvature=0.4))
     assert bf.solve_static(both).rotation(own.end)[-1] == pytest.approx(by_moment + 0.4, rel=1e-8)
+
+
+@pytest.mark.parametrize("axis", [None, 0.0, 0.0015])
+def test_the_thickness_of_a_bimetal_grows_by_the_mean_of_its_expansions(axis):
+    """Weighted with E: a director that stretches alike at all heights has sum E (d - alpha T) = 0."""
+    section = bimetal(axis)
+    own = straight(bf.ANCF(bf.Structural()), 2, 0.1, None, section)
+    low = -section.axis
+    mean = (2e11 * 1.2e-5 + 1e11 * 1.9e-5) / 3e11
+    lever = (2e11 * 1.2e-5 * (low + 0.0005) + 1e11 * 1.9e-5 * (low + 0.0015)) / 3e11
+    for heat, expected in (((100.0, 0.0), 100.0 * mean), ((0.0, 1e3), 1e3 * lever)):
+        state = bf.solve_static(clamped(own, bf.Temperature(own, *heat)))
+        mesh = state.model.meshes[0]
+        tip = mesh.coordinates_of(mesh.nodes - 1)
+        director = np.hypot(*(state.p[-1, tip[name]] for name in ("r_y^x", "r_y^y")))
+        assert director - 1.0 == pytest.approx(expected, rel=1e-6, abs=1e-12)

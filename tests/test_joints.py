@@ -320,3 +320,19 @@ def test_a_bent_corner_of_gradients_keeps_its_state_when_its_support_goes():
     turning = bf.simulate(free, 1e-4, 1e-4, velocity=bf.RigidVelocity((0.0, 0.0), 3.0))
     assert turning.velocity(corner.end)[0] == pytest.approx((-3.0, 3.0), abs=1e-12)
     assert turning.velocity(corner.at(0.75))[0] == pytest.approx((-1.5, 3.0), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "element", [bf.CRBF(2), bf.ANCF(bf.Structural()), bf.ShearRigid()], ids=["CRBF", "ANCF", "ShearRigid"]
+)
+def test_a_gap_that_a_joint_closes_strains_nothing(element):
+    """Ends that are 5e-10 m apart are one point of the reference: EA 2e9 times the gap would be some newtons."""
+    common = (2, element, bf.Rectangle(0.1, 0.1), bf.Material(2e11, 0.3, 7800.0))
+    left = bf.Beam(bf.Line((0, 0), (1, 0)), *common)
+    right = bf.Beam(bf.Line((1 + 5e-10, 3e-10), (2, 0)), *common)
+    model = bf.Model(
+        [left, right], [bf.Clamp(left.start), bf.Clamp(right.end)], joints=[bf.Rigid(left.end, right.start)]
+    )
+    forces = bf.solve_static(model).section_forces(right)
+    assert np.abs(forces.normal).max() < 1e-3
+    assert np.abs(forces.moment).max() < 1e-3

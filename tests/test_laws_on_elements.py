@@ -10,7 +10,8 @@ from section_laws import LinearLaw, RambergOsgood, Softening
 
 import beamfem as bf
 from beamfem.assembly.equations import STATICS, linearise, residual
-from beamfem.assembly.system import system_of
+from beamfem.assembly.strain_rates import strain_rates
+from beamfem.assembly.system import System, system_of
 from beamfem.results.postprocess import strain_energy
 from beamfem.section.stiffness import StiffnessSection
 
@@ -261,3 +262,17 @@ def test_a_law_on_elements_without_shear_at_the_nodes_says_nothing_of_locking():
     """There is no locking-free rule to compare with that takes a law."""
     _, model = arm(LinearLaw(**SECTION), TAKEN[-2], at_tip(0.0, 200.0))
     assert not bf.solve_static(model).warnings
+
+
+@pytest.mark.parametrize("coordinates", [bf.Gradients(), bf.Rotation()], ids=["gradients", "rotation"])
+def test_strains_by_which_tangents_are_mixed_are_those_of_the_linear_section(coordinates, rng):
+    """A linear law resists thickness stretches, too; they were not seen to be left out."""
+    element = bf.Element(bf.Cubic(), coordinates, bf.Structural(), "full")
+    found = []
+    for kind in (StiffnessSection, LinearLaw):
+        system = System(bf.Model([bf.Beam(LINE, 2, element, kind(**COUPLED))]), static=True)
+        p = system.reference + 0.05 * np.random.default_rng(7).standard_normal(system.model.size)
+        table = strain_rates(system.blocks[0], system.unknowns.free)
+        found.append(table.at(p, system.imposing(0.0)).strain)
+    assert np.abs(found[0]).max() > 1e-3
+    assert found[1] == pytest.approx(found[0], rel=1e-9, abs=1e-12)

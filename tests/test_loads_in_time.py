@@ -186,3 +186,16 @@ def test_a_motion_that_fails_behind_a_kink_ends_with_its_last_whole_step(save_ev
     found = caught.value.solution
     assert found.time[-1] == pytest.approx(0.05)
     assert found.displacement(one.start)[:, 0] == pytest.approx(3.0 * found.time, abs=1e-9)
+
+
+@pytest.mark.parametrize("from_there", [True, False])
+def test_the_acceleration_in_the_row_of_a_jump_is_that_of_the_load_at_its_time(from_there):
+    """A free bar of 0.78 kg under 1 N that begins at 5 ms, or right after it."""
+    begins = (lambda t: float(t >= 0.005)) if from_there else (lambda t: float(t > 0.005))
+    one = bf.Beam(bf.Line((0, 0), (1, 0)), 1, bf.CRBF(1), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    weight = bf.Gravity((0.0, -10.0), amplitude=bf.Piecewise(begins, (0.005,)))
+    motion = bf.simulate(bf.Model([one], loads=[weight]), 0.01, 1e-3)
+    number = motion.model.meshes[0].coordinates_of(0)["r^y"]
+    expected = np.where(motion.time > 0.0055, -10.0, 0.0)
+    expected[5] = -10.0 if from_there else 0.0
+    assert motion.a[:, number] == pytest.approx(expected, abs=1e-9)

@@ -302,3 +302,17 @@ def test_the_papers_elements_keep_their_integration():
         assert element.integration == "full"
     assert bf.ShearRigid(True, bf.ContinuumMechanics()).integration == "reduced"
     assert bf.ANCF(bf.Structural()).integration == bf.ShearRigid().integration == "lobatto"
+
+
+def test_locking_does_not_matter_in_a_motion_too_short_for_stiffness():
+    """In 1e-7 s inertia alone decides: locked or not, the tip moves by the same, and nothing is reported."""
+    tips = []
+    for integration in ("full", "lobatto"):
+        own = bf.Beam(
+            bf.Line((0, 0), (1, 0)), 4, bf.ANCFCRBF(bf.Structural(), integration), bf.Rectangle(0.01, 0.01), STEEL
+        )
+        model = bf.Model([own], [bf.Clamp(own.start)], [bf.PointForce(own.end, (0.0, 1.0))])
+        motion = bf.simulate(model, 1e-7, 1e-8)
+        tips.append(motion.displacement(own.end)[-1, 1])
+        assert motion.warnings == ()
+    assert tips[0] == pytest.approx(tips[1], rel=1e-3)

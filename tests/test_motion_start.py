@@ -309,3 +309,27 @@ def test_a_start_whose_nodes_are_elsewhere_is_refused_in_any_unit_of_length(unit
     bf.simulate(model(0.5), 1e-6, 1e-6, start=state)
     with pytest.raises(bf.InputError, match="nodes elsewhere"):
         bf.simulate(model(0.5 + 1e-6), 1e-6, 1e-6, start=state)
+
+
+@pytest.mark.parametrize("element", [bf.ShearRigid(), bf.ANCFCRBF()], ids=["shear-rigid", "rotation"])
+def test_a_velocity_field_turns_the_sections_of_a_stretched_beam(element):
+    """A rigid turn of a bar that is stretched by a fifth or so: theta' = r_x x v' / |r_x|^2."""
+    rubber = bf.Material(1e6, 0.3, 1000.0)
+    bar = bf.Beam(bf.Line((0, 0), (1, 0)), 3, element, bf.Rectangle(0.01, 0.01), rubber)
+    held = [bf.Pin(bar.start), bf.Roller(bar.end)]
+    pulled = bf.solve_static(bf.Model([bar], held, [bf.PointForce(bar.end, (20.0, 0.0))]))
+    stretch = float(pulled.position(bar.end)[-1, 0])
+    assert stretch > 1.1
+    free = bf.Model([bar])
+    by_field, rigid = (
+        bf.simulate(free, 1e-6, 1e-6, start=pulled[-1], velocity=velocity)[0].v
+        for velocity in (lambda x: (0.0, 3.0 * stretch * x[0]), bf.RigidVelocity((0.0, 0.0), 3.0, (0.0, 0.0)))
+    )
+    mesh = free.meshes[0]
+    names = (
+        [name for name in mesh.coordinates_of(0) if name == "theta"]
+        if isinstance(element.coordinates, bf.ShearFree)
+        else []
+    )
+    columns = [mesh.coordinates_of(node)[name] for node in range(mesh.nodes) for name in ("r^x", "r^y", *names)]
+    assert by_field[columns] == pytest.approx(rigid[columns], abs=1e-9)

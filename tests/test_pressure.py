@@ -1,5 +1,8 @@
 """Pressure normal to the deformed axis: equilibrium, closed forms, shooting, its tangent and its potential."""
 
+from dataclasses import dataclass
+from typing import ClassVar
+
 import numpy as np
 import pytest
 from conftest import beam as small_beam
@@ -300,3 +303,39 @@ def test_a_slow_load_step_looks_half_way_under_the_pressure_there(begin, end, ga
     done.add(share, ends[0].state, 0, ends[0].ended)
     slow = NewtonResult(ends[1].state, 12, ends[1].ended, 0, first=0.0)
     assert skips_limit_points(system, done, 1.0, slow, newton) == gap
+
+
+TANGENTIAL = {
+    "varies": lambda b: bf.Pressure(b, lambda s: 500.0 * (1.0 + s)),
+    "along and across": lambda b: AlongAndAcross(b),
+    "along": lambda b: AlongAndAcross(b, normal=0.0),
+}
+
+
+@dataclass(frozen=True)
+class AlongAndAcross(bf.LineLoad):
+    """Forces along the deformed axis and normal to it, per deformed length."""
+
+    beam: bf.Beam
+    tangential: float = 300.0
+    normal: float = 500.0
+    axes: ClassVar[str] = "axis"
+
+    def forces(self, arc_length):
+        return np.tile([self.tangential, self.normal], (len(arc_length), 1))
+
+    @property
+    def uniform(self):
+        return True
+
+
+@pytest.mark.parametrize("load", TANGENTIAL.values(), ids=TANGENTIAL)
+def test_forces_on_the_deformed_axis_that_are_no_uniform_pressure_have_no_potential(load, rng):
+    """Between two clamps, where a uniform pressure has one."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 3, bf.CRBF(2), bf.Rectangle(0.1, 0.1), bf.Material(1e6, 0.3, 1.0))
+    system = System(bf.Model([beam], [bf.Clamp(beam.start), bf.Clamp(beam.end)], [load(beam)]), static=True)
+    p = system.reference + 0.05 * rng.standard_normal(system.model.size)
+    rest = np.zeros(len(p))
+    matrix = linearise(system, p, rest, rest, 1.0, STATICS)[1].sparse(system.rotated).toarray()
+    assert np.abs(matrix - matrix.T).max() > 1e-6 * np.abs(matrix).max()
+    assert not system.symmetric

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
+from beamfem.assembly.system import system_of
+from beamfem.results.bent import advice
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 SQUARE = bf.Rectangle(0.01, 0.01)
@@ -192,3 +194,13 @@ def test_the_first_load_step_is_the_share_that_is_asked(steps):
     one = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
     model = bf.Model([one], [bf.Clamp(one.start)], [bf.PointForce(one.end, (0.0, 1.0))])
     assert bf.solve_static(model, steps).load_factor[1] == pytest.approx(1.0 / steps)  # later ones may be longer
+
+
+@pytest.mark.parametrize(("turn", "advised"), [(1.45, False), (1.55, True)])
+def test_more_elements_are_advised_where_one_is_bent_by_more_than_85_degrees(turn, advised):
+    """A chord of an arc of 1.5 rad is 9 % shorter than the arc: the mesh, not the method, fails there."""
+    _, model = cantilever(bf.CRBF(2), 2, [])
+    p = system_of(model, True).reference.copy()
+    mesh = model.meshes[0]
+    p[mesh.coordinates_of(mesh.nodes - 1)["theta"]] = turn
+    assert ("use more elements" in advice(model, p)) == advised

@@ -5,7 +5,6 @@ import os
 import subprocess
 import sys
 import textwrap
-import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
 from importlib.util import find_spec
@@ -114,9 +113,7 @@ def test_store_is_used_and_failures_are_tried_again(tmp_path):
     second = bf.sweep(counted, **arguments)
     assert (second.values, second.computed, calls(folder)) == (first.values, 1, 5)
     (folder / "mended").touch()
-    begun = time.perf_counter()
     third = bf.sweep(counted, **arguments | {"x": [1, 2, 3, 4, 5]}, executor=TWO_THREADS)
-    assert time.perf_counter() - begun < 1.0
     assert third.values == (1, 4, 9, 16, 25)
     assert third.computed == 2
 

@@ -15,6 +15,8 @@ import pytest
 import beamfem as bf
 from beamfem.sweeps.slicing import needed
 from beamfem.sweeps.sources import Sources
+from beamfem.sweeps.store import Store
+from beamfem.sweeps.workers import Outcome
 
 SCRIPT = """
 import numpy as np
@@ -261,3 +263,13 @@ def test_the_part_of_a_script_that_a_function_needs():
 def test_only_files_of_the_user_are_looked_at(tmp_path):
     behind = Sources().behind(loaded, {"element": bf.CRBF(2), "function": Path})
     assert set(behind) == {__name__}
+
+
+def test_of_several_older_results_the_one_written_last_is_offered(tmp_path):
+    """Code A, then B, then A again: what code C is offered is that of A."""
+    with Store(tmp_path / "results.jsonl") as store:
+        for code, value in (("a", 1.0), ("b", 2.0), ("a", 3.0)):
+            store.add("key", {"module": code}, {}, Outcome(value, 0.1))
+    with Store(tmp_path / "results.jsonl") as store:
+        outcome, changed = store.find_other("key", {"module": "c"})
+    assert (outcome.value, changed) == (3.0, {"module"})

@@ -235,3 +235,29 @@ def test_bars_that_snap_together_have_a_limit_point_and_a_bifurcation_at_one_loa
     moved = -np.array([branch.displacement(one.end)[-1, 1] for one in bars])
     assert moved.min() < 0.4 - LIMIT_HEIGHT < moved.max()
     assert bar_force(moved) == pytest.approx(branch.load_factor[-1], rel=1e-9)
+
+
+def heated_bar(size=0.01):
+    """A steel bar of 1 m between two pins; the load factor is its change of temperature [K]."""
+    steel = bf.Material(2e11, 0.3, 7800.0, thermal_expansion=1.2e-5)
+    bar = bf.Beam(bf.Line((0, 0), (1, 0)), 8, bf.CRBF(3), bf.Rectangle(size, size), steel)
+    return bar, bf.Model([bar], [bf.Pin(bar.start), bf.Pin(bar.end)], [bf.Temperature(bar, 1.0)])
+
+
+@pytest.mark.parametrize("until", [8.0, 20.56, 200.0])
+def test_the_first_step_of_a_branch_ends_where_the_path_ends(until):
+    """Until 20.56 K the rows were 6.85, 48.5, ..., 1.2e8 K. A sine of amplitude a is longer by (pi a)^2 / 4."""
+    bar, model = heated_bar()
+    (first, *_) = bf.trace_equilibrium(model, 10.0).bifurcations
+    branch = bf.trace_equilibrium(model, until, start=first)
+    assert branch.load_factor[-1] == pytest.approx(until, rel=1e-12)
+    assert branch.load_factor.max() <= until
+    expected = 2.0 / np.pi * np.sqrt(1.2e-5 * until - np.pi**2 * 0.01**2 / 12.0)
+    assert abs(branch.displacement(bar.at(0.5))[-1, 1]) == pytest.approx(expected, rel=2e-3)
+
+
+def test_the_first_step_of_a_branch_is_not_beyond_a_condition_that_ends_the_path():
+    _, model = heated_bar()
+    (first, *_) = bf.trace_equilibrium(model, 10.0).bifurcations
+    branch = bf.trace_equilibrium(model, lambda state: state.load_factor > 20.0, start=first)
+    assert branch.load_factor[-2] <= 20.0 < branch.load_factor[-1] < 40.0

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
+from beamfem.solve.start.functions_of_time import FunctionOfTime
+from beamfem.solve.start.kinks import kinks_and_turning_points
 
 SQUARE, STEEL = bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0)
 EI = 2e11 * 1e-8 / 12
@@ -78,3 +80,62 @@ def test_load_at_zero_alone_is_the_state_without_load():
 def test_rows_that_there_cannot_be_are_refused(at, said):
     with pytest.raises(bf.InputError, match=said):
         bf.solve_static(roll(bf.CRBF(order=2), 0.1)[1], at=at)
+
+
+HISTORIES = {
+    "function": lambda f: 20.0 * (1.0 - abs(1.0 - 2.0 * f)),
+    "declared kink": bf.Piecewise(lambda f: 20.0 * (1.0 - abs(1.0 - 2.0 * f)), kinks=[0.5]),
+    "table": bf.Interpolated([(0.0, 0.0), (0.5, 20.0), (1.0, 0.0)]),
+}
+
+
+@pytest.mark.parametrize("history", HISTORIES.values(), ids=HISTORIES)
+@pytest.mark.parametrize("steps", [1, 7, 10])
+def test_the_peak_of_a_motion_out_and_back_is_a_row(history, steps):
+    """Rows were 0, 0 as it comes, and 12 mm at most with 10 steps."""
+    bar = bf.Beam(bf.Line((0, 0), (100, 0)), 6, bf.CRBF(2), bf.Rectangle(5, 5), bf.Material(2e5, 0.3, 1e-9))
+    model = bf.Model([bar], [bf.Clamp(bar.start), bf.Prescribed(bar.end, uy=history)])
+    solution = bf.solve_static(model, steps)
+    peak = int(np.argmin(np.abs(solution.load_factor - 0.5)))
+    assert solution.load_factor[peak] == 0.5
+    assert solution.displacement(bar.end)[peak, 1] == pytest.approx(20.0, rel=1e-12)
+    assert solution.displacement(bar.end)[-1, 1] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_an_amplitude_that_turns_between_the_ends_has_a_row_there():
+    beam, model = roll(bf.CRBF(3), 0.25)
+    load = bf.PointMoment(beam.end, model.loads[0].moment, amplitude=lambda f: np.sin(np.pi * f))
+    solution = bf.solve_static(bf.Model(model.beams, model.supports, [load]))
+    assert solution.rotation(beam.end).max() == pytest.approx(0.5 * np.pi, rel=1e-6)
+    assert solution.rotation(beam.end)[-1] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("steps", [2, 4, 9])
+def test_steps_are_rows(steps):
+    _, model = roll(bf.CRBF(3), 0.1)
+    assert bf.solve_static(model, steps).load_factor == pytest.approx(np.linspace(0.0, 1.0, steps + 1), abs=1e-15)
+
+
+def test_what_varies_between_rows_is_named():
+    beam, model = roll(bf.CRBF(3), 0.01)
+    load = bf.PointMoment(beam.end, 1.0, amplitude=lambda f: np.sin(997.3 * np.pi * f))
+    with pytest.warns(UserWarning, match="amplitude of PointMoment .* varies more between load factors"):
+        bf.solve_static(bf.Model(model.beams, model.supports, [load]))
+
+
+BENDS = {
+    "triangle": (lambda f: 1.0 - abs(1.0 - 2.0 * f), [0.5]),
+    "ramps": (lambda f: min(f / 0.3, 1.0, (1.0 - f) / 0.2), [0.3, 0.8]),
+    "third": (lambda f: abs(f - 1.0 / 3.0), [1.0 / 3.0]),
+    "table": (bf.Interpolated([(0.0, 0.0), (0.2, 1.0), (0.7, 1.5), (1.0, 0.0)]), [0.2, 0.7]),
+    "waves": (lambda f: np.sin(3.0 * np.pi * f), [1 / 6, 0.5, 5 / 6]),
+    "power": (lambda f: f**2, []),
+    "exponential": (lambda f: np.exp(9.0 * f), []),
+    "constant": (lambda f: 1.0, []),
+}
+
+
+@pytest.mark.parametrize(("function", "expected"), BENDS.values(), ids=BENDS)
+def test_kinks_and_turning_points_of_functions_are_found(function, expected):
+    found = kinks_and_turning_points([FunctionOfTime("a function", function, True)], 0.0, 1.0)
+    assert found == pytest.approx(expected, abs=1e-8)

@@ -239,7 +239,7 @@ def test_a_pushed_arch_snaps_aside_and_carries_no_more_than_that(steps):
     solution = bf.solve_static(model, steps)
     carried = solution.reaction(beam.at(0.5))[:, 1]
     assert carried[-1] == pytest.approx(pushing_force(), rel=1e-4)
-    assert -carried.min() < 1.7247  # the peak on the path is 1.7246 N
+    assert -carried.min() < 1.7248  # the peak on the path is 1.72479 N, at load factor 0.03985
     for row in range(1, len(solution), max(1, len(solution) // 4)):
         there = bf.trace_equilibrium(model, float(solution.load_factor[row]))
         assert carried[row] == pytest.approx(there.reaction(beam.at(0.5))[-1, 1], rel=1e-6)

@@ -24,13 +24,13 @@ from beamfem.solve.motion.march import Last, Record, initial_acceleration, march
 from beamfem.solve.motion.onto_supports import put_onto_supports, require_on_supports
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.time_steps import SIDE, stretches
-from beamfem.solve.motion.unresolved import name_unresolved
 from beamfem.solve.start.functions_of_time import functions_of_time
 from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.memory import require_memory
 from beamfem.solve.start.start_state import last_state, start_state
 from beamfem.solve.start.system_to_solve import system_to_solve
 from beamfem.solve.start.transfer import transferred_turns
+from beamfem.solve.start.unresolved import name_unresolved
 from beamfem.validation import count, positive, shown
 
 

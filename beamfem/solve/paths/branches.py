@@ -1,5 +1,7 @@
 """Switching from a path to the branch that crosses at a bifurcation."""
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.linalg import LinAlgError
 
@@ -7,14 +9,17 @@ from beamfem.results.path import Bifurcation
 from beamfem.solve.continuation.continuation import Continuation, PathPoint
 
 _FIRST_MODE = 0.02  # distance along the mode of the first search: lengths of the model, radians
-_TRIES = 12
+_TRIES = 20
 _ALIKE = 0.1  # [rad]: directions within this angle are the same, since branches bend
 _ALONG = 1e-3  # of a mode: a smaller component normal to the path means that the path is tangential to it
 
 
-def leave(line: Continuation, bifurcation: Bifurcation, direction: int) -> PathPoint | str:
+def leave(
+    line: Continuation, bifurcation: Bifurcation, direction: int, passed: Callable[[PathPoint], bool]
+) -> PathPoint | str:
     """Return a point of the branch close to a bifurcation, or why there is none.
 
+    passed: whether a point lies beyond the end of the path; then one closer to the bifurcation is looked for.
     It is the equilibrium in the plane normal to the mode at a small distance along it. The component of the mode along
     the path that was followed is removed, so that this path does not meet the plane. If several modes become soft at
     once, branches leave along some of their combinations only; an equilibrium found in the same direction at two
@@ -41,7 +46,10 @@ def leave(line: Continuation, bifurcation: Bifurcation, direction: int) -> PathP
                 others.append(corrected.y)
             try:
                 if equilibria:
-                    return line.linearised(equilibria[0], equilibria[0] - start)
+                    found = line.linearised(equilibria[0], equilibria[0] - start)
+                    if not passed(found):
+                        return found
+                    reason, others = "the path ends next to the bifurcation", []
             except LinAlgError:
                 reason = "the tangent is singular"
         distance *= 0.5

@@ -130,7 +130,7 @@ def trace_equilibrium(
         else:
             record.add(np.append(start.p, start.at), stable=False, turned=start.turned)
             if points > 1:
-                point, size = _branch(line, start, direction, record)
+                point, size = _branch(line, start, direction, record, until)
         landed = False
         while not (landed or _met(until, record.last)):
             if len(record.rows) >= points:
@@ -185,9 +185,18 @@ def _first(system: System, newton: Newton, record: PathRecord) -> tuple[Continua
         raise ConvergenceError("there is no path from load factor 0: the tangent is singular") from None
 
 
-def _branch(line: Continuation, start: Bifurcation, direction: int, record: PathRecord) -> tuple[PathPoint, float]:
-    """Return the first point of the branch that leaves a bifurcation and the length of the step to it."""
-    found = leave(line, start, direction)
+def _branch(
+    line: Continuation, start: Bifurcation, direction: int, record: PathRecord, until: Until
+) -> tuple[PathPoint, float]:
+    """Return the first point of the branch that leaves a bifurcation, before its end, and the length of the step."""
+
+    def passed(point: PathPoint) -> bool:
+        if isinstance(until, float):
+            return (point.load_factor - until) * (start.at - until) < 0.0
+        stability = point.negative_pivots == 0 if record.symmetric else None
+        return _met(until, record.state(point.y, stability))
+
+    found = leave(line, start, direction, passed)
     if isinstance(found, str):
         raise ConvergenceError(f"no branch was found at the bifurcation at load factor {start.at:.6g}: {found}")
     record.add(found.y, found.negative_pivots == 0)

@@ -14,16 +14,20 @@ from beamfem.model.model import Model
 from beamfem.results.solution import Solution
 from beamfem.results.turns import start_rotations
 from beamfem.solve.newton.iteration import Newton, require_newton
+from beamfem.solve.start.functions_of_time import functions_of_time
 from beamfem.solve.start.interrupted import kept
+from beamfem.solve.start.kinks import kinks_and_turning_points
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import require_independent
 from beamfem.solve.start.system_to_solve import system_to_solve
+from beamfem.solve.start.unresolved import warn_between_rows
 from beamfem.solve.statics.load_steps import SAME, Snap, reach
 from beamfem.solve.statics.preload import first_equilibrium
 from beamfem.solve.statics.static_record import StaticRecord
 from beamfem.validation import count, finite, items, one_of, shown
 
 _NEWTON = Newton()
+_SIDE = 1e-9  # of the load factor: distance from a row at which a function with declared kinks is evaluated
 
 
 @keywords_checked
@@ -46,13 +50,13 @@ def solve_static(
     model : Model
         Beams, supports and loads.
     steps : int, default 1
-        Initial number of load steps, which are enlarged and cut as needed.
+        Number of equal load steps, each of which ends in a row. They are cut as needed, which gives more rows.
     newton : Newton, optional
         Tolerances of the iteration.
     at : sequence of float, optional
         Ascending load factors from 0 to 1 for the rows of the result, reached exactly, except those skipped by a jump;
-        the last of them ends the solve. By default the rows are the accepted load steps: load factor 0 (only the loads
-        with scale=False), ..., 1.
+        the last of them ends the solve. By default the rows are the accepted load steps, from load factor 0 (only the
+        loads with scale=False) to 1, with rows where amplitudes and prescribed motions have kinks or turn.
     snap : {"error", "jump"}, default "error"
         What to do at a limit point: raise an error, or jump to the state in which a slow, damped structure comes to
         rest under the same load, and continue from there.
@@ -86,7 +90,8 @@ def solve_static(
     array([ 0.    , -0.0153, -0.0305])
     """
     if at is None:
-        return solve_through(model, (), steps, newton, snap=snap)
+        equal = np.arange(1, count("steps", steps)) / steps
+        return solve_through(model, equal.tolist(), steps, newton, snap=snap, resolved=True)
     load_factors = _ascending(at)
     return _rows_at(solve_through(model, load_factors, steps, newton, snap=snap, end=load_factors[-1]), load_factors)
 
@@ -121,8 +126,13 @@ def solve_through(
     *,
     snap: Snap = "error",
     end: float = 1.0,
+    resolved: bool = False,
 ) -> Solution:
-    """Return the static solution up to the load factor `end`, with rows at the load factors `stops`."""
+    """Return the static solution up to the load factor `end`, with rows at the load factors `stops`.
+
+    There are rows at kinks and turning points of functions of the load factor, too. resolved: whether to warn of
+    functions that vary more between rows than at the rows.
+    """
     steps = count("steps", steps)
     one_of("snap", snap, ("error", "jump"))
     system = system_to_solve(model, static=True)
@@ -140,9 +150,13 @@ def solve_through(
         )
     state = system.history.in_equilibrium(first.state, 0.0, system.imposing(0.0))
     record.add(0.0, state, first.negative_pivots, first.ended, first.digits)
+    functions = functions_of_time(system)
     with kept(record.solution):
         try:
-            reach(system, record, 1.0 / steps, newton, snap, stops, end)
+            bends = kinks_and_turning_points(functions, 0.0, end)
+            reach(system, record, 1.0 / steps, newton, snap, [*stops, *bends], end)
         except LinAlgError as error:
             raise ConvergenceError(f"beyond load factor {record.reached:.6g}: {error}", record.solution()) from error
+    if resolved and functions:
+        warn_between_rows(functions, np.unique([at for at, *_ in record.rows]), _SIDE)
     return record.solution(complete=True)

@@ -191,9 +191,7 @@ def _distributed(system: System, p: np.ndarray, unbalanced: np.ndarray, load_fac
     return max(float(np.max(np.abs(forces) * system.scale, initial=0.0)), system.extent * max(totals))
 
 
-def _digits(
-    system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: float, largest: float = 0.0
-) -> float:
+def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: float, largest: float = 0.0) -> float:
     """Return the number of reliable digits of the largest acting force, by the balance of each row and of the whole.
 
     All digits if nothing acts. largest: see `digits_of`.

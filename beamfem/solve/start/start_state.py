@@ -63,6 +63,6 @@ def _require_of_load_factor(system: System, about: State, p: np.ndarray) -> None
             )
     if own and (force := left_over(system, p, load_factor)) > 0.0:
         raise InputError(
-            f"about is no state of load factor {load_factor:g}, its at: it is not in equilibrium, a force of {force:.3g} "
-            "is unbalanced. Give a state of solve_static as it is, such as solution[-1]"
+            f"about is no state of load factor {load_factor:g}, its at: it is not in equilibrium, a force of "
+            f"{force:.3g} is unbalanced. Give a state of solve_static as it is, such as solution[-1]"
         )

@@ -19,7 +19,7 @@ from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import require_independent
 from beamfem.solve.start.system_to_solve import system_to_solve
 from beamfem.solve.statics.load_steps import SAME, Snap, reach
-from beamfem.solve.statics.preload import first_equilibrium
+from beamfem.solve.statics.preload import first_equilibrium, nothing_acts
 from beamfem.solve.statics.static_record import StaticRecord
 from beamfem.validation import count, finite, items, one_of, shown
 
@@ -127,7 +127,8 @@ def solve_through(
     one_of("snap", snap, ("error", "jump"))
     system = system_to_solve(model, static=True)
     tell_of_compilation()
-    require_support(system)
+    if nothing_acts(system):
+        require_support(system)
     require_independent(system, system.reference)
     newton = require_newton(newton, _NEWTON)
     record = StaticRecord(model, system.symmetric)

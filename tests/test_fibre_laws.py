@@ -1,0 +1,102 @@
+"""Sections that yield fibre by fibre: pure bending against the closed curve, unloading, restrained bars."""
+
+import math
+
+import numpy as np
+import pytest
+from fibre_laws import SIDE, STEEL, moment, square
+from scipy.optimize import brentq
+
+import beamfem as bf
+
+YIELD_MOMENT = 2.5e8 * SIDE**3 / 6
+YIELD_CURVATURE = 2 * 2.5e8 / (2.1e11 * SIDE)
+
+
+def bar(section, loads=lambda beam: [], supports=lambda beam: [], elements=2):
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), elements, bf.CRBF(order=3), section, STEEL)
+    return beam, bf.Model([beam], [bf.Clamp(beam.start), *supports(beam)], loads(beam))
+
+
+@pytest.mark.parametrize("steps", [1, 5])
+@pytest.mark.parametrize("fibres", [21, 31, 101])
+def test_perfect_plasticity_follows_the_moment_curvature_curve(fibres, steps):
+    section = square(fibres)
+    beam, model = bar(section, lambda beam: [bf.PointMoment(beam.end, 1.4 * YIELD_MOMENT)])
+    bent = bf.solve_static(model, steps=steps)
+    by_fibres = brentq(lambda curvature: moment(section, curvature) - 1.4 * YIELD_MOMENT, 0.0, 1.0)
+    turn = bent.rotation(beam.end)[-1]
+    assert turn == pytest.approx(by_fibres, rel=1e-6)
+    # M = 1.5 M_y (1 - (kappa_y / kappa)^2 / 3): fibres differ from it by the area of one
+    assert turn == pytest.approx(YIELD_CURVATURE / math.sqrt(3 - 2 * 1.4), rel=4 / fibres**1.5 + 1e-3)
+    assert bent.stable.all()
+
+
+@pytest.mark.slow
+def test_fibres_near_the_plastic_moment():
+    section = square(201)
+    beam, model = bar(section, lambda beam: [bf.PointMoment(beam.end, 1.49 * YIELD_MOMENT)], elements=8)
+    turn = bf.solve_static(model).rotation(beam.end)[-1]
+    assert turn == pytest.approx(YIELD_CURVATURE / math.sqrt(3 - 2 * 1.49), rel=2e-3)
+
+
+def test_no_equilibrium_beyond_the_plastic_moment():
+    _, model = bar(square(5), lambda beam: [bf.PointMoment(beam.end, 1.6 * YIELD_MOMENT)])
+    with pytest.raises(bf.ConvergenceError, match="no load step") as caught:
+        bf.solve_static(model)
+    largest = 2.5e8 * np.abs(square(5).places).sum() * SIDE**2 / 5
+    assert caught.value.solution.at[-1] == pytest.approx(largest / (1.6 * YIELD_MOMENT), rel=1e-3)
+
+
+@pytest.mark.parametrize("steps", [2, 4, 10])
+@pytest.mark.parametrize("amplitude", [lambda at: 1 - abs(2 * at - 1), lambda at: math.sin(math.pi * at)])
+def test_unloading_leaves_the_plastic_curvature(amplitude, steps):
+    section = square(21)
+    beam, model = bar(section, lambda beam: [bf.PointMoment(beam.end, 1.2 * YIELD_MOMENT, amplitude=amplitude)])
+    bent = bf.solve_static(model, steps=steps, at=[0.0, 0.5, 1.0])
+    by_fibres = brentq(lambda curvature: moment(section, curvature) - 1.2 * YIELD_MOMENT, 0.0, 1.0)
+    elastic = 1.2 * YIELD_MOMENT / section.rigidity(STEEL).bending
+    assert bent.rotation(beam.end) == pytest.approx([0.0, by_fibres, by_fibres - elastic], rel=1e-6)
+    assert bent.warnings == ()
+    assert bent.statistics.digits > 4.0
+
+
+@pytest.mark.parametrize("limit", [1e12, 2.5e8])
+def test_a_force_is_taken_back(limit):
+    section = square(21, limit=limit, hardening=2.1e9)
+    force = 0.6 * YIELD_MOMENT if limit > 1e11 else 1.2 * YIELD_MOMENT
+    triangle = lambda at: 1 - abs(2 * at - 1)  # noqa: E731
+    beam, model = bar(section, lambda beam: [bf.PointForce(beam.end, (0, force), amplitude=triangle)])
+    moved = bf.solve_static(model, steps=10, at=[0.5, 1.0]).displacement(beam.end)[:, 1]
+    assert moved[0] > 0.04
+    if limit > 1e11:
+        assert abs(moved[1]) < 1e-12
+    else:  # what is plastic at the clamp only bends the arm by little
+        assert 1e-4 < moved[1] < 0.02 * moved[0]
+
+
+def test_modes_of_a_structure_that_was_unloaded():
+    arch = lambda at: math.sin(math.pi * at)  # noqa: E731
+    rods = [
+        bar(square(21, hardening=2.1e9, limit=limit), lambda b: [bf.PointMoment(b.end, m, amplitude=arch)], elements=4)
+        for limit, m in ((2.5e8, 1.1 * YIELD_MOMENT), (1e12, 1e-3))
+    ]
+    frequencies = [bf.solve_modes(model, 2, bf.solve_static(model, steps=4)).frequencies for _, model in rods]
+    # a slight curvature raises no frequency of bending by more than its square
+    assert frequencies[0] == pytest.approx(frequencies[1], rel=1e-3)
+
+
+@pytest.mark.parametrize("steps", [1, 2, 5, 10])
+def test_a_restrained_bar_yields_under_displacement_control(steps):
+    """The axial force of a long bar between clamps: hardening E/100 of its stretch, which barely depends on steps."""
+    section = square(5, hardening=2.1e9)
+    lift = lambda b: [bf.Prescribed(b.end, ux=0.0, uy=lambda at: 0.1 * at, rotation=0.0)]  # noqa: E731
+    beam, model = bar(section, supports=lift, elements=4)
+    bent = bf.solve_static(model, steps=steps)
+    assert bent.at[-1] == 1.0
+    force = bent.section_forces(beam).normal[-1].mean()
+    tangent = 2.1e11 * 2.1e9 / (2.1e11 + 2.1e9)
+    stretch = math.hypot(1.0, 0.1) - 1.0  # of the chord, and the slopes of the bends add a little
+    assert force == pytest.approx((2.5e8 + tangent * (stretch - 2.5e8 / 2.1e11)) * SIDE**2, rel=0.01)
+    work = bent.energy().dissipated
+    assert np.all(np.diff(work) >= -1e-9 * work[-1])

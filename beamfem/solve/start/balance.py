@@ -9,6 +9,7 @@ from beamfem.assembly.system import System
 
 _TOLERANCE = 1e-6  # of the largest force: largest residual of an equilibrium
 _SAME = 1e-9  # of the movement of a state: a smaller correction does not change the results
+_LAST_DIGIT = 8.0 * np.finfo(float).eps  # of the size of the model
 _CANCELLED = 1e4 * np.finfo(float).eps  # round-off of strains due to positions, up to this for fields of high order
 
 
@@ -43,7 +44,8 @@ def _sure(system: System, p: np.ndarray, load_factor: float) -> bool:
     if remainder(system, p, load_factor).digits >= 1.0:
         return True
     # where a structure was unloaded, no force is left to compare with, but the movement that is missing may be nothing
-    return _missing(system, p, load_factor) <= _SAME * float(np.max(np.abs(p - system.reference) / system.scale))
+    moved = float(np.max(np.abs(p - system.reference) / system.scale, initial=0.0))
+    return _missing(system, p, load_factor) <= max(_SAME * moved, _LAST_DIGIT)
 
 
 def _missing(system: System, p: np.ndarray, load_factor: float) -> float:

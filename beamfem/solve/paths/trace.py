@@ -78,7 +78,7 @@ def trace_equilibrium(
     InputError
         Before the solve, for invalid arguments.
     FreeMotionError
-        Before the solve, if the model can move without resistance.
+        If the model can move without resistance, and loads with scale=False do not stiffen it.
     ConvergenceError
         If the path cannot be continued; its `solution` has the path so far. Any other exception during the solve, such
         as one of `until` or KeyboardInterrupt, carries `solution` too.

@@ -67,7 +67,7 @@ def solve_static(
     InputError
         Before the solve, for invalid arguments.
     FreeMotionError
-        Before the solve, if the model can move without resistance.
+        If the model can move without resistance, and loads with scale=False do not stiffen it.
     LimitPointError
         At a limit point; it has the load factor and the states found.
     ConvergenceError

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from fibre_beam import axial_force
 from fibre_laws import SIDE, STEEL, moment, square
+from history_laws import SECTION, Plastic
 from scipy.optimize import brentq
 
 import beamfem as bf
@@ -108,3 +109,22 @@ def test_a_restrained_bar_yields_under_displacement_control(steps):
 def test_a_restrained_bar_against_an_independent_beam():
     coarse, fine = (axial_force(0.1, 50, elements) for elements in (20, 40))
     assert restrained(16, 1) == pytest.approx(fine + (fine - coarse) / 3, rel=2e-4)
+
+
+@pytest.mark.parametrize("steps", [1, 7])
+def test_short_steps_do_not_pass_a_limit_point(steps):
+    """A shallow truss of two bars: it snaps at E A (h / l)^3 2 / (3 sqrt(3)), twice the vertical part of a bar."""
+    rise, bars = 0.005, Plastic(**{**SECTION, "bending": 1.0}, limit=1e30, hardening=25.0)
+    left, right = (
+        bf.Beam(bf.Line(*ends), 4, bf.CRBF(order=3), bars) for ends in (((0, 0), (0.5, rise)), ((0.5, rise), (1, 0)))
+    )
+    limit = 1e6 * (rise / 0.5) ** 3 * 2 / (3 * math.sqrt(3))
+    model = bf.Model(
+        [left, right],
+        [bf.Pin(left.start), bf.Pin(right.end)],
+        [bf.PointForce(left.end, (0, -2 * limit))],
+        joints=[bf.Hinge(left.end, right.start)],
+    )
+    with pytest.raises(bf.ConvergenceError, match="no load step") as caught:
+        bf.solve_static(model, steps=steps)
+    assert caught.value.solution.at[-1] == pytest.approx(0.5, rel=2e-4)

@@ -87,10 +87,33 @@ def require_no_rotations(item: Connector) -> None:
             )
 
 
+def damps_at_rest(item: Connector) -> bool:
+    """Return whether the force of small motions about rest depends on velocities; centrifugal forces vanish there."""
+    resting, moving = (_by_rates(item, motion) for motion in (resting_near(item.alone), somewhere_near(item.alone)))
+    return float(np.abs(resting).max(initial=0.0)) > ROUND_OFF * float(np.abs(moving).max(initial=0.0))
+
+
 def resists_rates(item: Connector) -> bool:
-    """Return whether the force depends on velocities."""
-    alone = item.alone
-    return bool(alone.tangent(somewhere_near(alone), TIMES[0], gravity_of(item), (0.0, 1.0, 0.0)).any())
+    """Return whether forces that depend on velocities do work beyond the change of the kinetic energy.
+
+    Those of an eccentric mass do not: at constant velocities, f(q, v) - f(q, 0) has the power dT/dt.
+    """
+    alone, gravity = item.alone, gravity_of(item)
+    if not _by_rates(item, somewhere_near(alone)).any():
+        return False
+    if damps_at_rest(item) or not item.item.conservative:
+        return True
+    (p, v, a), number = somewhere_near(alone), len(alone.dofs)
+    p[alone.own], a = 0.0, 0.0 * a
+    forces = [alone.force(alone.at((p, rate, a), TIMES[0], gravity)).real[:number] for rate in (v, 0.0 * v)]
+    power = float((forces[0] - forces[1]) @ v[alone.dofs])
+    change = WIDTH / _NEAR * v
+    change[alone.memory] = 0.0
+    after, before = (alone.energy(alone.at((p + side * change, v, a), TIMES[0], gravity))[0] for side in (1.0, -1.0))
+    gained = float(np.real(after - before)) / (2.0 * WIDTH / _NEAR)
+    round_off = ROUND_OFF * float((np.abs(forces[0]) + np.abs(forces[1])) @ np.abs(v[alone.dofs]))
+    round_off += ROUND_OFF * abs(after) / (WIDTH / _NEAR)
+    return abs(power - gained) > AGREE * max(abs(power), abs(gained)) + round_off
 
 
 def follows_time(item: Connector) -> tuple[bool, bool]:
@@ -155,6 +178,11 @@ def _require_same(
                     "differences. Write lengths as np.sqrt(x**2 + y**2), not abs, np.hypot or np.linalg.norm, and keep "
                     "complex numbers complex: no float()"
                 )
+
+
+def _by_rates(item: Connector, motion: Motion) -> np.ndarray:
+    """Return the derivative (d + k, d + k) of the force of `Connector.alone` by the velocities in a motion of it."""
+    return item.alone.tangent(motion, TIMES[0], gravity_of(item), (0.0, 1.0, 0.0))
 
 
 def _momentum(item: Connector, motion: Motion) -> np.ndarray:

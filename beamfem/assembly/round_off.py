@@ -52,11 +52,20 @@ def change(system: System, p: np.ndarray, step: np.ndarray, load_factor: float) 
     return differentiated(system, lambda q: residual(system, q, zeros, zeros, load_factor), p, step)
 
 
-def digits_of(system: System, p: np.ndarray, load_factor: float) -> float:
-    """Return the number of reliable digits of the forces in a state p (n,); all if nothing acts."""
+def digits_of(system: System, p: np.ndarray, load_factor: float, largest: float = 0.0) -> float:
+    """Return the number of reliable digits of the forces in a state p (n,); all if nothing acts.
+
+    largest [N m]: a force of other states of the same path, see `largest_force`; if it is larger, its digits count.
+    """
     zeros = np.zeros(len(p))
     unbalanced = residual(system, p, zeros, zeros, load_factor)
-    return _digits(system, p, unbalanced, load_factor)
+    return _digits(system, p, unbalanced, load_factor, largest)
+
+
+def largest_force(system: System, p: np.ndarray, load_factor: float) -> float:
+    """Return the largest force times the size of the model, or moment [N m], that acts in a state p (n,)."""
+    zeros = np.zeros(len(p))
+    return _acting(system, p, residual(system, p, zeros, zeros, load_factor), load_factor)
 
 
 def remainder(system: System, p: np.ndarray, load_factor: float) -> Remainder:
@@ -182,12 +191,12 @@ def _distributed(system: System, p: np.ndarray, unbalanced: np.ndarray, load_fac
     return max(float(np.max(np.abs(forces) * system.scale, initial=0.0)), system.extent * max(totals))
 
 
-def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: float) -> float:
+def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: float, largest: float = 0.0) -> float:
     """Return the number of reliable digits of the largest acting force, by the balance of each row and of the whole.
 
-    All digits if nothing acts.
+    All digits if nothing acts. largest: see `digits_of`.
     """
-    free, acting = system.free_dofs, _acting(system, p, unbalanced, load_factor)
+    free, acting = system.free_dofs, max(_acting(system, p, unbalanced, load_factor), largest)
     left = np.zeros(len(p))
     left[free] = system.along_free(unbalanced)
     worst = float(np.max(np.abs(left) * system.scale, initial=0.0))

@@ -34,7 +34,8 @@ class Statistics:
     warnings : tuple of str
         Sentences to heed before using the results.
     digits : float, [-]
-        Exact digits of the forces of the last equilibrium, from the balance of loads and reactions; nan if unknown.
+        Exact digits of the forces of the last equilibrium, from the balance of loads and reactions, or of the largest
+        force of the path where they have few; nan if unknown.
     """
 
     iterations: int

@@ -24,7 +24,7 @@ from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import refuse_memory, refuse_multipliers
 from beamfem.solve.start.system_to_solve import system_to_solve
-from beamfem.solve.statics.preload import first_equilibrium
+from beamfem.solve.statics.preload import first_equilibrium, nothing_acts
 from beamfem.validation import count, finite, function_of_one, optional, positive, shown
 
 _FIRST_STEP = 2e-3  # along the path, see Continuation
@@ -78,7 +78,7 @@ def trace_equilibrium(
     InputError
         Before the solve, for invalid arguments.
     FreeMotionError
-        Before the solve, if the model can move without resistance.
+        If the model can move without resistance, and loads with scale=False do not stiffen it.
     ConvergenceError
         If the path cannot be continued; its `solution` has the path so far. Any other exception during the solve, such
         as one of `until` or KeyboardInterrupt, carries `solution` too.
@@ -113,7 +113,8 @@ def trace_equilibrium(
     system = system_to_solve(model, static=True)
     refuse_multipliers(system, "trace_equilibrium")
     refuse_memory(system, "trace_equilibrium")
-    require_support(system)
+    if nothing_acts(system):
+        require_support(system)
     if not len(system.free_dofs):
         raise InputError("the supports of this model prescribe all of its coordinates, so there is no path to follow")
     _require_load(system)

@@ -1,12 +1,15 @@
 """Check whether a state is an equilibrium."""
 
 import numpy as np
+from scipy.linalg import LinAlgError
 
 from beamfem.assembly.equations import STATICS, linearise, residual
 from beamfem.assembly.round_off import digits_of, load_size, remainder, row_floors
 from beamfem.assembly.system import System
 
 _TOLERANCE = 1e-6  # of the largest force: largest residual of an equilibrium
+_SAME = 1e-9  # of the movement of a state: a smaller correction does not change the results
+_LAST_DIGIT = 8.0 * np.finfo(float).eps  # of the size of the model
 _CANCELLED = 1e4 * np.finfo(float).eps  # round-off of strains due to positions, up to this for fields of high order
 
 
@@ -38,4 +41,19 @@ def _sure(system: System, p: np.ndarray, load_factor: float) -> bool:
             return True
     if digits_of(system, p, load_factor) >= 1.0:
         return True
-    return remainder(system, p, load_factor).digits >= 1.0
+    if remainder(system, p, load_factor).digits >= 1.0:
+        return True
+    # where a structure was unloaded, no force is left to compare with, but the movement that is missing may be nothing
+    moved = float(np.max(np.abs(p - system.reference) / system.scale, initial=0.0))
+    return _missing(system, p, load_factor) <= max(_SAME * moved, _LAST_DIGIT)
+
+
+def _missing(system: System, p: np.ndarray, load_factor: float) -> float:
+    """Return the size of the correction, relative to the model, that balances a state (n,); inf if none does."""
+    zeros, free = np.zeros_like(p), system.free_dofs
+    unbalanced, tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)
+    try:
+        step = tangent.factorised(system.rotated).solve(-unbalanced[free])
+    except LinAlgError:
+        return np.inf
+    return float(np.max(np.abs(step) / system.scale[free], initial=0.0))

@@ -1,5 +1,7 @@
 """Reject models that are mechanisms if every beam is taken as rigid."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from beamfem.assembly.system import System
@@ -12,20 +14,35 @@ from beamfem.solve.start.body_motions import NEGLIGIBLE, Conditions, bodies_of, 
 _PROVEN = "supported"
 
 
+class FreeMotion(NamedTuple):
+    """Motions (m, 3 bodies) of bodies that satisfy all conditions in the reference, and the error that names them."""
+
+    conditions: Conditions
+    motions: np.ndarray
+    error: FreeMotionError
+
+
 def require_support(system: System) -> None:
     """Raise FreeMotionError with a beam, a point and the motion if a rigid-body motion or a mechanism is possible."""
+    found = free_motion(system)
+    if found is not None:
+        raise found.error
+
+
+def free_motion(system: System) -> FreeMotion | None:
+    """Return the rigid-body motions and mechanisms that are possible in the reference, None if there are none."""
     if _PROVEN in system.proven:
-        return
+        return None
     model = system.model
     body = bodies_of(model)
     if len(body) == 1 and any(_fixes(support) for support in model.point_supports):
         system.proven.add(_PROVEN)
-        return
+        return None
     rows = Conditions(system, body, system.reference)
     free = mechanisms(rows)
     if not len(free):
         system.proven.add(_PROVEN)
-        return
+        return None
     sizes = np.abs(free[0].reshape(-1, 3)).max(axis=1)[body]
     # the first of those that move equally, whatever the round-off
     number = int(np.flatnonzero(sizes > (1.0 - 1e-6) * sizes.max())[0])
@@ -41,11 +58,12 @@ def require_support(system: System) -> None:
     x, y = farthest.reference
     unjoined = next((pair for pair in unjoined_ends(model) if _parts(rows, free, pair)), None)
     remedy = f"moves. {in_words(model, unjoined)}: add a Rigid or a Hinge. Otherwise a" if unjoined else "moves. A"
-    raise FreeMotionError(
+    error = FreeMotionError(
         f"{beam_in_words(model.beams, number)} can move freely: {', '.join(described)}; its point ({x:g}, {y:g}) "
         f"{remedy} static solve needs supports that hold it (a Clamp, or a Pin and a Roller) or joints that stiffen it "
         "(Rigid instead of Hinge); without them, use simulate"
     )
+    return FreeMotion(rows, free, error)
 
 
 def _parts(rows: Conditions, motions: np.ndarray, pair: Pair) -> bool:

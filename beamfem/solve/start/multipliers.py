@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.assembly.connector_checks import resists_rates
+from beamfem.assembly.connector_checks import damps_at_rest
 from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
@@ -30,9 +30,9 @@ def refuse_memory(system: System, analysis: str) -> None:
 
 
 def refuse_dampers(system: System) -> None:
-    """Raise InputError if the force of a connector depends on velocities, which free vibrations neglect."""
+    """Raise InputError if the force of a connector depends on velocities about rest, which free vibrations neglect."""
     for item in system.connectors.items:
-        if resists_rates(item):
+        if damps_at_rest(item):
             raise InputError(
                 f"solve_modes finds undamped vibrations, but the force of {item.name} depends on velocities; leave it "
                 "out, or let simulate show how the motion decays"

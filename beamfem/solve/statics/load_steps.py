@@ -5,21 +5,22 @@ from typing import Literal
 
 import numpy as np
 
+from beamfem.assembly.round_off import ENOUGH, digits_of, largest_force
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, LimitPointError
 from beamfem.progress import progress
 from beamfem.results.bent import advice
-from beamfem.solve.newton.iteration import Newton, Termination
+from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
 from beamfem.solve.statics.load_path import OutOfReachError, PathFollower, PathLostError, TurnsBackError
-from beamfem.solve.statics.skipped import skips_limit_points
+from beamfem.solve.statics.skipped import is_short, skips_limit_points
 from beamfem.solve.statics.snap import rest_state, same_point
 from beamfem.solve.statics.static_record import StaticRecord
 
 Snap = Literal["error", "jump"]
 
 _CUTS = 4  # in succession, before the path is followed by arc length
-_CUTS_OF_PAST = 10  # the same for models with history, whose path is not followed
+_SHORTEST_OF_PAST = 2.0**-16  # of a requested step, for models with history, whose path is not followed
 _EASY_ITERATIONS = 8
 _LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
 SAME = 1e-12  # of the load factor: smaller differences count as zero
@@ -53,9 +54,8 @@ def reach(
             step = _within_a_turn(system, done, step)
             stop = next((stop for stop in ahead if stop > done.reached + SAME), end)
             target = stop if done.reached + step > stop - SAME else done.reached + step
-            result = solve_equilibrium(system, done.state, target, newton, done.negative_pivots)
-            done.iterations += result.iterations
-            if result.ended.good and not skips_limit_points(system, done, target, result, newton):
+            result, accepted = _attempt(system, done, target, newton)
+            if accepted:
                 state = system.history.in_equilibrium(result.state, target, system.imposing(target))
                 done.add(target, state, result.negative_pivots, result.ended, result.digits)
                 if target >= refused:
@@ -63,9 +63,9 @@ def reach(
                 if result.iterations <= _EASY_ITERATIONS:
                     step = min(2.0 * step, longest)
             elif result.ended is Termination.NO_DIGITS:
-                # round-off that hides a load hides a smaller one as well
+                # round-off that hides a load hides the smaller ones of shorter steps as well
                 raise ConvergenceError(f"at load factor {target:.6g} {result.ended.value}", done.solution())
-            elif cuts < (_CUTS_OF_PAST if remembers else _CUTS):
+            elif step > longest * _SHORTEST_OF_PAST if remembers else cuts < _CUTS:
                 cuts += 1
                 done.cuts += 1
                 refused = max(refused, target)
@@ -83,6 +83,31 @@ def reach(
                 refused = 1.0
                 step *= 2.0
             report(done.reached)
+
+
+def _attempt(system: System, done: StaticRecord, target: float, newton: Newton) -> tuple[NewtonResult, bool]:
+    """Return the result of a load step, and whether it is the next row of the path."""
+    result = solve_equilibrium(system, done.state, target, newton, done.negative_pivots)
+    done.iterations += result.iterations
+    if result.digits < ENOUGH:
+        result = _with_digits_of_path(system, done, target, result)
+    if result.ended is Termination.LOST and len(system.history.numbers) and is_short(system, done, target):
+        again = solve_equilibrium(system, done.state, target, newton)
+        done.iterations += again.iterations
+        same = again.ended.good and again.negative_pivots == done.negative_pivots
+        if same and is_short(system, done, target, again.state):
+            return again, True
+    return result, result.ended.good and not skips_limit_points(system, done, target, result, newton)
+
+
+def _with_digits_of_path(system: System, done: StaticRecord, target: float, result: NewtonResult) -> NewtonResult:
+    """Return a result whose digits are those of the largest force of the path, as where a structure is unloaded."""
+    largest = max(largest_force(system, state, at) for at, state, _ in done.rows)
+    digits = digits_of(system, result.state, target, largest)
+    if digits < max(result.digits, 1.0):
+        return result
+    good = result.ended is Termination.NO_DIGITS
+    return result._replace(digits=digits, ended=Termination.ROUND_OFF if good else result.ended)
 
 
 def _within_a_turn(system: System, done: StaticRecord, step: float) -> float:

@@ -15,7 +15,9 @@ from beamfem.model.support import DIRECTIONS, PointSupport
 from beamfem.model.supports import Prescribed, Roller, Spring
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
+from beamfem.solve.start.mechanisms import free_motion
 from beamfem.solve.statics.load_steps import reach
+from beamfem.solve.statics.prestressed import stiffened_start
 from beamfem.solve.statics.static_record import StaticRecord
 from beamfem.validation import function_value
 
@@ -23,8 +25,16 @@ _AT_REST = "nothing acts at load factor 0"
 
 
 def first_equilibrium(system: System, newton: Newton) -> NewtonResult:
-    """Return the equilibrium at load factor 0; if it is far from the start, all loads are increased along a path."""
-    if _at_rest(system):
+    """Return the equilibrium at load factor 0; if it is far from the start, all loads are increased along a path.
+
+    Raises FreeMotionError if the model is a mechanism, unless prestress or weight at load factor 0 make it stiff.
+    """
+    at_rest, free = nothing_acts(system), free_motion(system)
+    if free is not None:
+        if at_rest:
+            raise free.error
+        return solve_equilibrium(system, stiffened_start(system, free), 0.0, newton, keep=0)
+    if at_rest:
         return NewtonResult(system.reference, 0, Termination.CONVERGED)
     result = solve_equilibrium(system, system.reference, 0.0, newton, keep=0)
     if result.ended is Termination.NO_DIGITS and _still(system, result.state):
@@ -37,7 +47,7 @@ def _still(system: System, p: np.ndarray) -> bool:
     return bool(np.max(np.abs(p - system.reference) / system.scale, initial=0.0) <= np.finfo(float).eps)
 
 
-def _at_rest(system: System) -> bool:
+def nothing_acts(system: System) -> bool:
     """Return whether nothing acts at load factor 0."""
     if _AT_REST not in system.proven:
         # a load below the round-off of stiff rows may still bend the beam

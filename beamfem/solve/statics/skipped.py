@@ -9,7 +9,9 @@ from beamfem.solve.newton.iteration import Newton, NewtonResult
 from beamfem.solve.statics.path_direction import leaves_path
 from beamfem.solve.statics.static_record import StaticRecord
 
-_OVERSHOOT = 3.0  # ratio of the first correction to the whole step; it is larger if a limit point is near the start
+# Ratio of the first correction to the whole step, and of the speeds of two steps; it is larger near a limit point.
+_OVERSHOOT = 3.0
+_SHORT = 1e-2  # of the movement so far
 # Iterations. Most models under constant forces start at rest and reach the end in one long step.
 _SLOW, _SLOW_FROM_REST = 7, 12
 _CONSTANT = "loads neither follow the beam nor impose strains"
@@ -28,10 +30,9 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
         done.iterations += 1
         if result.linear != done.negative_pivots:
             return True
-    if done.reached > 0.0:
-        moved = float(np.max(np.abs(result.state - done.state) / system.scale))
-        if result.first > _OVERSHOOT * moved + newton.tolerance:
-            return True
+    moved = _moved(system, result.state, done.state)
+    if done.reached > 0.0 and result.first > _OVERSHOOT * moved + newton.tolerance:
+        return True
     if result.iterations < _SLOW:
         return False
     if result.iterations < _SLOW_FROM_REST and done.reached == 0.0 and _constant_forces(system, target):
@@ -42,6 +43,24 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
         return False  # the tangent of a committed state is that of unloading, not of the path
     done.iterations += 2
     return leaves_path(system, (done.state, done.reached), (result.state, target))
+
+
+def is_short(system: System, done: StaticRecord, target: float, state: np.ndarray | None = None) -> bool:
+    """Return whether a step moves little and continues the last one, so that no snap lies within it.
+
+    A snap moves a structure far in a step of any size. In contrast, the count of negative pivots may change while an
+    iteration yields too far. state (n,): at the end of the step; by default, it is as fast as the last one.
+    """
+    if len(done.rows) < 2:
+        return False
+    (before, last, _), (at, now, _) = done.rows[-2:]
+    expected = _moved(system, now, last) * (target - at) / (at - before) if at > before else 0.0
+    moved = expected if state is None else _moved(system, state, now)
+    return moved <= min(_SHORT * _moved(system, now, system.reference), _OVERSHOOT * expected)
+
+
+def _moved(system: System, p: np.ndarray, before: np.ndarray) -> float:
+    return float(np.max(np.abs(p - before) / system.scale))
 
 
 def _constant_forces(system: System, load_factor: float) -> bool:

@@ -22,7 +22,7 @@ from beamfem.solve.start.multipliers import require_independent
 from beamfem.solve.start.system_to_solve import system_to_solve
 from beamfem.solve.start.unresolved import warn_between_rows
 from beamfem.solve.statics.load_steps import SAME, Snap, reach
-from beamfem.solve.statics.preload import first_equilibrium
+from beamfem.solve.statics.preload import first_equilibrium, nothing_acts
 from beamfem.solve.statics.static_record import StaticRecord
 from beamfem.validation import count, finite, items, one_of, shown
 
@@ -71,7 +71,7 @@ def solve_static(
     InputError
         Before the solve, for invalid arguments.
     FreeMotionError
-        Before the solve, if the model can move without resistance.
+        If the model can move without resistance, and loads with scale=False do not stiffen it.
     LimitPointError
         At a limit point; it has the load factor and the states found.
     ConvergenceError
@@ -137,7 +137,8 @@ def solve_through(
     one_of("snap", snap, ("error", "jump"))
     system = system_to_solve(model, static=True)
     tell_of_compilation()
-    require_support(system)
+    if nothing_acts(system):
+        require_support(system)
     require_independent(system, system.reference)
     newton = require_newton(newton, _NEWTON)
     record = StaticRecord(model, system.symmetric)

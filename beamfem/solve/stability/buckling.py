@@ -18,6 +18,7 @@ from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.modes.shapes import largest_translation, upright
 from beamfem.solve.stability.critical import LIMIT_POINT, Critical, critical_points
+from beamfem.solve.stability.linear_solution import linear_solution
 from beamfem.solve.stability.linearised import linearised_loads
 from beamfem.solve.stability.loading_path import InvertedError, LoadingPath, PathLostError
 from beamfem.solve.stability.movement import largest_movement
@@ -261,15 +262,19 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     with digits_for("critical load factors"):
         p, load_factor = stable_start(system, about)
         path = LoadingPath(system, p, load_factor)
-        slope = path.start.tangent[:-1] / path.start.tangent[-1]
-        linearised = linearised_loads(system, p, load_factor, slope, count)
-    linearised = linearised[(linearised - load_factor) * largest_movement(system, slope) <= _LARGEST_CHANGE]
-    if not len(linearised):
-        raise InputError(
-            "no positive load factor is critical as the loading path starts: the loads stiffen the model, or would "
-            "first have to move it by more than half of its length. If they soften it later, trace_equilibrium finds it"
-        )
-    farthest = load_factor + _LARGEST_LOAD * float(linearised[-1] - load_factor)
+        linear = linear_solution(system, p, load_factor)
+        linearised = np.empty(0) if linear is None else linearised_loads(system, p, load_factor, linear, count)
+    farthest = load_factor + _LARGEST_LOAD
+    if linear is not None:
+        largest = _LARGEST_CHANGE / max(largest_movement(system, linear.slope), np.finfo(float).tiny)
+        linearised = linearised[linearised - load_factor <= largest]
+        if not len(linearised):
+            raise InputError(
+                "no positive load factor is critical as the loading path starts: the loads stiffen the model, or would "
+                "first have to move it by more than half of its length. If they soften it later, trace_equilibrium "
+                "finds it"
+            )
+        farthest = load_factor + _LARGEST_LOAD * float(linearised[-1] - load_factor)
     with digits_for("critical load factors"):
         criticals, ended, status = _criticals(path, count, farthest)
     if not criticals and path.lost:

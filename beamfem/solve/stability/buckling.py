@@ -6,6 +6,7 @@ from typing import Any, Unpack
 
 import numpy as np
 
+from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, InputError, RoundOffWarning, warn
 from beamfem.keywords import keywords_checked
 from beamfem.linalg.eigenpairs import digits_for
@@ -18,7 +19,7 @@ from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.modes.shapes import largest_translation, upright
 from beamfem.solve.stability.critical import LIMIT_POINT, Critical, critical_points
-from beamfem.solve.stability.linear_solution import linear_solution
+from beamfem.solve.stability.linear_solution import LinearSolution, linear_solution
 from beamfem.solve.stability.linearised import linearised_loads
 from beamfem.solve.stability.loading_path import InvertedError, LoadingPath, PathLostError
 from beamfem.solve.stability.movement import largest_movement
@@ -30,9 +31,10 @@ from beamfem.tabulate import as_pandas
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
 
-_LARGEST_CHANGE = 0.5  # of the model: linearised load factors that would move it further are meaningless
+_LINEAR_STRAIN = 0.2  # of the linear solution, which means nothing beyond
+_LINEAR_MOVEMENT = 0.5  # of the model, likewise
 _LARGEST_MOVEMENT = 2.0  # of the model, as if it were turned over: the path is followed no further
-_LARGEST_LOAD = 300.0  # of the linearised load factors: the path is followed no further
+_LARGEST_LOAD = 300.0  # times the load factors of linear analysis: the path is followed no further
 _MOST_POINTS = 300
 _SHOWN = 6  # critical points in a text
 _UNCERTAIN = 1e-4  # of a load factor: a larger uncertainty gives a warning
@@ -264,17 +266,9 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         path = LoadingPath(system, p, load_factor)
         linear = linear_solution(system, p, load_factor)
         linearised = np.empty(0) if linear is None else linearised_loads(system, p, load_factor, linear, count)
-    farthest = load_factor + _LARGEST_LOAD
-    if linear is not None:
-        largest = _LARGEST_CHANGE / max(largest_movement(system, linear.slope), np.finfo(float).tiny)
-        linearised = linearised[linearised - load_factor <= largest]
-        if not len(linearised):
-            raise InputError(
-                "no positive load factor is critical as the loading path starts: the loads stiffen the model, or would "
-                "first have to move it by more than half of its length. If they soften it later, trace_equilibrium "
-                "finds it"
-            )
-        farthest = load_factor + _LARGEST_LOAD * float(linearised[-1] - load_factor)
+    farthest = load_factor + _LARGEST_LOAD * (
+        1.0 if linear is None else _linear_reach(system, linear, load_factor, linearised)
+    )
     with digits_for("critical load factors"):
         criticals, ended, status = _criticals(path, count, farthest)
     if not criticals and path.lost:
@@ -300,6 +294,25 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         ended,
         status,
     )
+
+
+def _linear_reach(system: System, linear: LinearSolution, load_factor: float, linearised: np.ndarray) -> float:
+    """Return how far linear analysis reaches beyond a load factor: to the last linearised one (m,), or large movements.
+
+    Raises InputError if the model would first be strained too far, since its path is then straight enough for linear
+    analysis to be right.
+    """
+    with np.errstate(divide="ignore"):
+        moved = float(_LINEAR_MOVEMENT / np.float64(largest_movement(system, linear.slope)))
+        strained = float(_LINEAR_STRAIN / np.float64(linear.strain))
+    last = float(linearised[-1]) - load_factor if len(linearised) else np.inf
+    if strained < moved and not np.any(linearised - load_factor <= strained):
+        raise InputError(
+            "no positive load factor is critical as the loading path starts: the loads stiffen the model, or would "
+            f"first have to strain it by more than {_LINEAR_STRAIN:.0%}. If they soften it later, trace_equilibrium "
+            "finds it"
+        )
+    return min(last, moved)
 
 
 def _criticals(path: LoadingPath, count: int, farthest: float) -> tuple[list[Critical], str, Status]:
@@ -344,5 +357,5 @@ def _beyond(path: LoadingPath, p: np.ndarray, load_factor: float, farthest: floa
     if path.moved(p) > _LARGEST_MOVEMENT:
         return f"the search goes no further than a movement by {_LARGEST_MOVEMENT:g} times the size of the model"
     if load_factor > farthest:
-        return f"the search goes no further than {_LARGEST_LOAD:g} times the linearised load factors, {farthest:.6g}"
+        return f"the search goes no further than {_LARGEST_LOAD:g} times the load factors of linear analysis, {farthest:.6g}"
     return ""

@@ -8,6 +8,7 @@ from scipy.sparse import coo_array, csr_array
 from beamfem.assembly.connector import Connector
 from beamfem.assembly.differences import differentiated
 from beamfem.assembly.equations import STATICS, linearise, load_change, predicted_stresses
+from beamfem.assembly.points import free_group, resultants
 from beamfem.assembly.system import System
 from beamfem.linalg.lapack import eigh
 from beamfem.linalg.tangent import UNROTATED, Factorised
@@ -24,13 +25,15 @@ class LinearSolution:
     """The linear solution about a state.
 
     stiffness: K0 (unknown, unknown), the tangent of the state, and its factors; slope (n,): displacements per unit of
-    the load factor; geometric: K_sigma (unknown, unknown) of their stress resultants, with the load stiffness.
+    the load factor; geometric: K_sigma (unknown, unknown) of their stress resultants, with the load stiffness; strain:
+    their largest strain, as the root of its mean square over a section.
     """
 
     stiffness: csr_array
     factors: Factorised
     slope: np.ndarray
     geometric: csr_array
+    strain: float
 
 
 def linear_solution(system: System, p: np.ndarray, load_factor: float) -> LinearSolution | None:
@@ -55,7 +58,8 @@ def linear_solution(system: System, p: np.ndarray, load_factor: float) -> Linear
     for at, weight in differences:
         stresses = predicted_stresses(system, p, (at - load_factor) * slope, at)
         geometric = geometric + weight * (weak_stiffness(system, p, at, stresses) - unchanged)
-    return LinearSolution(tangent.sparse(UNROTATED), factors, slope, csr_array(geometric))
+    strain = _largest_strain(system, p, load_factor, slope, differences)
+    return LinearSolution(tangent.sparse(UNROTATED), factors, slope, csr_array(geometric), strain)
 
 
 def _differences(system: System, load_factor: float) -> list[tuple[float, float]]:
@@ -76,6 +80,24 @@ def _negligible(system: System, p: np.ndarray, load_factor: float, rate: np.ndar
         return False
     size, further = float(np.max(np.abs(rate) * system.scale)), load_change(system, p, load_factor, load_factor + 1.0)
     return size <= _NO_SLOPE * float(np.max(np.abs(further) * system.scale))
+
+
+def _largest_strain(
+    system: System, p: np.ndarray, load_factor: float, slope: np.ndarray, differences: list[tuple[float, float]]
+) -> float:
+    """Return the largest root mean square strain of a section, sqrt(eps . C eps / E A), for displacements (n,)."""
+    largest = 0.0
+    for block in system.blocks:
+        classes, points, measures, _ = block.stiffness.shape
+        unit = np.broadcast_to(np.eye(measures), (classes, points, measures, measures))
+        plain, stiffness = free_group(block.resisting(unit), len(p)), block.stiffness[block.kind]
+        steps = [(0.0, load_factor, -sum(weight for _, weight in differences))]
+        steps += [(at - load_factor, at, weight) for at, weight in differences]
+        strains = [weight * resultants(plain, p, [by * slope], system.imposing(at))[0] for by, at, weight in steps]
+        strain = np.sum(strains, axis=0)
+        square = np.einsum("eqi,eqij,eqj->eq", strain, stiffness, strain) / stiffness[..., 0, 0].max(axis=1)[:, None]
+        largest = max(largest, float(square.max(initial=0.0)))
+    return float(np.sqrt(largest))
 
 
 def _of_connectors(system: System, p: np.ndarray, load_factor: float, slope: np.ndarray) -> csr_array:

@@ -51,7 +51,7 @@ def linearised_loads(
 
 
 def _effect(system: System, linear: LinearSolution) -> float:
-    """Return the size of K0^-1 K_sigma, the largest fraction of the stiffness by which a load factor of 1 changes it."""
+    """Return the size of K0^-1 K_sigma, the largest fraction of the stiffness that a load factor of 1 changes."""
     scale = system.scale[system.free_dofs]
     x = first_vector(len(scale)) * scale
     sizes = []
@@ -64,8 +64,8 @@ def _effect(system: System, linear: LinearSolution) -> float:
 def _softened(geometric: csr_array, factors: Factorised, count: int, none: float) -> np.ndarray:
     """Return a basis (unknown, m) of the shapes that lose the largest fraction of their stiffness per unit load.
 
-    none: fraction that is round-off. The inverse of the tangent times -K_sigma is not symmetric, but it contains no sums of
-    large terms that cancel.
+    none: fraction that is round-off. The inverse of the tangent times -K_sigma is not symmetric, but it contains no
+    sums of large terms that cancel.
     """
     n = geometric.shape[0]
 

@@ -6,7 +6,6 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, InputError, RoundOffWarning, warn
 from beamfem.keywords import keywords_checked
 from beamfem.linalg.eigenpairs import digits_for
@@ -19,10 +18,9 @@ from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.modes.shapes import largest_translation, upright
 from beamfem.solve.stability.critical import LIMIT_POINT, Critical, critical_points
-from beamfem.solve.stability.linear_solution import LinearSolution, linear_solution
-from beamfem.solve.stability.linearised import linearised_loads
+from beamfem.solve.stability.linear_solution import linear_solution
+from beamfem.solve.stability.linearised import linear_reach, linearised_loads
 from beamfem.solve.stability.loading_path import InvertedError, LoadingPath, PathLostError
-from beamfem.solve.stability.movement import largest_movement
 from beamfem.solve.stability.stable_start import stable_start
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import refuse_memory, refuse_multipliers
@@ -31,8 +29,6 @@ from beamfem.tabulate import as_pandas
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
 
-_LINEAR_STRAIN = 0.2  # of the linear solution, which means nothing beyond
-_LINEAR_MOVEMENT = 0.5  # of the model, likewise
 _LARGEST_MOVEMENT = 2.0  # of the model, as if it were turned over: the path is followed no further
 _LARGEST_LOAD = 300.0  # times the load factors of linear analysis: the path is followed no further
 _MOST_POINTS = 300
@@ -266,9 +262,8 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         path = LoadingPath(system, p, load_factor)
         linear = linear_solution(system, p, load_factor)
         linearised = np.empty(0) if linear is None else linearised_loads(system, p, load_factor, linear, count)
-    farthest = load_factor + _LARGEST_LOAD * (
-        1.0 if linear is None else _linear_reach(system, linear, load_factor, linearised)
-    )
+    reach = 1.0 if linear is None else linear_reach(system, linear, linearised - load_factor)
+    farthest = load_factor + _LARGEST_LOAD * reach
     with digits_for("critical load factors"):
         criticals, ended, status = _criticals(path, count, farthest)
     if not criticals and path.lost:
@@ -294,25 +289,6 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         ended,
         status,
     )
-
-
-def _linear_reach(system: System, linear: LinearSolution, load_factor: float, linearised: np.ndarray) -> float:
-    """Return how far linear analysis reaches beyond a load factor: to the last linearised one (m,), or large movements.
-
-    Raises InputError if the model would first be strained too far, since its path is then straight enough for linear
-    analysis to be right.
-    """
-    with np.errstate(divide="ignore"):
-        moved = float(_LINEAR_MOVEMENT / np.float64(largest_movement(system, linear.slope)))
-        strained = float(_LINEAR_STRAIN / np.float64(linear.strain))
-    last = float(linearised[-1]) - load_factor if len(linearised) else np.inf
-    if strained < moved and not np.any(linearised - load_factor <= strained):
-        raise InputError(
-            "no positive load factor is critical as the loading path starts: the loads stiffen the model, or would "
-            f"first have to strain it by more than {_LINEAR_STRAIN:.0%}. If they soften it later, trace_equilibrium "
-            "finds it"
-        )
-    return min(last, moved)
 
 
 def _criticals(path: LoadingPath, count: int, farthest: float) -> tuple[list[Critical], str, Status]:
@@ -357,5 +333,6 @@ def _beyond(path: LoadingPath, p: np.ndarray, load_factor: float, farthest: floa
     if path.moved(p) > _LARGEST_MOVEMENT:
         return f"the search goes no further than a movement by {_LARGEST_MOVEMENT:g} times the size of the model"
     if load_factor > farthest:
-        return f"the search goes no further than {_LARGEST_LOAD:g} times the load factors of linear analysis, {farthest:.6g}"
+        times = f"{_LARGEST_LOAD:g} times the load factors of linear analysis"
+        return f"the search goes no further than {times}, {farthest:.6g}"
     return ""

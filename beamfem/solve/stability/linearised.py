@@ -14,11 +14,14 @@ from beamfem.linalg.tangent import Factorised
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
 from beamfem.solve.modes.pencil import is_symmetric
 from beamfem.solve.stability.linear_solution import LinearSolution
+from beamfem.solve.stability.movement import largest_movement
 
 _CHANGE = 1e-3  # of the stiffness: effect of loads whose symmetry is judged
 _NONE = 1e-10  # of the effect of the loads on the stiffness: smaller fractions of it are round-off
 _INDEPENDENT = 1e-8
 _SPARE = 2  # shapes found beyond those asked for
+_STRAIN = 0.2  # of the linear solution, which means nothing beyond
+_MOVEMENT = 0.3  # of the model, likewise; more than strains alone would move it
 
 
 def linearised_loads(
@@ -48,6 +51,23 @@ def linearised_loads(
     stiffness = stiffness_of_modes(system, p, load_factor, modes, correction)
     rates = eigh(0.5 * (softening + softening.T), stiffness, eigvals_only=True)[::-1]
     return np.asarray(load_factor + 1.0 / rates[rates > _NONE * effect][:count])
+
+
+def linear_reach(system: System, linear: LinearSolution, linearised: np.ndarray) -> float:
+    """Return the load factor up to which linear analysis counts: the last critical one (m,), or one that moves it far.
+
+    Raises InputError if strains are too large before any of them. The path is then straight, so that linear analysis is
+    right; otherwise only the path itself shows what is critical.
+    """
+    with np.errstate(divide="ignore"):
+        moved = float(_MOVEMENT / np.float64(largest_movement(system, linear.slope)))
+        strained = float(_STRAIN / np.float64(linear.strain))
+    if strained < moved and not np.any(linearised <= strained):
+        raise InputError(
+            "no positive load factor is critical as the loading path starts: the loads stiffen the model, or would "
+            f"first have to strain it by more than {_STRAIN:.0%}. If they soften it later, trace_equilibrium finds it"
+        )
+    return min(float(linearised[-1]) if len(linearised) else np.inf, moved)
 
 
 def _effect(system: System, linear: LinearSolution) -> float:

@@ -50,8 +50,9 @@ class Buckling:
         "bifurcation", where another path crosses, or "limit point", the largest load factor of the path, with which it
         ends.
     linearised : array, [-], (k,)
-        Load factors, k <= count, at which the tangent would be singular if the path went on as it starts,
-        K0 phi = -(lambda - lambda0) dK/dlambda phi.
+        Load factors, k <= count, of linear buckling analysis, K0 phi = -(lambda - lambda0) K_sigma phi, with the
+        geometric stiffness K_sigma of the stress resultants of the linear solution, and the load stiffness of
+        pressures. Empty if the loads have no slope at the start.
     modes : array, (m, n)
         Critical shapes over all coordinates; the largest displacement of a node is 1.
     states : array, (m, n)
@@ -213,7 +214,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     The true equilibria are followed up to their largest load factor, and negative pivots of the tangent are counted, so
     that no change of their number is missed. If there are fewer points than asked for, all of them are returned;
     `ended` and `status` of the result say whether there may be more, beyond a movement by twice the size of the model
-    or 300 times the linearised load factors.
+    or 300 times the load factors of linear analysis.
 
     Parameters
     ----------

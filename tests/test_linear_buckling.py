@@ -66,7 +66,7 @@ def euler_bernoulli(points, loads, extension, bending, clamped):
 
 
 def random_frame(seed):
-    """Points, loads that press, E A, E I, G A >= E A and whether it is clamped, of a slender frame of two or three bars."""
+    """Points, pressing loads, E A, E I, G A >= E A and whether it is clamped, of a slender frame of 2 or 3 bars."""
     rng = np.random.default_rng(seed)
     height, width, lean = rng.uniform(2.0, 6.0, 3) * (1.0, 1.0, 0.2)
     corners = [(0.0, 0.0), (lean, height), (lean + width, height * rng.uniform(0.8, 1.2))]

@@ -199,16 +199,22 @@ def predicted_stresses(
 def load_slope(system: System, p: np.ndarray, load_factor: float, width: float = 1e-6) -> np.ndarray:
     """Return the derivative of the residual (n,) [N, N m] with respect to the load factor, with prescribed motions.
 
-    For loads it is a central difference of the given width, exact to round-off if they are proportional to the load
-    factor; for prescribed motions, one of fourth order at small strains, because slender parts stiffen within any
-    width.
+    It is a central difference of the given width, exact to round-off if loads are proportional to the load factor.
+    """
+    return load_change(system, p, load_factor - width, load_factor + width) / (2.0 * width)
+
+
+def load_change(system: System, p: np.ndarray, before: float, after: float) -> np.ndarray:
+    """Return the change of the residual (n,) [N, N m] between two load factors, with prescribed motions.
+
+    That for prescribed motions is linear, by a difference of fourth order at small strains, because slender parts
+    stiffen within any width.
     """
     zeros, prescribed = np.zeros(len(p)), system.prescribed_dofs
-    ahead, behind = (residual(system, p, zeros, zeros, load_factor + at) for at in (width, -width))
-    slope = (ahead - behind) / (2.0 * width)
+    change = residual(system, p, zeros, zeros, after) - residual(system, p, zeros, zeros, before)
     motion = np.zeros(len(p))
-    motion[prescribed] = system.prescribed_values(load_factor + width) - system.prescribed_values(load_factor - width)
+    motion[prescribed] = system.prescribed_values(after) - system.prescribed_values(before)
     if not motion.any():
-        return np.asarray(slope)
-    moved = differentiated(system, lambda q: residual(system, q, zeros, zeros, load_factor), p, motion / (2.0 * width))
-    return np.asarray(slope + moved)
+        return change
+    middle = 0.5 * (before + after)
+    return np.asarray(change + differentiated(system, lambda q: residual(system, q, zeros, zeros, middle), p, motion))

@@ -18,9 +18,9 @@ from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.modes.shapes import largest_translation, upright
 from beamfem.solve.stability.critical import LIMIT_POINT, Critical, critical_points
-from beamfem.solve.stability.linearised import linearised_loads
+from beamfem.solve.stability.linear_solution import linear_solution
+from beamfem.solve.stability.linearised import linear_reach, linearised_loads
 from beamfem.solve.stability.loading_path import InvertedError, LoadingPath, PathLostError
-from beamfem.solve.stability.movement import largest_movement
 from beamfem.solve.stability.stable_start import stable_start
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import refuse_memory, refuse_multipliers
@@ -29,9 +29,8 @@ from beamfem.tabulate import as_pandas
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
 
-_LARGEST_CHANGE = 0.5  # of the model: linearised load factors that would move it further are meaningless
 _LARGEST_MOVEMENT = 2.0  # of the model, as if it were turned over: the path is followed no further
-_LARGEST_LOAD = 300.0  # of the linearised load factors: the path is followed no further
+_LARGEST_LOAD = 300.0  # times the load factors of linear analysis: the path is followed no further
 _MOST_POINTS = 300
 _SHOWN = 6  # critical points in a text
 _UNCERTAIN = 1e-4  # of a load factor: a larger uncertainty gives a warning
@@ -51,8 +50,9 @@ class Buckling:
         "bifurcation", where another path crosses, or "limit point", the largest load factor of the path, with which it
         ends.
     linearised : array, [-], (k,)
-        Load factors, k <= count, at which the tangent would be singular if the path went on as it starts,
-        K0 phi = -(lambda - lambda0) dK/dlambda phi.
+        Load factors, k <= count, of linear buckling analysis, K0 phi = -(lambda - lambda0) K_sigma phi, with the
+        geometric stiffness K_sigma of the stress resultants of the linear solution, and the load stiffness of
+        pressures. Empty if the loads have no slope at the start.
     modes : array, (m, n)
         Critical shapes over all coordinates; the largest displacement of a node is 1.
     states : array, (m, n)
@@ -214,7 +214,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     The true equilibria are followed up to their largest load factor, and negative pivots of the tangent are counted, so
     that no change of their number is missed. If there are fewer points than asked for, all of them are returned;
     `ended` and `status` of the result say whether there may be more, beyond a movement by twice the size of the model
-    or 300 times the linearised load factors.
+    or 300 times the load factors of linear analysis.
 
     Parameters
     ----------
@@ -261,15 +261,10 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     with digits_for("critical load factors"):
         p, load_factor = stable_start(system, about)
         path = LoadingPath(system, p, load_factor)
-        slope = path.start.tangent[:-1] / path.start.tangent[-1]
-        linearised = linearised_loads(system, p, load_factor, slope, count)
-    linearised = linearised[(linearised - load_factor) * largest_movement(system, slope) <= _LARGEST_CHANGE]
-    if not len(linearised):
-        raise InputError(
-            "no positive load factor is critical as the loading path starts: the loads stiffen the model, or would "
-            "first have to move it by more than half of its length. If they soften it later, trace_equilibrium finds it"
-        )
-    farthest = load_factor + _LARGEST_LOAD * float(linearised[-1] - load_factor)
+        linear = linear_solution(system, p, load_factor)
+        linearised = np.empty(0) if linear is None else linearised_loads(system, p, load_factor, linear, count)
+    reach = 1.0 if linear is None else linear_reach(system, linear, linearised - load_factor)
+    farthest = load_factor + _LARGEST_LOAD * reach
     with digits_for("critical load factors"):
         criticals, ended, status = _criticals(path, count, farthest)
     if not criticals and path.lost:
@@ -339,5 +334,6 @@ def _beyond(path: LoadingPath, p: np.ndarray, load_factor: float, farthest: floa
     if path.moved(p) > _LARGEST_MOVEMENT:
         return f"the search goes no further than a movement by {_LARGEST_MOVEMENT:g} times the size of the model"
     if load_factor > farthest:
-        return f"the search goes no further than {_LARGEST_LOAD:g} times the linearised load factors, {farthest:.6g}"
+        times = f"{_LARGEST_LOAD:g} times the load factors of linear analysis"
+        return f"the search goes no further than {times}, {farthest:.6g}"
     return ""

@@ -1,68 +1,96 @@
-"""Critical load factors of the loading path linearised at its start."""
+"""Critical load factors of linear buckling analysis: the geometric stiffness of the linear solution grows."""
 
 import numpy as np
 from scipy.sparse import csr_array, eye_array
 from scipy.sparse.linalg import LinearOperator, eigs
 
-from beamfem.assembly.equations import STATICS, linearise
+from beamfem.assembly.equations import residual
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.linalg.eigenpairs import MOST_RESTARTS, Pairs, first_that_works, first_vector, lanczos_vectors
 from beamfem.linalg.lapack import eig, eigh, qr
 from beamfem.linalg.repeated import repeated
-from beamfem.linalg.tangent import UNROTATED, Factorised, Tangent
+from beamfem.linalg.tangent import Factorised
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
 from beamfem.solve.modes.pencil import is_symmetric
+from beamfem.solve.stability.linear_solution import LinearSolution
+from beamfem.solve.stability.movement import largest_movement
 
-_CHANGE = 1e-3  # of the coordinates: step of the difference that gives the derivative of the tangent
-_NONE = 1e-10  # of the rate of change of the coordinates: smaller rates are round-off
+_CHANGE = 1e-3  # of the stiffness: effect of loads whose symmetry is judged
+_NONE = 1e-10  # of the effect of the loads on the stiffness: smaller fractions of it are round-off
 _INDEPENDENT = 1e-8
 _SPARE = 2  # shapes found beyond those asked for
+_STRAIN = 0.2  # of the linear solution, which means nothing beyond
+_MOVEMENT = 0.3  # of the model, likewise; more than strains alone would move it
 
 
-def linearised_loads(system: System, p: np.ndarray, load_factor: float, slope: np.ndarray, count: int) -> np.ndarray:
-    """Return the `count` lowest critical lambda (m,) above a load factor of K0 phi = -(lambda - lambda0) K' phi.
+def linearised_loads(
+    system: System, p: np.ndarray, load_factor: float, linear: LinearSolution, count: int
+) -> np.ndarray:
+    """Return the `count` lowest critical lambda (m,) above a load factor, K0 phi = -(lambda - lambda0) K_sigma phi.
 
-    K0: tangent in the stable state p (n,); K' = dK/dlambda along slope = dp/dlambda (n,), a difference of fourth order.
-    m < count if loads soften the model in fewer directions. Raises InputError if loads are not conservative.
+    linear: the linear solution about the stable state p (n,). m < count if loads soften the model in fewer directions.
+    Raises InputError if loads are not conservative.
     """
-    moved = float(np.max(np.abs(slope) / system.scale))
-    width = _CHANGE / moved
-    tangent = _tangent(system, p, load_factor)
-    stiffness = tangent.sparse(UNROTATED)
-    rate = csr_array(stiffness.shape)
-    for steps, weight in ((1.0, 8.0), (-1.0, -8.0), (2.0, -1.0), (-2.0, 1.0)):
-        at = steps * width
-        rate = rate + weight / (12.0 * width) * _tangent(system, p + at * slope, load_factor + at).sparse(UNROTATED)
-    if not is_symmetric(system, csr_array(stiffness + width * rate)):
+    effect = _effect(system, linear)
+    if effect == 0.0:
+        return np.empty(0)
+    if not is_symmetric(system, csr_array(linear.stiffness + _CHANGE / effect * linear.geometric)):
         raise InputError(
             "some load follows the beam, so that its work depends on the motion: such loads can make a structure "
             "flutter before its tangent is singular. Look at the growth of solve_modes(model, about=state) instead"
         )
-    factors = tangent.factorised(system.rotated)
-    shapes = _softened(csr_array(rate), factors, count, _NONE * moved)
+    shapes = _softened(linear.geometric, linear.factors, count, _NONE * effect)
     modes = np.zeros((shapes.shape[1], len(p)))
     modes[:, system.free_dofs] = shapes.T
     correction = np.zeros_like(p)
     zeros = np.zeros_like(p)
-    unbalanced = linearise(system, p, zeros, zeros, load_factor, STATICS)[0]
-    correction[system.free_dofs] = -factors.solve(unbalanced[system.free_dofs])
-    rates = eigh(
-        -shapes.T @ (rate @ shapes), stiffness_of_modes(system, p, load_factor, modes, correction), eigvals_only=True
-    )[::-1]
-    return np.asarray(load_factor + 1.0 / rates[rates > _NONE * moved][:count])
+    unbalanced = residual(system, p, zeros, zeros, load_factor)[system.free_dofs]
+    correction[system.free_dofs] = -linear.factors.solve(unbalanced)
+    softening = -shapes.T @ (linear.geometric @ shapes)
+    stiffness = stiffness_of_modes(system, p, load_factor, modes, correction)
+    rates = eigh(0.5 * (softening + softening.T), stiffness, eigvals_only=True)[::-1]
+    return np.asarray(load_factor + 1.0 / rates[rates > _NONE * effect][:count])
 
 
-def _softened(rate: csr_array, factors: Factorised, count: int, none: float) -> np.ndarray:
+def linear_reach(system: System, linear: LinearSolution, linearised: np.ndarray) -> float:
+    """Return the load factor up to which linear analysis counts: the last critical one (m,), or one that moves it far.
+
+    Raises InputError if strains are too large before any of them. The path is then straight, so that linear analysis is
+    right; otherwise only the path itself shows what is critical.
+    """
+    with np.errstate(divide="ignore"):
+        moved = float(_MOVEMENT / np.float64(largest_movement(system, linear.slope)))
+        strained = float(_STRAIN / np.float64(linear.strain))
+    if strained < moved and not np.any(linearised <= strained):
+        raise InputError(
+            "no positive load factor is critical as the loading path starts: the loads stiffen the model, or would "
+            f"first have to strain it by more than {_STRAIN:.0%}. If they soften it later, trace_equilibrium finds it"
+        )
+    return min(float(linearised[-1]) if len(linearised) else np.inf, moved)
+
+
+def _effect(system: System, linear: LinearSolution) -> float:
+    """Return the size of K0^-1 K_sigma, the largest fraction of the stiffness that a load factor of 1 changes."""
+    scale = system.scale[system.free_dofs]
+    x = first_vector(len(scale)) * scale
+    sizes = []
+    for _ in range(2):
+        x = linear.factors.solve(linear.geometric @ x)
+        sizes.append(float(np.linalg.norm(x / scale)))
+    return sizes[1] / sizes[0] if sizes[0] > 0.0 else 0.0
+
+
+def _softened(geometric: csr_array, factors: Factorised, count: int, none: float) -> np.ndarray:
     """Return a basis (unknown, m) of the shapes that lose the largest fraction of their stiffness per unit load.
 
-    none: fraction that is round-off. The inverse of the tangent times -K' is not symmetric, but it contains no sums of
-    large terms that cancel.
+    none: fraction that is round-off. The inverse of the tangent times -K_sigma is not symmetric, but it contains no
+    sums of large terms that cancel.
     """
-    n = rate.shape[0]
+    n = geometric.shape[0]
 
     def lost(x: np.ndarray) -> np.ndarray:
-        return -factors.solve(rate @ x)
+        return -factors.solve(geometric @ x)
 
     def search(basis: np.ndarray, wanted: int) -> Pairs:
         def besides(x: np.ndarray) -> np.ndarray:
@@ -84,8 +112,3 @@ def _softened(rate: csr_array, factors: Factorised, count: int, none: float) -> 
     basis, triangle, _ = qr(parts, mode="economic", pivoting=True)
     sizes = np.abs(np.diag(triangle))
     return np.asarray(basis[:, sizes > _INDEPENDENT * sizes[0]])
-
-
-def _tangent(system: System, p: np.ndarray, load_factor: float) -> Tangent:
-    zeros = np.zeros_like(p)
-    return linearise(system, p, zeros, zeros, load_factor, STATICS)[1]

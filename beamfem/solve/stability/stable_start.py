@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.assembly.equations import load_slope
+from beamfem.assembly.equations import load_change
 from beamfem.assembly.round_off import counts_with_stresses
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, InputError
@@ -14,6 +14,7 @@ from beamfem.solve.start.balance import left_over
 from beamfem.solve.start.start_state import resting_state
 from beamfem.solve.statics.preload import first_equilibrium
 
+_WIDTHS = (1e-6, *np.linspace(0.1, 1.0, 10).tolist())  # of the load factor: amplitudes may be flat at the start
 _ROUND_OFF = 8.0 * np.finfo(float).eps  # of the largest force: what is left of one along the normal of a roller
 
 
@@ -31,7 +32,8 @@ def stable_start(system: System, about: State | Solution | None) -> tuple[np.nda
         p = equilibrium.state
     # imposed strains, as of heat, may load a beam between its supports without moving it
     imposed = any(block.imposed is not None for block in system.blocks)
-    if not imposed and not _moves(system, load_slope(system, p, load_factor)):
+    grows = (_moves(system, load_change(system, p, load_factor, load_factor + width)) for width in _WIDTHS)
+    if not imposed and not any(grows):
         raise InputError(
             "no load grows with the load factor, or supports take it up, so none can buckle the model; add one with "
             "scale=True"
@@ -47,7 +49,7 @@ def stable_start(system: System, about: State | Solution | None) -> tuple[np.nda
     return p, load_factor
 
 
-def _moves(system: System, slope: np.ndarray) -> bool:
+def _moves(system: System, change: np.ndarray) -> bool:
     """Return whether forces (n,) that grow with the load factor are more than supports take up, and round-off."""
-    acting = np.abs(system.along_free(slope)) * system.scale[system.free_dofs]
-    return bool(np.any(acting > _ROUND_OFF * np.max(np.abs(slope) * system.scale)))
+    acting = np.abs(system.along_free(change)) * system.scale[system.free_dofs]
+    return bool(np.any(acting > _ROUND_OFF * np.max(np.abs(change) * system.scale)))

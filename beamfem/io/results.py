@@ -1,6 +1,7 @@
 """Solutions in HDF5 files: the model described in JSON, the states in rows."""
 
 import json
+from collections.abc import Callable
 from dataclasses import asdict, replace
 from importlib.metadata import version
 from os import PathLike
@@ -13,7 +14,7 @@ from beamfem.files import readable
 from beamfem.io.axes_in_hdf5 import save_axes
 from beamfem.io.critical import load_factors, load_path, save_critical
 from beamfem.io.description import describe, rebuild
-from beamfem.io.hdf5 import checksum, read_checked, read_label, required_h5py, write_checked, write_label, written_hdf5
+from beamfem.io.hdf5 import checksum, read_checked, read_label, required_h5py, write_checked, write_hdf5, write_label
 from beamfem.keywords import keywords_checked
 from beamfem.results.path import Path as EquilibriumPath
 from beamfem.results.solution import Solution
@@ -37,7 +38,8 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
     at = np.append(solution.at, load_factors(solution)) if isinstance(solution, EquilibriumPath) else solution.at
     description = _text(describe(solution.model, at))
     block = max(min(_BLOCK_BYTES // (8 * solution.p.shape[1]), len(solution)), 1)
-    with written_hdf5(path) as (file, require_written):
+
+    def fill(file: Any, require_written: Callable[[], None]) -> None:
         write_label(file, "format", _FORMAT)
         file.attrs["format_version"] = _FORMAT_VERSION
         write_label(file, "beamfem_version", version("beamfem"))
@@ -61,6 +63,8 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
         if isinstance(solution, EquilibriumPath):
             save_critical(file, solution)
         save_axes(file, solution, require_written)
+
+    write_hdf5(path, fill)
 
 
 @keywords_checked

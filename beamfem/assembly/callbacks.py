@@ -1,11 +1,15 @@
 """Python functions that compiled code calls: exceptions cannot propagate through it, so they wait until it returns."""
 
+import functools
 import signal
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from threading import current_thread, get_ident, main_thread
 from types import FrameType, TracebackType
-from typing import Any, Self
+from typing import Any, ParamSpec, Self, TypeVar
+
+_Taken = ParamSpec("_Taken")
+_Returned = TypeVar("_Returned")
 
 
 class KeptErrors:
@@ -105,6 +109,21 @@ class Deferred:
             self.lost = unraisable.exc_value
         else:
             self._hook(unraisable)
+
+
+def uninterrupted(function: Callable[_Taken, _Returned]) -> Callable[_Taken, _Returned]:
+    """Return a function whose signals, all of them, are handled when it has returned or raised."""
+
+    @functools.wraps(function)
+    def called(*arguments: _Taken.args, **keywords: _Taken.kwargs) -> _Returned:
+        deferred = Deferred(signal.valid_signals())
+        try:
+            with deferred:
+                return function(*arguments, **keywords)
+        finally:
+            deferred.deliver()
+
+    return called
 
 
 def _without_leftovers(number: int, handler: Any) -> Any:

@@ -3,7 +3,6 @@
 import os
 import re
 import shutil
-import signal
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
@@ -17,7 +16,7 @@ from vtkmodules.vtkCommonCore import vtkDataArray, vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
-from beamfem.assembly.callbacks import Deferred
+from beamfem.assembly.callbacks import uninterrupted
 from beamfem.errors import FileError, InputError
 from beamfem.files import make_folder, path_of, whole
 from beamfem.io.boundary import Boundary
@@ -145,20 +144,19 @@ class _Series:
             if not self.earlier and len(self.lines) % _STEPS_BETWEEN_PUBLISHING == 1:
                 self.publish()
 
+    @uninterrupted
     def finish(self) -> None:
         """Replace the earlier export; signals wait until all of it is replaced."""
-        deferred = Deferred(signal.valid_signals())
         try:
-            with deferred:
-                if self.earlier:
-                    for file in sorted(self.steps.iterdir()):
-                        os.replace(file, self.folder / file.name)
-                self.clean()
-                self.publish()
+            if self.earlier:
+                for file in sorted(self.steps.iterdir()):
+                    os.replace(file, self.folder / file.name)
+            self.clean()
+            self.publish()
+        except FileError:
+            raise
         except OSError as error:
             raise FileError(f"{self.path} cannot be written: {error.strerror or error}") from error
-        finally:
-            deferred.deliver()
 
     def close(self) -> None:
         """Publish the steps so far, or leave the earlier export as it is."""

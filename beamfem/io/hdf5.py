@@ -65,6 +65,25 @@ def read_checked(group: Any, name: str) -> np.ndarray:
     return values
 
 
+def require_own(group: Any, *besides: str) -> None:
+    """Raise InputError for a link to another file, or an array stored in one; besides: members that nobody reads.
+
+    A file that somebody sent must not read others of the user.
+    """
+    h5py = required_h5py("loading")
+    for name in group:
+        link = group.get(name, getlink=True)
+        if name in besides:
+            continue
+        if not isinstance(link, h5py.HardLink):
+            raise InputError(f"its {name} is a link; beamfem reads only what is in the file itself")
+        item = group[name]
+        if isinstance(item, h5py.Group):
+            require_own(item)
+        elif isinstance(item, h5py.Dataset) and (item.external or item.is_virtual):
+            raise InputError(f"the numbers of its {name} are in another file; beamfem reads only the file itself")
+
+
 def write_label(group: Any, name: str, label: str) -> None:
     """Write an attribute of fixed length: in a damaged file HDF5 may search endlessly for one of variable length."""
     group.attrs[name] = np.bytes_(label)

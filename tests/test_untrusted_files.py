@@ -67,3 +67,13 @@ def test_a_bad_vtu_is_refused_with_a_reason(tmp_path):
     (tmp_path / "a.vtu").write_text("<VTKFile type='ImageData' version='1.0'></VTKFile>")
     with pytest.raises(bf.InputError, match=r"cannot be read as vtu: .*[a-z]{4}"):
         bf.read_mesh(tmp_path / "a.vtu")
+
+
+@pytest.mark.filterwarnings("ignore:.*left out")
+def test_sets_of_sets_of_sets_are_sets(tmp_path):
+    """Each level names the one before 16 times: 16^11 entries of the same two nodes."""
+    lines = ["*NODE", "1, 0, 0", "2, 1, 0", "*ELEMENT, TYPE=B21, ELSET=E", "1, 1, 2", "*NSET, NSET=S0", "1, 2"]
+    for level in range(11):
+        lines += [f"*NSET, NSET=S{level + 1}", ", ".join([f"S{level}"] * 16)]
+    (tmp_path / "a.inp").write_text("\n".join(lines) + "\n")
+    assert bf.read_mesh(tmp_path / "a.inp").point_sets["S11"].tolist() == [0, 1]

@@ -33,6 +33,8 @@ def readable(path: str | PathLike[str]) -> Path:
     try:
         if source.is_char_device():
             raise FileError(f"{source} cannot be read: it is a device, whose bytes may have no end")
+        if source.is_fifo():
+            raise FileError(f"{source} cannot be read: it is a pipe, whose writer may never come; give a file")
         with source.open("rb"):
             return source
     except FileNotFoundError:

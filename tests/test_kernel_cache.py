@@ -47,8 +47,14 @@ def small(tmp_path):
     return package
 
 
+def surroundings(small):
+    """Return the environment of a process whose user has a cache folder beside the package."""
+    given = {name: os.environ[name] for name in ("PATH", "HOME") if name in os.environ}
+    return given | {"XDG_CACHE_HOME": str(small.parent / "cache")}
+
+
 def run(small, processor="", **environment):
-    given = {name: os.environ[name] for name in ("PATH", "HOME") if name in os.environ} | environment
+    given = surroundings(small) | environment
     command = [sys.executable, "-B", "-c", RUN, str(small.parent), processor]
     done = subprocess.run(command, capture_output=True, text=True, env=given, check=False)
     assert done.returncode == 0, done.stderr
@@ -66,7 +72,14 @@ def test_a_change_of_an_inlined_kernel_is_noticed(small):
     value, hits, other = run(small)
     assert (value, hits) == (11.0, 0)
     assert other != folder
-    assert not Path(folder).exists()  # nobody needs it any more
+    assert Path(folder).exists()  # another installation may need it
+    assert not list(small.rglob("*.code"))  # pip would leave it behind
+    for old in (Path(folder), Path(folder).parent):
+        os.utime(old, (0, 0))
+    (small / "inner.py").write_text(INNER.format(factor=6.0))
+    assert run(small)[:2] == (13.0, 0)
+    assert not Path(folder).exists()
+    assert Path(other).exists()
 
 
 def test_machines_that_share_a_home_do_not_share_machine_code(small):
@@ -125,7 +138,7 @@ def test_a_user_without_a_home_has_no_folder_there(monkeypatch):
     for name in ("BEAMFEM_CACHE_DIR", "NUMBA_CACHE_DIR"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(cache, "user_cache_path", nowhere)
-    assert list(cache._parents()) == [KERNELS / "__pycache__"]
+    assert list(cache._parents()) == []
 
 
 def test_files_that_are_no_sources_are_left_alone(small):
@@ -141,7 +154,7 @@ def test_a_folder_that_can_only_be_read_is_read(small):
     folder = Path(run(small)[2])
     prefix = "import small.cache; small.cache.cache_folder = lambda: None\n"
     command = [sys.executable, "-B", "-c", RUN.replace("from small.outer", prefix + "from small.outer", 1)]
-    given = {name: os.environ[name] for name in ("PATH", "HOME") if name in os.environ}
+    given = surroundings(small)
     done = subprocess.run([*command, str(small.parent), ""], capture_output=True, text=True, check=True, env=given)
     assert done.stdout.split()[:2] == ["7.0", "1"]
     assert folder.exists()
@@ -152,7 +165,7 @@ def test_sources_that_change_while_a_process_runs_leave_nothing_behind(small):
     change = "import pathlib; p = pathlib.Path(sys.argv[1]) / 'small' / 'inner.py'\n"
     change += "p.write_text(p.read_text() + '\\n# changed\\n')\n"
     command = [sys.executable, "-B", "-c", RUN.replace("print(", change + "print(", 1), str(small.parent), ""]
-    given = {name: os.environ[name] for name in ("PATH", "HOME") if name in os.environ}
+    given = surroundings(small)
     done = subprocess.run(command, capture_output=True, text=True, check=True, env=given)
     assert done.stdout.split()[0] == "7.0"
     folder = Path(done.stdout.split(" ", 2)[2].strip())
@@ -227,3 +240,60 @@ def test_no_two_kernels_share_a_name():
     names = [routine.name for routine in compiling.Routine.made if routine.__module__.startswith("beamfem.kernels")]
     assert {f"beamfem.kernels.inertia.add_inertia_nodes_{nodes}_vectors_2" for nodes in (2, 3)} <= set(names)
     assert len(set(names)) == len(names)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="owners and modes are those of POSIX")
+@pytest.mark.parametrize("level", ["file", "folder", "folder above"])
+@pytest.mark.parametrize("change", [lambda path: path.chmod(0o777), lambda path: path.chmod(0o775), "owner"])
+def test_machine_code_that_others_could_write_is_not_run(small, level, change):
+    folder = Path(run(small)[2])
+    (code,) = folder.glob("*.code")
+    place = {"file": code, "folder": folder, "folder above": folder.parent}[level]
+    if change != "owner":
+        change(place)
+    elif os.geteuid() == 0:
+        os.chown(place, 12345, -1)
+    else:
+        pytest.skip("only root can give a file away")
+    value, hits, used = run(small)
+    assert (value, hits) == (7.0, 0)
+    assert used == (str(folder) if level == "file" else "None")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no FIFOs here")
+@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir, lambda path: os.symlink("/dev/zero", path)])
+def test_what_is_no_regular_file_is_not_read_as_machine_code(small, make):
+    (code,) = Path(run(small)[2]).glob("*.code")
+    code.unlink()
+    make(code)
+    assert run(small)[:2] == (7.0, 0)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="modes are those of POSIX")
+def test_a_lax_umask_does_not_open_the_cache(small):
+    before = os.umask(0)
+    try:
+        folder = Path(run(small)[2])
+    finally:
+        os.umask(before)
+    assert [path.stat().st_mode & 0o022 for path in (folder, folder.parent, *folder.iterdir())] == [0, 0, 0]
+    assert run(small)[:2] == (7.0, 1)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are not forked here")
+@pytest.mark.parametrize("delay", [0.0, 0.02, 0.1])
+def test_a_process_that_is_forked_while_kernels_are_compiled_compiles_its_own(tmp_path, delay):
+    """With an empty cache: on Python 3.11 `functools.cached_property` holds a lock of its own meanwhile."""
+    code = (
+        "import os, signal, threading, time, warnings; warnings.simplefilter('ignore')\n"
+        "from beamfem.kernels import band\n"
+        "thread = threading.Thread(target=lambda: [band.band(n).solve_lower.address for n in (3, 4, 5, 6)])\n"
+        f"thread.start(); time.sleep({delay}); child = os.fork()\n"
+        "if child == 0: signal.alarm(20); os._exit(0 if band.band(7).solve_lower.address else 1)\n"
+        "print(os.waitpid(child, 0)[1]); thread.join()\n"
+    )
+    given = os.environ | {"BEAMFEM_CACHE_DIR": str(tmp_path)}
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60, env=given
+    )
+    assert done.stdout.strip() == "0"

@@ -6,7 +6,7 @@ Source: Abaqus keywords reference (*NODE, *ELEMENT, *NSET, *ELSET, *INCLUDE); no
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
@@ -38,29 +38,29 @@ class _Section:
 
 @dataclass
 class _Sets:
-    """Named lists of numbers, stored as ranges; names are case-insensitive."""
+    """Named sets of numbers, stored as different ranges, in order of appearance; names are case-insensitive."""
 
     kind: str
     names: dict[str, str] = field(default_factory=dict)
-    numbers: dict[str, list[range]] = field(default_factory=dict)
+    numbers: dict[str, dict[range, None]] = field(default_factory=dict)
 
-    def add(self, name: str, numbers: list[range]) -> None:
+    def add(self, name: str, numbers: Iterable[range]) -> None:
         self.names.setdefault(name.upper(), name)
-        self.numbers.setdefault(name.upper(), []).extend(numbers)
+        self.numbers.setdefault(name.upper(), {}).update(dict.fromkeys(numbers))
 
     def define(self, section: _Section) -> None:
         """Add the content of a *NSET or *ELSET: numbers, ranges or other sets. Raises InputError."""
-        numbers: list[range] = []
+        numbers: dict[range, None] = {}  # sets of sets may name the same one time and again
         for row in section.rows:
             if "GENERATE" in section.parameters:
                 first, last, *step = (int(value) for value in row)
-                numbers.append(range(first, last + 1, *step))
+                numbers[range(first, last + 1, *step)] = None
                 continue
             for value in row:
                 if value.upper() in self.numbers:
-                    numbers += self.numbers[value.upper()]
+                    numbers |= self.numbers[value.upper()]
                 elif value.lstrip("-").isdigit():
-                    numbers.append(_one(int(value)))
+                    numbers[_one(int(value))] = None
                 else:
                     known = ", ".join(self.names.values()) or "none"
                     raise InputError(f"{section.place}: there is no {self.kind} {value!r} so far; known: {known}")

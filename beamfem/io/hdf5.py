@@ -1,8 +1,8 @@
 """HDF5 files with checksums, written completely or not at all."""
 
 import io
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+import signal
+from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -10,6 +10,7 @@ from zlib import crc32
 
 import numpy as np
 
+from beamfem.assembly.callbacks import Deferred
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
 from beamfem.files import whole
@@ -19,17 +20,28 @@ _VERSIONS = ("v108", "v110")
 _CHECKSUM = "crc32"
 
 
-@contextmanager
-def written_hdf5(path: str | PathLike[str]) -> Iterator[tuple[Any, Callable[[], None]]]:
-    """Yield an open HDF5 file that replaces `path` when it is complete, and a check that everything was written.
+def write_hdf5(path: str | PathLike[str], fill: Callable[[Any, Callable[[], None]], None]) -> None:
+    """Call `fill` with an open HDF5 file, which then replaces `path`, and a check that all so far was written.
 
-    Raises FileError if the system refuses to write, MissingPackageError without h5py.
+    HDF5 calls the stream and ignores what it raises, so handlers of signals run in the check, or at the end. Raises
+    FileError if the system refuses to write, MissingPackageError without h5py, and what handlers raise.
     """
     h5py = required_h5py("writing")
-    with whole(path) as partial, _Stream(partial) as stream:
-        with h5py.File(stream, "w", libver=_VERSIONS) as file:
-            yield file, stream.require
-        stream.require()
+    deferred = Deferred(signal.valid_signals())
+    try:
+        with deferred, whole(path) as partial, _Stream(partial) as stream:
+
+            def require_written() -> None:
+                deferred.handle()
+                stream.require()
+
+            try:
+                with h5py.File(stream, "w", libver=_VERSIONS) as file:
+                    fill(file, require_written)
+            finally:
+                stream.require()
+    finally:
+        deferred.deliver()
 
 
 def required_h5py(purpose: str) -> Any:
@@ -53,6 +65,25 @@ def read_checked(group: Any, name: str) -> np.ndarray:
     return values
 
 
+def require_own(group: Any, *besides: str) -> None:
+    """Raise InputError for a link to another file, or an array stored in one; besides: members that nobody reads.
+
+    A file that somebody sent must not read others of the user.
+    """
+    h5py = required_h5py("loading")
+    for name in group:
+        link = group.get(name, getlink=True)
+        if name in besides:
+            continue
+        if not isinstance(link, h5py.HardLink):
+            raise InputError(f"its {name} is a link; beamfem reads only what is in the file itself")
+        item = group[name]
+        if isinstance(item, h5py.Group):
+            require_own(item)
+        elif isinstance(item, h5py.Dataset) and (item.external or item.is_virtual):
+            raise InputError(f"the numbers of its {name} are in another file; beamfem reads only the file itself")
+
+
 def write_label(group: Any, name: str, label: str) -> None:
     """Write an attribute of fixed length: in a damaged file HDF5 may search endlessly for one of variable length."""
     group.attrs[name] = np.bytes_(label)
@@ -73,29 +104,29 @@ def checksum(*arrays: np.ndarray) -> int:
 
 
 class _Stream(io.FileIO):
-    """A file that records a system error and continues as if there were none.
+    """A file that records the first error and continues as if there were none.
 
     HDF5 cannot close a file that it cannot write: it would crash the process on exit.
     """
 
     def __init__(self, path: Path) -> None:
         super().__init__(path, "w+")
-        self._error: OSError | None = None
+        self._error: BaseException | None = None
 
     def write(self, data: Any) -> int:
-        size = memoryview(data).nbytes
+        size: int = data.nbytes if isinstance(data, memoryview) else len(data)
         try:
             written = 0
             while self._error is None and written < size:
                 written += super().write(memoryview(data).cast("B")[written:])
-        except OSError as error:
+        except BaseException as error:
             self._error = error
         return size
 
     def truncate(self, size: int | None = None) -> int:
         try:
             return super().truncate(size)
-        except OSError as error:
+        except BaseException as error:
             self._error = self._error or error
             return size or 0
 

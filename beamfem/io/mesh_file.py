@@ -43,12 +43,15 @@ def read_through_meshio(path: Path) -> MeshFile:
         holds = f"; those of {kind} hold {_WITHOUT_LINES[kind]} only" if kind else ""
         endings = ", ".join(sorted(ending for ending in formats if formats[ending] not in _WITHOUT_LINES))
         raise InputError(f"{path}: mesh files end in {endings}{holds}")
-    silence = contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO())
+    printed = io.StringIO()
+    silence = contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed)
     try:
         with silence[0], silence[1], opened(path, kind) as source:
             mesh = meshio.read(source, file_format=kind)
     except (Exception, SystemExit) as error:  # meshio raises anything for a bad file, and exits for some
-        raise InputError(f"{path} cannot be read as {kind}: {error or type(error).__name__}{_advice(path)}") from error
+        words = printed.getvalue().strip() if isinstance(error, SystemExit) else str(error)
+        reason = " ".join(words.split()) or type(error).__name__
+        raise InputError(f"{path} cannot be read as {kind}: {reason}{_advice(path)}") from error
     blocks = tuple((block.type, np.asarray(block.data)) for block in mesh.cells)
     if any(nodes.shape[1:] == (0,) for _, nodes in blocks):
         raise InputError(f"{path}: it is damaged: it holds cells without nodes, as a file that ends early does")

@@ -1,8 +1,10 @@
 """Solutions in HDF5 files: the model described in JSON, the states in rows."""
 
 import json
+from collections.abc import Callable
 from dataclasses import asdict, replace
 from importlib.metadata import version
+from math import prod
 from os import PathLike
 from typing import Any
 
@@ -10,10 +12,19 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.files import readable
-from beamfem.io.axes_in_hdf5 import save_axes
+from beamfem.io.axes_in_hdf5 import AXES, save_axes
 from beamfem.io.critical import load_factors, load_path, save_critical
 from beamfem.io.description import describe, rebuild
-from beamfem.io.hdf5 import checksum, read_checked, read_label, required_h5py, write_checked, write_label, written_hdf5
+from beamfem.io.hdf5 import (
+    checksum,
+    read_checked,
+    read_label,
+    require_own,
+    required_h5py,
+    write_checked,
+    write_hdf5,
+    write_label,
+)
 from beamfem.keywords import keywords_checked
 from beamfem.results.path import Path as EquilibriumPath
 from beamfem.results.solution import Solution
@@ -37,7 +48,8 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
     at = np.append(solution.at, load_factors(solution)) if isinstance(solution, EquilibriumPath) else solution.at
     description = _text(describe(solution.model, at))
     block = max(min(_BLOCK_BYTES // (8 * solution.p.shape[1]), len(solution)), 1)
-    with written_hdf5(path) as (file, require_written):
+
+    def fill(file: Any, require_written: Callable[[], None]) -> None:
         write_label(file, "format", _FORMAT)
         file.attrs["format_version"] = _FORMAT_VERSION
         write_label(file, "beamfem_version", version("beamfem"))
@@ -61,6 +73,8 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
         if isinstance(solution, EquilibriumPath):
             save_critical(file, solution)
         save_axes(file, solution, require_written)
+
+    write_hdf5(path, fill)
 
 
 @keywords_checked
@@ -105,6 +119,8 @@ def load(path: str | PathLike[str]) -> Solution:
             return _read(file)
     except InputError as error:
         raise InputError(f"{source} cannot be loaded: {error}") from error
+    except MemoryError as error:
+        raise InputError(f"{source} cannot be loaded: it needs more memory than there is") from error
     except (
         OSError,
         KeyError,
@@ -143,7 +159,15 @@ def _read(file: Any) -> Solution:
     rows, all_rows = int(file.attrs["rows"]), int(file.attrs["all_rows"])
     if rows == 0:
         raise InputError("its writing was cut off before the first rows")
+    require_own(file, AXES)
     model = rebuild(_read_text(file, "model"))
+    for name in _STATES:
+        data = file[name]
+        if (
+            data.compression is None
+            and data.id.get_storage_size() < min(rows, len(data)) * prod(data.shape[1:]) * data.dtype.itemsize
+        ):
+            raise InputError(f"its {name} has {len(data)} rows that were never written")
     at, p, v, a = (np.asarray(file[name][:rows]) for name in _STATES)
     if at.shape != (rows,) or any(values.shape != (rows, model.size) for values in (p, v, a)):
         raise InputError(f"its arrays do not fit its model of {model.size} coordinates and its {rows} rows")

@@ -2,10 +2,12 @@
 
 import os
 import re
+import shutil
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
+from uuid import uuid4
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -14,6 +16,7 @@ from vtkmodules.vtkCommonCore import vtkDataArray, vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
+from beamfem.assembly.callbacks import uninterrupted
 from beamfem.errors import FileError, InputError
 from beamfem.files import make_folder, path_of, whole
 from beamfem.io.boundary import Boundary
@@ -79,20 +82,26 @@ def _write_series(solution: "Solution", path: Path, cells: Grid) -> None:
     chunk = max(1, VALUES_IN_MEMORY // cells.points)
     try:
         for first in range(0, len(solution), chunk):
-            rows = slice(first, first + chunk)
-            series.write(solution, rows)
-        series.clean()
+            series.write(solution, slice(first, first + chunk))
+        series.finish()
     finally:
-        series.publish()
+        series.close()
 
 
 class _Series:
-    """A .pvd file and the folder of its steps."""
+    """A .pvd file and the folder of its steps.
+
+    Where there is an earlier one, steps are written into a folder beside it and moved when all of them are there;
+    otherwise into its own, and the .pvd lists those so far.
+    """
 
     def __init__(self, path: Path, cells: Grid, name: str, at: np.ndarray) -> None:
         self.path, self.cells, self.folder = path, cells, path.with_suffix("")
         self.name, self.times = name, at
+        self.earlier = path.exists()
+        self.steps = path.with_name(f"{path.stem[:40]}.{uuid4().hex[:8]}.part") if self.earlier else self.folder
         make_folder(self.folder)
+        make_folder(self.steps)
         self.lines: list[str] = []
         table = vtkCellArray()
         table.SetData(*(numpy_to_vtkIdTypeArray(ids, deep=True) for ids in (cells.offsets, cells.connectivity)))
@@ -122,8 +131,7 @@ class _Series:
                     array.GetInformation().Set(vtkDataArray.UNITS_LABEL(), self.cells.unit(UNITS[name]))
                 self.grid.GetPointData().AddArray(array)
             self.grid.GetFieldData().AddArray(_named(self.name, np.array([value])))
-            file = self.folder / f"{len(self.lines):04d}.vtu"
-            # the .pvd of an earlier export may name this file
+            file = self.steps / f"{len(self.lines):04d}.vtu"
             partial = file.with_suffix(".part")
             self.writer.SetFileName(os.fspath(partial))
             if not self.writer.Write():
@@ -133,8 +141,29 @@ class _Series:
             source = quoteattr(f"{self.folder.name}/{file.name}")
             time = float(self.times[len(self.lines)])
             self.lines.append(f'    <DataSet timestep="{time!r}" part="0" file={source}/>\n')
-            if len(self.lines) % _STEPS_BETWEEN_PUBLISHING == 1:
+            if not self.earlier and len(self.lines) % _STEPS_BETWEEN_PUBLISHING == 1:
                 self.publish()
+
+    @uninterrupted
+    def finish(self) -> None:
+        """Replace the earlier export; signals wait until all of it is replaced."""
+        try:
+            if self.earlier:
+                for file in sorted(self.steps.iterdir()):
+                    os.replace(file, self.folder / file.name)
+            self.clean()
+            self.publish()
+        except FileError:
+            raise
+        except OSError as error:
+            raise FileError(f"{self.path} cannot be written: {error.strerror or error}") from error
+
+    def close(self) -> None:
+        """Publish the steps so far, or leave the earlier export as it is."""
+        if self.earlier:
+            shutil.rmtree(self.steps, ignore_errors=True)
+        else:
+            self.publish()
 
     def clean(self) -> None:
         """Remove the steps that an earlier, longer export left behind."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from beamfem.io.cells import Grid, times
 from beamfem.io.field_units import UNITS
-from beamfem.io.hdf5 import written_hdf5
+from beamfem.io.hdf5 import write_hdf5
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -24,8 +24,11 @@ def write_vtkhdf(solution: "Solution", path: Path, cells: Grid, chunk: int) -> N
 
     Cells are stored once, points and point data for every step. Raises MissingPackageError without h5py.
     """
-    with written_hdf5(path) as (file, require_written):
+
+    def fill(file: Any, require_written: Callable[[], None]) -> None:
         _write(file.create_group("VTKHDF", track_order=True), solution, cells, chunk, require_written)
+
+    write_hdf5(path, fill)
 
 
 def _write(root: Any, solution: "Solution", cells: Grid, chunk: int, require_written: Callable[[], None]) -> None:

@@ -11,7 +11,7 @@ from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p
 from functools import cached_property
 from threading import RLock, local
 from time import perf_counter, process_time
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 from numpy import dtype, float64, int32, int64, ndarray
 
@@ -23,12 +23,22 @@ from beamfem.kernels.pointers import address_of
 
 # types of arrays by kind of argument; "i" takes the address of a table of integers
 _TYPES = {"r": dtype(float64), "v": dtype(float64), "n": dtype(int64), "s": dtype(int32), "i": dtype(int64)}
+_Value = TypeVar("_Value", covariant=True)
 _PLAIN: dict[str, Any] = {"": None, "i": c_int64, "d": c_double}
 _compiling = RLock()  # two threads may need a kernel at the same time, but LLVM is not thread-safe
 if hasattr(os, "register_at_fork"):  # a child forked while the lock is held would wait for it forever
     os.register_at_fork(
         before=_compiling.acquire, after_in_parent=_compiling.release, after_in_child=_compiling.release
     )
+
+
+class _lockless_property(cached_property[_Value]):
+    """`cached_property` without the lock of Python 3.11: a child forked while it is held would wait for it forever."""
+
+    def __get__(self, instance: object | None, owner: type[Any] | None = None) -> Any:
+        if instance is None:
+            return self
+        return vars(instance).setdefault(str(self.attrname), self.func(instance))
 
 
 class _Waiting(local):
@@ -102,7 +112,7 @@ class Routine:
         """Whether its machine code is loaded in this process."""
         return "address" in vars(self)
 
-    @cached_property
+    @_lockless_property
     def address(self) -> int:
         """Address at which compiled code, C or Python can call it; compiles or loads it on first use."""
         with _waiting.counted(), _compiling:
@@ -124,7 +134,7 @@ class Routine:
         """Return the routine as an LLVM module, before optimisation."""
         return translate(self.function, self.kinds, self.returns, self.fastmath, dict(self._fixed), machine.SYMBOL)
 
-    @cached_property
+    @_lockless_property
     def compiled(self) -> Callable[..., Any]:
         """The compiled function, called without the GIL with numbers and addresses that nobody checks."""
         return CFUNCTYPE(_PLAIN[self.returns], *(_PLAIN.get(kind, c_void_p) for kind in self.kinds))(self.address)

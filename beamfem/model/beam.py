@@ -88,6 +88,8 @@ class Beam:
             raise InputError(f"material of a Beam must be a Material, got {shown(self.material)}{swapped}")
         if self.name is not None and not text("name of a Beam", self.name).strip():
             raise InputError("name of a Beam must not be empty; leave it out for a beam without one")
+        if self.name is not None and ("\0" in self.name or any("\ud800" <= sign <= "\udfff" for sign in self.name)):
+            raise InputError(f"name of a Beam must not contain NUL or half a surrogate pair, got {self.name!r}")
         if isinstance(self.section, type) or not (self.prismatic or callable(self.section)):
             raise InputError(
                 f"section of a Beam must be a section or a function of arc length, got {shown(self.section)}"

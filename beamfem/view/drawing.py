@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.assembly.callbacks import uninterrupted
 from beamfem.errors import InputError
 from beamfem.results.path import Path
 from beamfem.results.solution import Solution
@@ -26,6 +27,7 @@ _SEVERAL = 9  # shapes of a motion or a path
 _NAMED = 3  # shapes that are named each; above, a bar tells them apart
 
 
+@uninterrupted
 def plot_shapes(
     solution: Solution,
     path: str | PathLike[str] | None = None,

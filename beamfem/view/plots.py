@@ -3,6 +3,7 @@
 from os import PathLike
 from typing import Any
 
+from beamfem.assembly.callbacks import uninterrupted
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
 from beamfem.files import path_of, whole
@@ -39,6 +40,8 @@ def quiet(axes: Any) -> None:
         axes.spines[side].set_visible(False)
 
 
+# compiled code of matplotlib takes an interrupt for a wrong argument, or ignores it
+@uninterrupted
 def save_figure(figure: Any, path: str | PathLike[str]) -> None:
     """Write a figure to PNG, SVG or PDF according to the suffix of `path`; folders are created."""
     kinds = figure.canvas.get_supported_filetypes()

@@ -106,7 +106,7 @@ def read_model_file(path: str | PathLike[str]) -> Job:
     Runs the Python file that is named in `code`, if there is one.
     """
     file = Path(path)
-    if file.is_char_device():
+    if file.is_char_device() or file.is_fifo():
         raise ModelFileError("this is a device, not a model file", file, None, None)
     try:
         text = file.read_text(encoding="utf-8-sig")

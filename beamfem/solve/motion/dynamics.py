@@ -7,11 +7,12 @@ import numpy as np
 from beamfem.assembly.compiled import tell_of_compilation
 from beamfem.assembly.rigid_velocity import RigidVelocity
 from beamfem.assembly.system import System
-from beamfem.errors import ConvergenceError, InputError
+from beamfem.errors import ConvergenceError, EnergyWarning, InputError, warn
 from beamfem.kernels.motion_record import ITERATIONS
 from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
 from beamfem.model.turns import rotation_pairs
+from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.results.turns import first_turns
@@ -138,6 +139,8 @@ def simulate(
             f"converge: {failed.why}",
             solution,
         )
+    for sentence in energy_warnings(solution):
+        warn(sentence, EnergyWarning)
     return solution
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from beamfem.assembly.assembler import Assembler
 from beamfem.assembly.equations import ROUND_OFF, residual, sizes
 from beamfem.assembly.system import System, system_of
+from beamfem.kernels.motion_record import MotionLimits
 from beamfem.model.load import Load
 from beamfem.model.time_functions import kinks_of
 from beamfem.once import kept_with
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 _MUCH = 0.1  # of the exchanged energy; a larger rise makes the results meaningless
 _LOST = 0.5  # of the exchanged energy; numerical damping removes less where steps resolve what carries the energy
+_SMALL = 1e-3  # of the stored energy, a vibration of which is too small to matter
 _NUMBERS = 1_000_000  # coordinates times rows at which energies are evaluated
 _ROWS = (100, 2000)  # fewest and most such rows
 _FIRST = 32  # rows besides: what a sudden start gives rise to may last for a few steps only
@@ -113,13 +115,15 @@ def _balance(solution: "Solution") -> _Balance:
     total, forces = energy.total, _forces(solution, system)
     if not system.connectors.keep_energy:
         total = total - kinetic_of_connectors(solution) - potential_of_connectors(solution)
-    known, driving = _resolved(solution), np.fmin(energy.dissipated, 0.0)
+    known, driving = _resolved(solution, system), np.fmin(energy.dissipated, 0.0)
     work, lost, given = _work(solution, forces)
     rise = _summed(np.diff(total) - work - np.maximum(given, 0.0) + np.diff(np.nan_to_num(driving)), known)
     lost = lost + np.diff(energy.dissipated if system.history.laws else np.zeros(len(solution)))
     loss = -_summed(np.diff(total) - work - given + lost, known)
-    exchanged = max(energy.kinetic.max(), np.ptp(energy.strain), np.ptp(energy.potential), np.ptp(_summed(work, known)))
-    doubt = _doubt(solution, forces, work + given) + _round_off(system, solution.p, energy.strain)
+    parts = (energy.kinetic, energy.strain, energy.potential, _summed(work, known))
+    exchanged = max(*(np.ptp(part) for part in parts), energy.kinetic.max(), _SMALL * np.abs(energy.strain).max())
+    unknown = _summed(np.abs(np.diff(total)), ~known)
+    doubt = _doubt(solution, forces, work + given) + unknown + _inaccuracy(system, solution.p, energy.strain)
     moved = any(callable(item.value) for item in system.prescribed)
     driven = moved or not system.connectors.keep_energy or any(map(_drives, solution.model.loads))
     return _Balance(solution.at, rise, loss, doubt, float(exchanged), driven)
@@ -134,17 +138,20 @@ def _summed(change: np.ndarray, known: np.ndarray) -> np.ndarray:
     return np.append(0.0, np.cumsum(np.where(known, change, 0.0)))
 
 
-def _resolved(solution: "Solution") -> np.ndarray:
-    """Return whether no amplitude varies more between two rows (rows - 1,) than their values tell."""
+def _resolved(solution: "Solution", system: System) -> np.ndarray:
+    """Return whether no function of time varies more between two rows (rows - 1,) than their values tell."""
     begin, end = solution.at[:-1], solution.at[1:]
     result = np.ones(len(begin), dtype=bool)
-    for amplitude in {id(load.amplitude): load.amplitude for load in solution.model.loads if load.amplitude}.values():
-        for kink in kinks_of(amplitude):
+    functions = [load.amplitude for load in solution.model.loads if load.amplitude is not None]
+    functions += [item.value for item in system.prescribed if callable(item.value)]
+    for function in {id(function): function for function in functions}.values():
+        for kink in kinks_of(function):
             result &= (kink <= begin) | (kink >= end)
-        values = np.array([float(amplitude(time)) for time in solution.at.tolist()])
-        inner = [[float(amplitude(time)) for time in (begin + share * (end - begin)).tolist()] for share in _SHARES]
+        values = np.array([float(function(time)) for time in solution.at.tolist()])
+        inner = [[float(function(time)) for time in (begin + share * (end - begin)).tolist()] for share in _SHARES]
         straight = values[:-1] + _SHARES[:, None] * np.diff(values)
-        result &= np.abs(np.array(inner) - straight).max(axis=0) <= _BULGE * np.abs(values).max()
+        size = np.ptp(np.concatenate([[0.0], values, np.ravel(inner)]))
+        result &= np.abs(np.array(inner) - straight).max(axis=0) <= _BULGE * size
     return result
 
 
@@ -220,9 +227,13 @@ def _zero(time: float) -> float:
     return 0.0
 
 
-def _round_off(system: System, p: np.ndarray, strain: np.ndarray) -> float:
-    """Return the round-off of strain energies [J]: u of strains that are round-off changes U by 2 sqrt(U u) + u."""
+def _inaccuracy(system: System, p: np.ndarray, strain: np.ndarray) -> float:
+    """Return the accuracy of strain energies U [J] for coordinates to round-off and the tolerance of time steps.
+
+    The energy u of such differences alone changes U by 2 sqrt(U u) + u (Cauchy and Schwarz).
+    """
     reach, turn = sizes(system, np.abs(p).max(axis=0))
-    forces = ROUND_OFF * (reach * system.residual_errors[0] + turn * system.residual_errors[1])
-    least = 0.5 * ROUND_OFF * float(forces @ np.where(system.positions, reach, turn))
-    return float(2.0 * np.sqrt(max(float(np.abs(strain).max()), 0.0) * least) + least)
+    relative = ROUND_OFF + MotionLimits().tolerance
+    forces = relative * (reach * system.residual_errors[0] + turn * system.residual_errors[1])
+    least = 0.5 * relative * float(forces @ np.where(system.positions, reach, turn))
+    return float(2.0 * np.sqrt(np.abs(strain).max() * least) + least)

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.errors import EnergyWarning
+from beamfem.errors import EnergyWarning, TimeStepWarning
 from beamfem.results.energy_balance import _balance
+from beamfem.solve.motion.period_error import period_error
 
 ALUMINIUM, SECTION = bf.Material(7e10, 0.33, 2700.0), bf.Rectangle(0.01, 0.01)
 STEEL = bf.Material(2e11, 0.3, 7800.0, thermal_expansion=1.2e-5)
@@ -80,10 +81,39 @@ def test_work_and_damping_explain_the_energy_of_driven_motions(kind, retardation
 
 
 def test_energy_that_numerical_damping_removes_is_warned_of():
-    """A force that rises within 0.05 s leaves a vibration of 8.2 Hz, which nothing damps."""
+    """A pulse of 0.06 s leaves a vibration of 8.2 Hz, which nothing damps."""
     bar = straight()
-    force = bf.PointForce(bar.end, (0.0, 5.0), amplitude=lambda t: smooth(4.0 * t))
+    force = bf.PointForce(bar.end, (0.0, 5.0), amplitude=lambda t: np.sin(np.pi * min(t / 0.06, 1.0)))
     model = bf.Model([bar], [bf.Clamp(bar.start)], [force])
     with pytest.warns(EnergyWarning, match="falls by"):
         bf.simulate(model, 4.0, 5e-3, bf.GeneralizedAlpha(0.0))
     assert not bf.simulate(model, 1.0, 2e-3).warnings
+
+
+@pytest.mark.parametrize("steps", [10, 20, 60])
+def test_the_period_error_of_the_trapezoidal_rule_is_that_of_its_closed_form(steps):
+    """A step turns by 2 atan(w h / 2)."""
+    turn = 2.0 * np.pi / steps
+    expected = turn / (2.0 * np.arctan(0.5 * turn)) - 1.0
+    assert period_error(bf.GeneralizedAlpha(1.0).rule(0.1), 10.0 / steps) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("steps", [20, 60])
+def test_a_resonance_that_its_steps_detune_is_warned_of(steps):
+    """1.566 X / (2 zeta) = 1.53 mm at the tip of a post whose base vibrates by X (Blevins); half of it at 20 steps."""
+    frequency, ratio, size = 8.179247, 0.0051, 1e-5
+    omega = 2.0 * np.pi * frequency
+    post = straight(bf.Material(2e11, 0.3, 7800.0, retardation_time=2.0 * ratio / omega))
+    shaken = bf.Prescribed(post.start, ux=0.0, uy=lambda t: size * np.sin(omega * t), rotation=0.0)
+    run = lambda: bf.simulate(bf.Model([post], [shaken]), 80.0 / frequency, 1.0 / frequency / steps)  # noqa: E731
+    if steps == 20:
+        with pytest.warns(TimeStepWarning, match="detune the resonance"):
+            motion = run()
+        assert "time step" in motion._repr_html_()
+        assert any("detune" in sentence for sentence in motion.warnings)
+    else:
+        motion = run()
+        assert not motion.warnings
+        built_up = 1.566 * size / (2.0 * ratio) * (1.0 - np.exp(-2.0 * np.pi * ratio * 80.0))
+        assert np.abs(motion.displacement(post.end)[-120:, 1]).max() == pytest.approx(built_up, rel=0.05)
+    assert motion.statistics.frequency == pytest.approx(frequency, rel=0.02)

@@ -1,6 +1,7 @@
 """Motion in time."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from beamfem.solve.motion.initial_velocity import start_velocity
 from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, is_scheme, require_rule
 from beamfem.solve.motion.march import Last, Record, initial_acceleration, march, new_statistics
 from beamfem.solve.motion.onto_supports import put_onto_supports, require_on_supports
+from beamfem.solve.motion.period_error import detuned, main_frequency, period_error
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.time_steps import SIDE, stretches
 from beamfem.solve.motion.unresolved import name_unresolved
@@ -139,6 +141,12 @@ def simulate(
             f"converge: {failed.why}",
             solution,
         )
+    if is_scheme(integrator):
+        frequency = main_frequency(solution, system)
+        error = period_error(integrator.rule(step), frequency) if np.isfinite(frequency) else np.nan
+        found = detuned(solution, system, acting, frequency, error)
+        statistics = replace(solution.statistics, frequency=frequency, period_error=error, warnings=found)
+        solution = replace(solution, statistics=statistics)
     for sentence in energy_warnings(solution):
         warn(sentence, EnergyWarning)
     return solution

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 _MUCH = 0.1  # of the exchanged energy; a larger rise makes the results meaningless
 _LOST = 0.5  # of the exchanged energy; numerical damping removes less where steps resolve what carries the energy
 _SMALL = 1e-3  # of the stored energy, a vibration of which is too small to matter
-_NUMBERS = 1_000_000  # coordinates times rows at which energies are evaluated
-_ROWS = (100, 2000)  # fewest and most such rows
+_ROWS = 100  # spans of rows, in the fastest of which energies are evaluated, which cost more than many time steps
+_WORKED = 500  # such rows if work is to be summed over them
 _FIRST = 32  # rows besides: what a sudden start gives rise to may last for a few steps only
 _SHARES = np.array([0.21, 0.5, 0.79])  # of the time between rows, at which amplitudes are evaluated
 _BULGE = 0.1  # of an amplitude, by which it may differ from a straight line between rows
@@ -97,7 +97,7 @@ def _takes_amplitudes(solution: "Solution") -> bool:
 
 def _some_rows(solution: "Solution") -> "Solution":
     """Return all rows, or of many the fastest ones of equal spans, with the first ones and the last."""
-    count = int(np.clip(_NUMBERS // max(solution.model.size, 1), *_ROWS))
+    count = _WORKED if _driven(solution, system_of(solution.model, static=False)) else _ROWS
     if len(solution) <= count:
         return solution
     speeds, bounds = np.einsum("sn,sn->s", solution.v, solution.v), np.linspace(0, len(solution), count + 1).astype(int)
@@ -124,9 +124,13 @@ def _balance(solution: "Solution") -> _Balance:
     exchanged = max(*(np.ptp(part) for part in parts), energy.kinetic.max(), _SMALL * np.abs(energy.strain).max())
     unknown = _summed(np.abs(np.diff(total)), ~known)
     doubt = _doubt(solution, forces, work + given) + unknown + _inaccuracy(system, solution.p, energy.strain)
+    return _Balance(solution.at, rise, loss, doubt, float(exchanged), _driven(solution, system))
+
+
+def _driven(solution: "Solution", system: System) -> bool:
+    """Return whether loads, supports or connectors may do work on a motion."""
     moved = any(callable(item.value) for item in system.prescribed)
-    driven = moved or not system.connectors.keep_energy or any(map(_drives, solution.model.loads))
-    return _Balance(solution.at, rise, loss, doubt, float(exchanged), driven)
+    return moved or not system.connectors.keep_energy or any(map(_drives, solution.model.loads))
 
 
 def _drives(load: Load) -> bool:

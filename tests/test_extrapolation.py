@@ -147,7 +147,9 @@ def test_a_motion_that_gains_energy_says_so():
     bending, mass = 2.6e6 * section.second_moment, 1000.0 * section.area
     half_period = np.pi / (3.516 * np.sqrt(bending / mass))
     model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointMoment(beam.end, bending)])
-    long, short = (bf.simulate(model, half_period, half_period / steps) for steps in (10, 400))
+    with pytest.warns(bf.errors.EnergyWarning, match="rises by"):
+        long = bf.simulate(model, half_period, half_period / 10)
+    short = bf.simulate(model, half_period, half_period / 400)
     assert long.energy_drift.change > long.energy_drift.exchanged
     assert any("the time steps do not resolve" in sentence for sentence in long.warnings)
     assert short.energy_drift.digits > 3.0

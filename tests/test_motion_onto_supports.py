@@ -69,6 +69,7 @@ def test_the_displacements_that_the_message_names_are_taken():
     assert motion.energy().strain[0] == pytest.approx(BENT.energy().strain[-1], rel=1e-6)
 
 
+@pytest.mark.filterwarnings("ignore::beamfem.errors.EnergyWarning")  # a step is a period of the smallest beam
 @pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
 @pytest.mark.parametrize("deflection", [1e-7, 1e-5, 1e-2])
 def test_a_jump_is_measured_by_the_displacements_of_the_start(size, deflection):

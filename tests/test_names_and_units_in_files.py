@@ -60,6 +60,7 @@ def test_messages_and_texts_call_beams_by_name():
         _ = bf.Model([overlapping], units="N, mm").meshes
 
 
+@pytest.mark.filterwarnings("ignore::beamfem.errors.EnergyWarning")  # two steps of a sudden start
 def test_motions_tell_energy_and_time_in_the_units_of_the_model():
     model = bracket("N, mm, ms")
     motion = bf.simulate(model, duration=1.0, step=0.5)

@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from beamfem.results.energies import Energy
     from beamfem.results.solution import Solution
 
-_MUCH = 0.1  # fraction of the exchanged energy; a larger drift makes the results meaningless
 _ROWS = 100  # rows at which the exchanged energy is evaluated
 _FIRST = 32  # rows at which it is evaluated besides: what a sudden start gives rise to may last for a few steps only
 
@@ -55,31 +54,6 @@ def energy_drift(solution: "Solution") -> EnergyDrift | None:
         return None
     energy = _energy_of_rows(solution)
     return EnergyDrift(float(energy.total[-1] - energy.total[0]), _exchanged(energy), solution.model.unit("J"))
-
-
-def drift_warnings(solution: "Solution") -> tuple[str, ...]:
-    """Return a warning if the energy of a motion rises although no work is done on it."""
-    drift = solution.energy_drift or _rise(solution)
-    if drift is None or not drift.change > _MUCH * drift.exchanged:
-        return ()
-    return (
-        f"the energy rises by {drift.change:.3g} {drift.unit}, compared with {drift.exchanged:.3g} {drift.unit} "
-        "exchanged at most, although no work is done on the motion: the time steps do not resolve its high-frequency "
-        "vibration. Use smaller steps",
-    )
-
-
-def _rise(solution: "Solution") -> EnergyDrift | None:
-    """Return the largest rise of the energy of a motion that only materials and section laws can dissipate.
-
-    Whatever they dissipate, the energy cannot rise above that of the start. A law with history that tells a negative
-    dissipation drives the motion: then the sum counts. None for motions that something else may drive or damp.
-    """
-    if solution.static or not len(solution) or solution.loaded is not None or _driven(solution):
-        return None
-    energy = _energy_of_rows(solution)
-    most = np.fmin(energy.total, energy.total + energy.dissipated)
-    return EnergyDrift(float((most - most[0]).max()), _exchanged(energy), solution.model.unit("J"))
 
 
 def _energy_of_rows(solution: "Solution") -> "Energy":

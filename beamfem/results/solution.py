@@ -11,7 +11,7 @@ from beamfem.errors import InputError
 from beamfem.model.model import Model
 from beamfem.once import cached_property
 from beamfem.registry import offered
-from beamfem.results.energy_drift import drift_warnings
+from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.exports import Exports
 from beamfem.results.fitting import made_read_only, require_rows, require_state
 from beamfem.results.locking import locking_warnings
@@ -167,7 +167,7 @@ class Solution(Quantities, Pictures, Exports):
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """Warnings to heed before using the results, on locking and on missing joints too; empty if there are none."""
-        found = locking_warnings(self), drift_warnings(self), unjoined_warnings(self)
+        found = locking_warnings(self), energy_warnings(self), unjoined_warnings(self)
         return (*self.statistics.warnings, *chain.from_iterable(found))
 
     @cached_property

@@ -50,6 +50,9 @@ def solution_rows(solution: "Solution") -> list[tuple[str, str]]:
     ]
     if solution.energy_drift is not None:
         rows.append(("energy", str(solution.energy_drift)))
+    if statistics.period_error == statistics.period_error:  # else nan
+        at = f"{statistics.frequency:.4g} {solution.model.unit('Hz')}"
+        rows.append(("time step", f"lengthens the period by {100 * statistics.period_error:.2g} % at {at}"))
     if len(solution):
         name, value = largest_displacement(solution)
         rows.append((name, value))

@@ -1,17 +1,19 @@
 """Motion in time."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from beamfem.assembly.compiled import tell_of_compilation
 from beamfem.assembly.rigid_velocity import RigidVelocity
 from beamfem.assembly.system import System
-from beamfem.errors import ConvergenceError, InputError
+from beamfem.errors import ConvergenceError, EnergyWarning, InputError, warn
 from beamfem.kernels.motion_record import ITERATIONS
 from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
 from beamfem.model.turns import rotation_pairs
+from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.results.turns import first_turns
@@ -22,6 +24,7 @@ from beamfem.solve.motion.initial_velocity import start_velocity
 from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, is_scheme, require_rule
 from beamfem.solve.motion.march import Last, Record, initial_acceleration, march, new_statistics
 from beamfem.solve.motion.onto_supports import put_onto_supports, require_on_supports
+from beamfem.solve.motion.period_error import detuned, main_frequency, period_error
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.time_steps import SIDE, stretches
 from beamfem.solve.start.functions_of_time import functions_of_time
@@ -138,6 +141,14 @@ def simulate(
             f"converge: {failed.why}",
             solution,
         )
+    if is_scheme(integrator):
+        frequency = main_frequency(solution, system)
+        error = period_error(integrator.rule(step), frequency) if np.isfinite(frequency) else np.nan
+        found = detuned(solution, system, acting, frequency, error)
+        statistics = replace(solution.statistics, frequency=frequency, period_error=error, warnings=found)
+        solution = replace(solution, statistics=statistics)
+    for sentence in energy_warnings(solution):
+        warn(sentence, EnergyWarning)
     return solution
 
 

@@ -1,0 +1,83 @@
+"""Relative error of the period that the steps of a motion give the frequency that carries its energy."""
+
+import numpy as np
+
+from beamfem.assembly.system import System
+from beamfem.errors import TimeStepWarning, warn
+from beamfem.kernels.motion_record import ALPHA_F, ALPHA_M, BETA, GAMMA, TIME_STEP
+from beamfem.model.damping import retardation_time
+from beamfem.results.solution import Solution
+from beamfem.solve.start.functions_of_time import FunctionOfTime
+
+_PERIODS = 2.0  # fewest in the second half of a motion that define a frequency
+_NEAR = 0.25  # of a natural frequency, within which a driven motion is near resonance
+_DETUNED = 0.1  # of a period; a response that is out of phase by less over the whole motion has hardly changed
+_ROWS = 200  # most rows at which energies are evaluated
+
+
+def period_error(rule: np.ndarray, frequency: float) -> float:
+    """Return by which ratio a method lengthens the period of an undamped vibration; rule: see `Scheme`.
+
+    The principal roots of the method for x'' + w^2 x = 0 turn by an angle a in a step h; the ratio is w h / a - 1.
+    """
+    alpha_m, alpha_f, gamma, beta = rule[[ALPHA_M, ALPHA_F, GAMMA, BETA]]
+    turn = 2.0 * np.pi * frequency * rule[TIME_STEP]
+    stiffness = turn**2
+    # in x, h x' and h^2 a
+    after = [[1.0, 0.0, -beta], [0.0, 1.0, -gamma], [(1.0 - alpha_f) * stiffness, 0.0, 1.0 - alpha_m]]
+    before = [[1.0, 1.0, 0.5 - beta], [0.0, 1.0, 1.0 - gamma], [-alpha_f * stiffness, 0.0, -alpha_m]]
+    roots = np.linalg.eigvals(np.linalg.solve(after, before))
+    angles = np.abs(np.angle(roots[np.abs(roots.imag) > 0.0]))
+    if not len(angles):
+        return np.inf
+    return float(turn / angles[np.argmin(np.abs(angles - turn))] - 1.0)
+
+
+def main_frequency(solution: Solution, system: System) -> float:
+    """Return the frequency [Hz] of the second half of a motion: w^2 is the mean square velocity per displacement.
+
+    nan for less than two periods, which define none.
+    """
+    half = slice(len(solution) // 2, None)
+    if len(solution.at[half]) < 4:
+        return np.nan
+    dofs = np.flatnonzero(system.positions)
+    moved = solution.p[half][:, dofs]
+    moved = moved - moved.mean(axis=0)
+    speed = float(np.linalg.norm(solution.v[half][:, dofs]))
+    size = float(np.linalg.norm(moved))
+    if not size > 0.0:
+        return np.nan
+    frequency = speed / size / (2.0 * np.pi)
+    return frequency if frequency * float(np.ptp(solution.at[half])) >= _PERIODS else np.nan
+
+
+def detuned(
+    solution: Solution, system: System, functions: list[FunctionOfTime], frequency: float, error: float
+) -> tuple[str, ...]:
+    """Warn of a driven vibration near resonance whose period the steps change by more than half its damping ratio.
+
+    Return the sentence. Only Kelvin-Voigt damping counts, with the ratio w t / 2 of the smallest retardation time t.
+    """
+    sections = [(beam.section, beam.material) for beam in solution.model.beams]
+    times = [retardation_time(section, material) for section, material in sections if not callable(section)]
+    damping = np.pi * frequency * min((time for time in times if time > 0.0), default=0.0)
+    cycles = frequency * float(solution.at[-1])
+    if not (damping > 0.0 and error > 0.5 * damping and error * cycles > _DETUNED):
+        return ()
+    half = solution.at[len(solution.at) // 2 :].tolist()
+    if not any(np.ptp([function.at(time) for time in half]) > 0.0 for function in functions):
+        return ()
+    rows = solution[len(solution) // 2 :: max(len(half) // _ROWS, 1)]
+    energy = rows.energy()
+    ratio = np.sqrt(float(np.mean(energy.kinetic)) / max(float(np.mean(energy.strain)), np.finfo(float).tiny))
+    if abs(ratio - 1.0) > _NEAR:
+        return ()
+    unit = solution.model.unit
+    sentence = (
+        f"the time steps lengthen the period at {frequency:.4g} {unit('Hz')}, where the motion is driven near "
+        f"resonance, by {100 * error:.2g} %, more than half the damping ratio there, {100 * damping:.2g} %: they "
+        f"detune the resonance. Use steps shorter by a factor of {np.sqrt(10.0 * error / damping):.2g}"
+    )
+    warn(sentence, TimeStepWarning)
+    return (sentence,)

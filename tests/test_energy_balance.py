@@ -1,0 +1,119 @@
+"""Energy of motions in every row against work and damping."""
+
+import numpy as np
+import pytest
+
+import beamfem as bf
+from beamfem.errors import EnergyWarning, TimeStepWarning
+from beamfem.results.energy_balance import _balance
+from beamfem.solve.motion.period_error import period_error
+
+ALUMINIUM, SECTION = bf.Material(7e10, 0.33, 2700.0), bf.Rectangle(0.01, 0.01)
+STEEL = bf.Material(2e11, 0.3, 7800.0, thermal_expansion=1.2e-5)
+
+
+def straight(material=STEEL, elements=4):
+    return bf.Beam(bf.Line((0, 0), (1, 0)), elements, bf.CRBF(order=3), SECTION, material)
+
+
+@pytest.mark.parametrize("pressed", [False, True])
+def test_energy_that_rises_between_start_and_end_is_warned_of(pressed):
+    """Sevenfold at 0.356 s, less than at the start in the end; a faint pressure hid it."""
+    halves = [bf.Beam(bf.Line((x, 0), (x + 0.5, 0)), 4, bf.CRBF(order=1), SECTION, ALUMINIUM) for x in (0.0, 0.5)]
+    clamp, push = [bf.Clamp(halves[0].start)], [bf.PointForce(halves[1].end, (0, 20.0))]
+    joined = bf.Model(halves, clamp, push, joints=[bf.Rigid(halves[0].end, halves[1].start)])
+    apart = bf.Model(halves, clamp, [bf.Pressure(halves[0], 1e-9)] if pressed else [])
+    with pytest.warns(EnergyWarning, match="rises by 7.23 J until 0.356 s"):
+        motion = bf.simulate(apart, 0.5, 1e-3, start=bf.solve_static(joined)[-1])
+    assert motion.energy().total[-1] < motion.energy().total[0]
+
+
+def test_a_stiff_bar_that_spins_too_fast_for_its_steps_is_warned_of():
+    """Its energy is m L^2 w^2 / 6 = 16.7 J."""
+    section = bf.Section.from_stiffness(axial=1e7, shear=4e6, bending=1e3, mass=1.0, rotary_inertia=1e-4)
+    bar = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(order=3), section)
+    spin = bf.RigidVelocity((0, 0), angular=10.0, about=(0, 0))
+    with pytest.warns(EnergyWarning, match="rises by"):
+        motion = bf.simulate(bf.Model([bar], [bf.Pin(bar.start)]), 1.6, np.pi / 250, velocity=spin)
+    assert motion.energy().total[0] == pytest.approx(100.0 / 6.0, rel=1e-3)
+
+
+def test_a_heated_bar_in_which_nothing_moves_is_not_warned_of():
+    bar = straight(elements=8)
+    held = bf.Model([bar], [bf.Clamp(bar.start), bf.Clamp(bar.end)], [bf.Temperature(bar, 50.0)])
+    motion = bf.simulate(held, 0.05, 1e-3)
+    assert motion.energy().total == pytest.approx(0.5 * 2e7 * (1.2e-5 * 50.0) ** 2, rel=1e-9)
+    assert not motion.warnings
+
+
+def smooth(t):
+    """Rise to 1 in 0.2 s."""
+    return 0.5 * (1.0 - np.cos(np.pi * min(t / 0.2, 1.0)))
+
+
+DRIVEN = {
+    "dead": lambda bar: ([bf.Clamp(bar.start)], [bf.PointForce(bar.end, (0.0, 20.0), amplitude=smooth)]),
+    "follower": lambda bar: (
+        [bf.Clamp(bar.start)],
+        [bf.PointForce(bar.end, (0.0, 20.0), amplitude=smooth, follower=True)],
+    ),
+    "pressure": lambda bar: ([bf.Clamp(bar.start)], [bf.Pressure(bar, 50.0, amplitude=smooth)]),
+    "heated": lambda bar: ([bf.Clamp(bar.start)], [bf.Temperature(bar, 0.0, gradient=5e4, amplitude=smooth)]),
+    "moved": lambda bar: (
+        [bf.Prescribed(bar.start, ux=0.0, uy=lambda t: 0.1 * smooth(t), rotation=0.0)],
+        [],
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", DRIVEN)
+@pytest.mark.parametrize("retardation", [0.0, 2e-3])
+def test_work_and_damping_explain_the_energy_of_driven_motions(kind, retardation):
+    """Resolved steps without numerical damping leave no difference but the error of the steps and of quadrature."""
+    bar = straight(bf.Material(2e11, 0.3, 7800.0, thermal_expansion=1.2e-5, retardation_time=retardation))
+    supports, loads = DRIVEN[kind](bar)
+    motion = bf.simulate(bf.Model([bar], supports, loads), 0.4, 1e-3, bf.GeneralizedAlpha(1.0))
+    balance = _balance(motion)
+    assert balance.exchanged > 0.1
+    assert np.abs(balance.loss).max() < 5e-3 * balance.exchanged
+    assert not motion.warnings
+    assert np.abs(balance.doubt).max() < 0.1 * balance.exchanged  # else no rise of a tenth would be seen
+
+
+def test_energy_that_numerical_damping_removes_is_warned_of():
+    """A pulse of 0.06 s leaves a vibration of 8.2 Hz, which nothing damps."""
+    bar = straight()
+    force = bf.PointForce(bar.end, (0.0, 5.0), amplitude=lambda t: np.sin(np.pi * min(t / 0.06, 1.0)))
+    model = bf.Model([bar], [bf.Clamp(bar.start)], [force])
+    with pytest.warns(EnergyWarning, match="falls by"):
+        bf.simulate(model, 4.0, 5e-3, bf.GeneralizedAlpha(0.0))
+    assert not bf.simulate(model, 1.0, 2e-3).warnings
+
+
+@pytest.mark.parametrize("steps", [10, 20, 60])
+def test_the_period_error_of_the_trapezoidal_rule_is_that_of_its_closed_form(steps):
+    """A step turns by 2 atan(w h / 2)."""
+    turn = 2.0 * np.pi / steps
+    expected = turn / (2.0 * np.arctan(0.5 * turn)) - 1.0
+    assert period_error(bf.GeneralizedAlpha(1.0).rule(0.1), 10.0 / steps) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("steps", [20, 60])
+def test_a_resonance_that_its_steps_detune_is_warned_of(steps):
+    """1.566 X / (2 zeta) = 1.53 mm at the tip of a post whose base vibrates by X (Blevins); half of it at 20 steps."""
+    frequency, ratio, size = 8.179247, 0.0051, 1e-5
+    omega = 2.0 * np.pi * frequency
+    post = straight(bf.Material(2e11, 0.3, 7800.0, retardation_time=2.0 * ratio / omega))
+    shaken = bf.Prescribed(post.start, ux=0.0, uy=lambda t: size * np.sin(omega * t), rotation=0.0)
+    run = lambda: bf.simulate(bf.Model([post], [shaken]), 80.0 / frequency, 1.0 / frequency / steps)  # noqa: E731
+    if steps == 20:
+        with pytest.warns(TimeStepWarning, match="detune the resonance"):
+            motion = run()
+        assert "time step" in motion._repr_html_()
+        assert any("detune" in sentence for sentence in motion.warnings)
+    else:
+        motion = run()
+        assert not motion.warnings
+        built_up = 1.566 * size / (2.0 * ratio) * (1.0 - np.exp(-2.0 * np.pi * ratio * 80.0))
+        assert np.abs(motion.displacement(post.end)[-120:, 1]).max() == pytest.approx(built_up, rel=0.05)
+    assert motion.statistics.frequency == pytest.approx(frequency, rel=0.02)

@@ -85,18 +85,18 @@ class AxisPoints:
 
 
 @dataclass(frozen=True, eq=False)
-class OnePoint(AxisPoints):
-    """The point at a fraction of the length; where two elements meet, that of the one towards the beam's end."""
+class PointsAt(AxisPoints):
+    """Points at any places `cuts` of a beam."""
 
-    fraction: float
+    cuts: Cuts
 
     @cached_property
     def element(self) -> np.ndarray:
-        return np.array([self.mesh.locate(self.fraction)[0]])
+        return self.cuts.element
 
     @cached_property
     def xi(self) -> np.ndarray:
-        return np.array([self.mesh.locate(self.fraction)[1]])
+        return self.cuts.xi
 
 
 def section_forces(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> dict[str, np.ndarray]:

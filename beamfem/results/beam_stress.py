@@ -1,8 +1,7 @@
 """Stress of a beam: extremes over each section, their peaks along the beam, and the utilisation of the strength."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,9 +9,11 @@ from beamfem.model.beam import Beam
 from beamfem.model.distributions import distributions
 from beamfem.model.mesh import BeamMesh
 from beamfem.registry import offered
+from beamfem.results.extremes import Measure, estimate, extreme_of_beams
 from beamfem.results.free_bodies import Cuts
 from beamfem.results.neighbours import of_beam
-from beamfem.results.section_forces import at_points, in_parts, stations
+from beamfem.results.peak import Part, Peak
+from beamfem.results.section_forces import at_points, by_element, in_parts, peak_of, stations
 from beamfem.results.self_stress import self_stress
 from beamfem.results.strength import strengths
 from beamfem.results.stresses import von_mises
@@ -23,69 +24,18 @@ from beamfem.validation import require_known, shown
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
-Part = Literal["lower", "upper", "tension", "compression", "shear", "von_mises", "utilisation"]
 PARTS: tuple[Part, ...] = ("lower", "upper", "tension", "compression", "shear", "von_mises", "utilisation")
 _HEIGHTS = np.linspace(0.0, 1.0, 9)  # fractions of a layer: its faces, and the peak of a parabolic shear stress
 _VALUES = 4_000_000  # most values in one array
 
 
 @dataclass(frozen=True)
-class Peak:
-    """The extreme of a stress, which unpacks into its value, arc length and row.
-
-    Parameters
-    ----------
-    value : float, [Pa]
-        The stress; a utilisation is a ratio [-].
-    arc_length : float, [m]
-        Where it is.
-    row : int
-        Row of the solution.
-    at : float
-        Load factor of that row, or time of a motion [s].
-    beam : Beam
-        The beam.
-    part : str
-        Which stress it is.
-    static : bool, default True
-        Whether `at` is a load factor.
-    units : Units
-        Units of the model, for the text.
-
-    Examples
-    --------
-    >>> value, arc_length, row = solution.stresses(beam).peak("tension")
-    """
-
-    value: float
-    arc_length: float
-    row: int
-    at: float
-    beam: Beam
-    part: Part = "von_mises"
-    static: bool = True
-    units: Units = field(default=Units(), repr=False)
-
-    def __iter__(self) -> Iterator[float]:
-        return iter((self.value, self.arc_length, self.row))
-
-    def __repr__(self) -> str:
-        return f"Peak({self.part} {self.in_words if np.isfinite(self.value) else 'is not known'}, of {self.beam!r})"
-
-    @property
-    def in_words(self) -> str:
-        """Value and place with their units."""
-        unit = "" if self.part == "utilisation" else f" {self.units.of('Pa')}"
-        when = f"load factor {self.at:.4g}" if self.static else f"t = {self.at:.4g} {self.units.of('s')}"
-        return f"{self.value:.4g}{unit} at {self.arc_length:.4g} {self.units.of('m')} in row {self.row}, {when}"
-
-
-@dataclass(frozen=True)
 class BeamStress:
     """Extreme stresses of the sections of a beam, at the stations of its section forces.
 
-    The stress is the Cauchy stress, as in `Fields`; it is nan for sections that define none. Each layer is evaluated at
-    its faces and at seven heights between them.
+    Between stations stresses may be larger: `peak` finds their extremes there too. The stress is the Cauchy stress, as
+    in `Fields`; it is nan for sections that define none. Each layer is evaluated at its faces and at seven heights
+    between them.
 
     Parameters
     ----------
@@ -110,6 +60,8 @@ class BeamStress:
         Whether `at` are load factors.
     units : Units
         Units of the model, for the text of peaks.
+    solution : Solution
+        The solution, which `peak` evaluates between stations.
 
     Examples
     --------
@@ -130,6 +82,7 @@ class BeamStress:
     beam: Beam
     static: bool = True
     units: Units = field(default=Units(), repr=False)
+    solution: "Solution" = field(repr=False, kw_only=True)
 
     def __repr__(self) -> str:
         rows, stations = self.von_mises.shape
@@ -142,7 +95,7 @@ class BeamStress:
         return offered(BeamStress._repr_html_)(self)
 
     def peak(self, part: Part = "von_mises") -> Peak:
-        """Return the peak along the beam and over the rows.
+        """Return the peak along the beam, at and between its stations, and over the rows.
 
         It is the smallest value of `compression`, the largest magnitude of `lower` and `upper`, and the largest value
         of the others.
@@ -168,13 +121,13 @@ class BeamStress:
         >>> round(arc_length, 3), row
         (0.0, 1)
         """
-        require_known(f"there is no stress {shown(part)}", part, PARTS)
-        values = getattr(self, part)
-        if not np.isfinite(values).any():
-            return Peak(np.nan, np.nan, -1, np.nan, self.beam, part, self.static, self.units)
-        row, station = np.unravel_index(np.nanargmax(_measured(part, values)), values.shape)
-        place = float(self.arc_length[station]), int(row), float(self.at[row])
-        return Peak(float(values[row, station]), *place, self.beam, part, self.static, self.units)
+        _require_part(part)
+        unit = "-" if part == "utilisation" else "Pa"
+
+        def at(solution: "Solution", mesh: BeamMesh, cuts: Cuts, rows: np.ndarray) -> np.ndarray:
+            return stress_at(solution, mesh, cuts.element, cuts.xi, rows)[part]
+
+        return peak_of(self.solution, self.beam, (part, unit), getattr(self, part), _measure(part), at)
 
 
 def beam_stress(solution: "Solution", beam: Beam) -> BeamStress:
@@ -185,7 +138,7 @@ def beam_stress(solution: "Solution", beam: Beam) -> BeamStress:
     stress = dict(zip(PARTS, of_beam(solution, number, _at_stations), strict=True))
     arc = mesh.arc_length(cuts.element, cuts.xi)
     units = units_of(solution.model.units)
-    return BeamStress(arc, at=solution.at, beam=beam, static=solution.static, units=units, **stress)
+    return BeamStress(arc, at=solution.at, beam=beam, static=solution.static, units=units, solution=solution, **stress)
 
 
 def _at_stations(solution: "Solution", mesh: BeamMesh) -> np.ndarray:
@@ -200,18 +153,28 @@ def peak_stress(solution: "Solution", part: Part = "von_mises") -> Peak:
 
     Warns of beams with sections that define no stress.
     """
-    peaks = [beam_stress(solution, beam).peak(part) for beam in solution.model.beams]
-    sizes = _measured(part, np.array([peak.value for peak in peaks]))
+    _require_part(part)
+    measure, beams = _measure(part), solution.model.beams
+    sizes = np.array([_estimate(solution, beam, part, measure) for beam in beams])
     unknown = np.isnan(sizes)
     if part != "utilisation":  # which a material without a strength does not have either
         what = "nan" if unknown.all() else "left out"
-        warn_of_unknown_stress(solution.model.beams, np.flatnonzero(unknown).tolist(), what)
-    return peaks[0 if unknown.all() else int(np.nanargmax(sizes))]
+        warn_of_unknown_stress(beams, np.flatnonzero(unknown).tolist(), what)
+    return extreme_of_beams(sizes, measure, lambda number: beam_stress(solution, beams[number]).peak(part))[1]
 
 
-def _measured(part: Part, values: np.ndarray) -> np.ndarray:
+def _require_part(part: str) -> None:
+    require_known(f"there is no stress {shown(part)}", part, PARTS)
+
+
+def _estimate(solution: "Solution", beam: Beam, part: Part, measure: Measure) -> float:
+    values, mesh = getattr(beam_stress(solution, beam), part), solution.model.meshes[solution.model.number_of(beam)]
+    return estimate(*by_element(mesh, values), measure)
+
+
+def _measure(part: Part) -> Measure:
     """Return what is largest at the peak."""
-    return -values if part == "compression" else np.abs(values) if part in ("lower", "upper") else values
+    return np.negative if part == "compression" else np.abs if part in ("lower", "upper") else np.asarray
 
 
 def stress_at(

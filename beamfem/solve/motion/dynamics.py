@@ -12,6 +12,7 @@ from beamfem.kernels.motion_record import ITERATIONS
 from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
 from beamfem.model.turns import rotation_pairs
+from beamfem.results.checks import warned
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.results.turns import first_turns
@@ -80,6 +81,13 @@ def simulate(
         If a step does not converge; its `solution` has all states so far. Any other exception during the solve, such as
         KeyboardInterrupt, carries the states so far as its `solution` too.
 
+    Warns
+    -----
+    LockingWarning
+        If locking changes displacements by 1 % or more.
+    LargeStrainWarning
+        If strains of a linear law exceed 0.2, or the utilisation of a strength exceeds 1.
+
     Examples
     --------
     >>> motion = bf.simulate(model, duration=0.02, step=0.001)
@@ -138,7 +146,7 @@ def simulate(
             f"converge: {failed.why}",
             solution,
         )
-    return solution
+    return warned(solution)
 
 
 def _solution(

@@ -11,6 +11,7 @@ from beamfem.assembly.compiled import tell_of_compilation
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
+from beamfem.results.checks import warned
 from beamfem.results.solution import Solution
 from beamfem.results.turns import start_rotations
 from beamfem.solve.newton.iteration import Newton, require_newton
@@ -78,6 +79,12 @@ def solve_static(
     -----
     UnstableWarning
         If some rows are unstable equilibria.
+    RoundOffWarning
+        If round-off leaves few digits of the forces.
+    LockingWarning
+        If locking changes displacements by 1 % or more.
+    LargeStrainWarning
+        If strains of a linear law exceed 0.2, or the utilisation of a strength exceeds 1.
 
     Examples
     --------
@@ -86,9 +93,10 @@ def solve_static(
     array([ 0.    , -0.0153, -0.0305])
     """
     if at is None:
-        return solve_through(model, (), steps, newton, snap=snap)
+        return warned(solve_through(model, (), steps, newton, snap=snap))
     load_factors = _ascending(at)
-    return _rows_at(solve_through(model, load_factors, steps, newton, snap=snap, end=load_factors[-1]), load_factors)
+    through = solve_through(model, load_factors, steps, newton, snap=snap, end=load_factors[-1])
+    return warned(_rows_at(through, load_factors))
 
 
 def _ascending(at: Sequence[float]) -> list[float]:

@@ -12,9 +12,7 @@ import numpy as np
 
 from beamfem.assembly.system import System
 from beamfem.element.coordinates import KINEMATICS, labels
-from beamfem.errors import InputError
 from beamfem.model.mesh import BeamMesh
-from beamfem.section.protocol import CrossSection
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -114,26 +112,11 @@ def _section_columns(mesh: BeamMesh) -> np.ndarray:
 
 
 def heights(system: System) -> np.ndarray:
-    """Return the height (m,) [m] of the section between neighbouring nodes, about constant in an element.
-
-    Of a section without one, that of a rectangle with the same stiffnesses.
-    """
+    """Return the height (m,) [m] of the section in the middle of the elements of neighbouring nodes."""
     parts = []
     for mesh in system.model.meshes:
-        arc = 0.5 * (mesh.vertices[1:] + mesh.vertices[:-1])
-        beam = mesh.beam
+        arc, beam = 0.5 * (mesh.vertices[1:] + mesh.vertices[:-1]), mesh.beam
         sections = [beam.section_at(s) for s in (arc[:1] if beam.prismatic else arc).tolist()]
-        own = np.array([_height(section, mesh) for section in sections])
+        own = np.array([np.ptp(section.bounds) for section in sections])
         parts.append(np.repeat(np.broadcast_to(own, len(arc)), mesh.node.shape[1] - 1))
     return np.concatenate(parts)
-
-
-def _height(section: CrossSection, mesh: BeamMesh) -> float:
-    height = float(np.ptp(section.bounds))
-    if height > 0.0:
-        return height
-    try:
-        rigidity = section.rigidity(mesh.beam.material)
-    except (InputError, AttributeError):
-        return 0.0
-    return float(np.sqrt(12.0 * rigidity.bending / rigidity.axial)) if rigidity.axial > 0.0 else 0.0

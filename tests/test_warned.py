@@ -61,16 +61,19 @@ def test_a_result_without_warnings_says_nothing_of_them():
     assert "warning" not in repr(solution)
 
 
-@pytest.mark.parametrize("solve", ["static", "path", "motion"])
+@pytest.mark.parametrize(
+    "solve",
+    [
+        lambda model: bf.solve_static(model, at=[0.5, 1.0]),
+        lambda model: bf.trace_equilibrium(model, until=1.0),
+        lambda model: bf.simulate(model, duration=0.05, step=5e-4),
+    ],
+    ids=["static", "path", "motion"],
+)
 def test_every_analysis_warns(solve):
     model, _ = cantilever(bf.ANCF(), 4, 100)
     with pytest.warns(bf.LockingWarning):
-        if solve == "static":
-            bf.solve_static(model, at=[0.5, 1.0])
-        elif solve == "path":
-            bf.trace_equilibrium(model, until=1.0)
-        else:
-            bf.simulate(model, duration=0.05, step=5e-4)
+        solve(model)
 
 
 def test_modes_warn_of_locking_and_count_it():

@@ -96,7 +96,9 @@ class Exports:
         -------
         pandas.DataFrame
             One row for each step and station, with time [s] or load_factor, number of the beam and arc_length [m] as
-            index.
+            index. Both sides of an end that two elements share have a row: the arc length of the one before it, like
+            the load factor of the row before a jump, is smaller by one last digit, so that no row of the index is
+            there twice.
 
         Raises
         ------

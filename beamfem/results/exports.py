@@ -32,7 +32,8 @@ class Exports:
         geometry : {"deformed", "reference"}, default "deformed"
             "reference" writes the reference positions of the points, to be warped by `displacement`.
         fields : sequence of str, optional
-            Names of the fields to write, by default all.
+            Names of the fields to write, by default all but the stress tensors of bodies: VTK draws curved cells with
+            at most 18 numbers at a point and drops what is more.
         single : bool, default False
             Whether to write numbers of four bytes: half the size, seven digits.
 

@@ -1,7 +1,8 @@
 """Stress of a beam: extremes over each section, their peaks along the beam, and the utilisation of the strength."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
 PARTS: tuple[Part, ...] = ("lower", "upper", "tension", "compression", "shear", "von_mises", "utilisation")
-_HEIGHTS = np.linspace(0.0, 1.0, 9)  # fractions of a layer: its faces, and the peak of a parabolic shear stress
+HEIGHTS = np.linspace(0.0, 1.0, 9)  # fractions of a layer: its faces, and the peak of a parabolic shear stress
 _VALUES = 4_000_000  # most values in one array
 
 
@@ -185,27 +186,37 @@ def stress_at(
     rows: slice | np.ndarray = slice(None),
 ) -> dict[str, np.ndarray]:
     """Return the stresses of `BeamStress` (steps, points) of some rows at points (element, xi) of a beam, by name."""
-    chunk = max(1, _VALUES // (len(_HEIGHTS) * max(len(xi), 1)))
+    chunk = max(1, _VALUES // (len(HEIGHTS) * max(len(xi), 1)))
     chosen = list(in_parts(len(solution), rows, chunk)) or [slice(0)]
     parts = [_of_rows(solution, mesh, element, xi, part) for part in chosen]
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
+def stress_over_height(
+    solution: "Solution",
+    mesh: BeamMesh,
+    cuts: Cuts,
+    rows: slice | np.ndarray,
+    name: Literal["von_mises", "utilisation"],
+) -> np.ndarray:
+    """Return a stress (rows, points, layers, heights) at equal distances between the faces of each layer.
+
+    A shear stress that is not known there, as the width is not, counts as zero.
+    """
+    layers = _layers(solution, mesh, cuts, rows)
+    parts = [
+        (von_mises(along, np.where(np.isnan(sheared), 0.0, sheared)), strength) for along, sheared, strength in layers
+    ]
+    ratio = name == "utilisation"
+    return np.stack([values / strength if ratio else values for values, strength in parts], axis=2)
+
+
 def _of_rows(
     solution: "Solution", mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, rows: slice | np.ndarray
 ) -> dict[str, np.ndarray]:
-    normal, shear, moment = np.moveaxis(at_points(solution, mesh, Cuts(element, xi), rows), 1, 0)
-    distribution, extremes = distributions(mesh, element, xi), dict[str, np.ndarray]()
-    strength = strengths(mesh, element, xi, distribution.layers.shape[1])
-    for layer in range(distribution.layers.shape[1]):
-        low, high = np.moveaxis(distribution.layers[:, layer], -1, 0)
-        y = low[:, None] + (high - low)[:, None] * _HEIGHTS
-        along = distribution.normal_stress(layer, y, normal, moment) + self_stress(
-            solution, mesh, element, xi, layer, y, rows
-        )
-        sheared = distribution.shear_stress(layer, y, shear)
+    extremes = dict[str, np.ndarray]()
+    for along, sheared, strength in _layers(solution, mesh, Cuts(element, xi), rows):
         equivalent = von_mises(along, sheared)
-        fraction = equivalent / strength[layer][:, None]
         stresses = {
             "lower": along[..., 0],
             "upper": along[..., -1],
@@ -214,11 +225,27 @@ def _of_rows(
             "shear": np.abs(sheared).max(axis=-1),
             # without a known width there is no shear stress inside: the faces, free of shear stress, still count
             "von_mises": np.fmax.reduce(equivalent, axis=-1),
-            "utilisation": np.fmax.reduce(fraction, axis=-1),
+            "utilisation": np.fmax.reduce(equivalent / strength, axis=-1),
         }
         # missing layers of a section coincide with its upper face
         extremes = {name: _joined(name, extremes[name], stresses[name]) for name in stresses} if extremes else stresses
     return extremes
+
+
+def _layers(
+    solution: "Solution", mesh: BeamMesh, cuts: Cuts, rows: slice | np.ndarray
+) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Yield normal and shear stress (rows, points, heights) [Pa] and the strength (points, 1) [Pa] of each layer."""
+    element, xi = cuts.element, cuts.xi
+    normal, shear, moment = np.moveaxis(at_points(solution, mesh, cuts, rows), 1, 0)
+    distribution = distributions(mesh, element, xi)
+    strength = strengths(mesh, element, xi, distribution.layers.shape[1])
+    for layer in range(distribution.layers.shape[1]):
+        low, high = np.moveaxis(distribution.layers[:, layer], -1, 0)
+        y = low[:, None] + (high - low)[:, None] * HEIGHTS
+        along = distribution.normal_stress(layer, y, normal, moment)
+        along = along + self_stress(solution, mesh, element, xi, layer, y, rows)
+        yield along, distribution.shear_stress(layer, y, shear), strength[layer][:, None]
 
 
 def _joined(name: str, before: np.ndarray, layer: np.ndarray) -> np.ndarray:

@@ -46,13 +46,18 @@ def extreme(values: np.ndarray, xi: np.ndarray, measure: Measure, at: At) -> Ext
     """Return the value of largest measure at and between the stations of all elements and rows.
 
     values (rows, elements, stations): at stations xi (stations,) of each element, nan where unknown; at: values at
-    points of elements in a row. Where a parabola through three stations has a vertex above what has been found so far,
-    the largest value between the three is searched with `at`, the highest vertex first.
+    points of elements in a row. With `at`, the largest value is searched beside the extreme of the stations, and
+    between three stations wherever a parabola through them has a vertex above what has been found so far, the highest
+    first.
     """
     found, vertices = at_stations(values, xi, measure), _vertices(measure(values), xi)
     if found.row < 0:
         return found
-    size = float(measure(found.value))
+    size, station = float(measure(found.value)), int(np.searchsorted(xi, found.xi))
+    around = xi[max(station - 1, 0)], xi[min(station + 1, len(xi) - 1)]
+    beside = _searched(at, measure, found.row, found.element, (float(around[0]), float(around[1])))
+    if _exceeds(reached := float(measure(beside.value)), size):
+        found, size = beside, reached
     for _ in range(_MOST if vertices.size else 0):
         row, element, first = (int(i) for i in np.unravel_index(int(vertices.argmax()), vertices.shape))
         if not _exceeds(float(vertices[row, element, first]), size):

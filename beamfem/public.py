@@ -82,7 +82,7 @@ from beamfem.results.path import Bifurcation as Bifurcation
 from beamfem.results.path import Path as Path
 from beamfem.results.path import PathState as PathState
 from beamfem.results.postprocess import Fields as Fields
-from beamfem.results.postprocess import SectionForces as SectionForces
+from beamfem.results.section_forces import SectionForces as SectionForces
 from beamfem.results.solution import Solution as Solution
 from beamfem.results.solution import State as State
 from beamfem.results.status import Status as Status

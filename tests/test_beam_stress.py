@@ -7,6 +7,9 @@ from section_laws import LinearLaw
 import beamfem as bf
 from beamfem.io.samples import bodies
 
+# the same numbers under the names of several units
+pytestmark = pytest.mark.filterwarnings("ignore::beamfem.UnitsWarning")
+
 STEEL = bf.Material(2e11, 0.3, 7800.0, strength=250e6)
 FORCE = 30.0
 

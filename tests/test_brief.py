@@ -126,7 +126,7 @@ def test_a_sweep_prints_its_first_and_last_points_and_a_study_its_table(large):
 
 def test_arrays_are_shown_by_shape_and_range(results):
     said = repr(results["section forces"])
-    assert said.startswith("SectionForces(arc_length=<array (160,) from 0 to 1> m, normal=<array (2, 160) from ")
+    assert said.startswith("SectionForces(arc_length=<array (200,) from 0 to 1> m, normal=<array (2, 200) from ")
     assert said.endswith("> N m)")
     assert "values=({'y': <array (1000,) from 0 to 0>}, {'y': <array " in repr(results["sweep"])
     assert "parameters=<300 items>" in repr(results["long sweep"])

@@ -106,6 +106,7 @@ def test_warnings_are_told_once_and_without_lines_of_python(tmp_path):
     assert "completed: " in done.stdout
 
 
+@pytest.mark.filterwarnings("ignore::beamfem.UnitsWarning")
 def test_tables_have_the_units_of_the_file(tmp_path):
     (tmp_path / "lee.toml").write_text(
         LEE.replace('units = "N, cm"\n', "").replace("[materials", 'units = "N, mm"\n[materials', 1)
@@ -128,3 +129,13 @@ def test_what_is_written_is_told_of_in_keys_too(tmp_path):
     (line,) = done.stderr.splitlines()
     assert line.startswith("warning: the stress of 1 of 1 beams (rod) is not known")
     assert "their key `height` gives it" in line
+
+
+@pytest.mark.filterwarnings("always::beamfem.LockingWarning")
+def test_a_warning_of_a_solve_is_printed_once(tmp_path):
+    """As it is found; what is too small for a Python warning is printed at the end."""
+    text, changed = re.subn(r'kind = "CRBF", order = \d', 'kind = "ANCF"', CANTILEVER)
+    assert changed == 1
+    (tmp_path / "ancf.toml").write_text(text)
+    said = invoke("run", tmp_path / "ancf.toml")
+    assert said.stderr.count("elements lock") == 1

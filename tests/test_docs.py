@@ -11,6 +11,8 @@ import pytest
 import beamfem as bf
 from docs.page_code import blocks_of, run
 
+# pages that explain locking show elements that lock
+pytestmark = pytest.mark.filterwarnings("error::beamfem.LargeStrainWarning")
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?")

@@ -16,6 +16,8 @@ from studies.benchmarks.peer_cases import REISSNER_TIPS
 from studies.paper.elastica import tip_displacement
 from studies.stability import column, lee_frame
 
+# users get no warning from what they copy
+pytestmark = pytest.mark.filterwarnings("error::beamfem.LockingWarning", "error::beamfem.LargeStrainWarning")
 FOLDER = Path(__file__).parent.parent / "examples"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.py"))
 STEEL = bf.Material(2e11, 0.3, 7800.0)

@@ -8,6 +8,9 @@ import pytest
 import beamfem as bf
 from beamfem.io.description import describe, rebuild
 
+# the same numbers under the names of several units
+pytestmark = pytest.mark.filterwarnings("ignore::beamfem.UnitsWarning")
+
 
 def bracket(units="N, mm"):
     """Two beams of steel in newton and millimetres, one of them with a name."""

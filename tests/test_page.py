@@ -63,7 +63,7 @@ def test_stresses_are_colours_where_sections_have_them(tmp_path):
     data = data_of(solution.to_html(tmp_path / "two.html"))
     fields = {field["name"]: field for field in data["fields"]}
     assert {"stress", "upper", "lower", "utilisation"} <= set(fields)
-    assert fields["stress"]["label"] == "von Mises stress [Pa]"
+    assert fields["stress"]["label"] == "von Mises stress, largest over the height [Pa]"
     with pytest.warns(bf.UnknownStressWarning, match="1 of 2 beams"):
         assert fields["stress"]["high"] == pytest.approx(solution.peak_stress().value, rel=1e-9)
     values = np.frombuffer(base64.b64decode(fields["stress"]["values"]), np.uint8).reshape(2, -1)

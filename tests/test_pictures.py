@@ -340,3 +340,24 @@ def test_a_picture_needs_no_window_and_leaves_no_global_state(tmp_path):
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip() == "[]"
     assert (tmp_path / "bent.png").stat().st_size > 5000
+
+
+@pytest.mark.parametrize("colour", ["stress", "utilisation"])
+def test_stress_is_painted_over_the_height(colour):
+    """M / W at the faces and sqrt(3) times 1.5 V / A on the axis, which was painted as the faces were."""
+    force, width, height, strength = 1e3, 0.05, 0.1, 2e8
+    steel = bf.Material(2e11, 0.3, 7800.0, strength=strength)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(3), bf.Rectangle(width, height), steel)
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -force))])
+    shapes = Shapes(bf.solve_static(model), np.array([1]), colour)
+    (strips,) = shapes.strips(0)
+    size = strength if colour == "utilisation" else 1.0
+    faces, field = strips[0]
+    assert field[0, 0] * size == pytest.approx(6.0 * force / (width * height**2), rel=1e-4)
+    assert faces[0, 0] == pytest.approx([0.0, -0.5 * height], abs=1e-12)
+    faces, field = strips[len(strips) // 2]
+    assert field[0, 0] * size == pytest.approx(np.sqrt(3.0) * 1.5 * force / (width * height), rel=1e-3)
+    assert faces[0, 0] == pytest.approx([0.0, 0.0], abs=1e-12)
+    low, high = shapes.limits
+    assert low < 0.05 * high
+    assert strips[-1][1][0, 1] == pytest.approx(strips[0][1][0, 0], rel=1e-6)

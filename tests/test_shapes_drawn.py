@@ -10,6 +10,9 @@ from beamfem.results.beam_stress import PARTS
 from beamfem.view.frames import moment_of, spread_rows
 from beamfem.view.supports import PRESCRIBED, supports_of
 
+# the same numbers under the names of several units
+pytestmark = pytest.mark.filterwarnings("ignore::beamfem.UnitsWarning")
+
 
 @pytest.fixture(scope="module")
 def bent():

@@ -1,5 +1,6 @@
 """Results, sweeps and studies as tables of pandas and arrays of xarray."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -265,3 +266,31 @@ def test_buckling_without_a_critical_point_is_an_empty_table(element):
     found = bf.solve_buckling(model)
     assert not len(found)
     assert found.to_xarray(beam).sizes["mode"] == found.to_xarray().sizes["mode"] == 0
+
+
+@pytest.mark.parametrize("make", [cantilever, frame])
+def test_an_index_row_of_a_data_frame_is_there_once(make):
+    """Both sides of each end that two elements share are rows, of which 15 of 100 had the same index."""
+    solution = make()
+    table = solution.to_pandas()
+    assert table.index.is_unique
+    wide = table["moment"].unstack()
+    assert wide.shape[0] == len(solution) * len(solution.model.beams)
+    assert wide.notna().to_numpy().sum() == len(table)
+    labelled = table.to_xarray()["moment"]
+    assert int(labelled.notnull().sum()) == len(table)
+    arc = table.index.get_level_values("arc_length").to_numpy()
+    lengths = np.array([beam.curve.length for beam in solution.model.beams])[table.index.get_level_values("beam")]
+    assert np.all(arc <= lengths)
+    assert np.all(arc >= 0.0)
+
+
+def test_rows_before_and_after_a_jump_are_told_apart():
+    """Two equilibria at one load factor, of which the first belongs before it."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -1.0))])
+    jumped = replace(bf.solve_static(model, at=[0.0, 0.4, 0.6, 1.0]), at=np.array([0.0, 0.5, 0.5, 1.0]))
+    table = jumped.to_pandas()
+    assert table.index.is_unique
+    before, after = table["uy"].unstack("arc_length").iloc[1:3, -1]
+    assert (before, after) == tuple(jumped.displacement(beam.end)[1:3, 1])

@@ -7,6 +7,9 @@ import beamfem as bf
 from beamfem.cli.modelfile import ModelFileError, read_model_file
 from beamfem.units import units_of
 
+# the same numbers under the names of several units
+pytestmark = pytest.mark.filterwarnings("ignore::beamfem.UnitsWarning")
+
 
 @pytest.mark.parametrize(
     ("given", "named"),

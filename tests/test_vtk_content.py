@@ -121,3 +121,23 @@ def test_materials_and_sections_have_numbers_and_a_legend(tmp_path):
     assert body.GetFieldData().GetAbstractArray("beams") is None  # none has a name
     assert [set(cells(line, "material")[12 * i : 12 * (i + 1)]) for i in range(4)] == [{0}, {2}, {1}, {0}]
     assert line.GetFieldData().GetAbstractArray("materials") is None  # meshio could not read the file
+
+
+@pytest.mark.parametrize("suffix", ["pvd", "vtkhdf"])
+@pytest.mark.parametrize("moving", [False, True])
+def test_no_field_of_a_body_is_lost_as_it_is_tessellated(tmp_path, capfd, suffix, moving):
+    """Of 25 numbers at a point (28 in a motion) VTK keeps 18: it prints errors and drops what comes last."""
+    pyvista = pytest.importorskip("pyvista")
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(3), bf.Rectangle(0.02, 0.05), bf.Material(2e11, 0.3, 7800.0))
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 1e3))])
+    solution = bf.simulate(model, duration=1e-3, step=5e-4) if moving else bf.solve_static(model)
+    solution.to_vtk(tmp_path / f"body.{suffix}")
+    body = pyvista.read(tmp_path / ("body/0001.vtu" if suffix == "pvd" else "body.vtkhdf"))
+    assert sum(np.size(body[name]) // body.n_points for name in body.point_data) <= 18
+    drawn = body.tessellate()
+    assert set(drawn.point_data) == set(body.point_data)
+    assert "bending_moment" in drawn.point_data
+    assert "Could not pass field" not in capfd.readouterr().err
+    solution.to_vtk(tmp_path / f"tensors.{suffix}", fields=["cauchy_stress", "second_piola_kirchhoff_stress"])
+    tensors = pyvista.read(tmp_path / ("tensors/0001.vtu" if suffix == "pvd" else "tensors.vtkhdf"))
+    assert sorted(tensors.point_data) == ["cauchy_stress", "second_piola_kirchhoff_stress"]

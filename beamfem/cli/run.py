@@ -137,6 +137,8 @@ def _result(file: Path, job: "Job", found: "Found", seconds: float, written: lis
 
 
 def _print(result: dict[str, Any], solution: "Solution") -> None:
+    from beamfem.cli.modelfile.phrases import in_keys
+    from beamfem.results.checks import findings
     from beamfem.results.status import counted
 
     print(result["title"])
@@ -155,9 +157,9 @@ def _print(result: dict[str, Any], solution: "Solution") -> None:
         for critical in ("limit_points", "bifurcations"):
             if output.get(critical):
                 print_table(f"{output['name']}, at {critical.replace('_', ' ')}", output[critical], output["units"])
-    already_printed = len(statistics.warnings)  # as they were found
-    for warning in result["warnings"][already_printed:]:
-        print(f"warning: {warning}", file=sys.stderr)
+    for finding in findings(solution):
+        if finding.kind is None:  # the others were printed as they were found
+            print(f"warning: {in_keys(finding.sentence)}", file=sys.stderr)
     if result["written"]:
         print()
     for path in result["written"]:

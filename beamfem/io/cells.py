@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 Geometry = Literal["deformed", "reference"]
 # numbers of cell types, from vtkCellType.h
 VERTEX, LINE, LAGRANGE_QUADRILATERAL = 1, 3, 70
+# of bodies, only where they are asked for: VTK tessellates curved cells with at most 18 numbers at a point
+_TENSORS = ("cauchy_stress", "second_piola_kirchhoff_stress")
 
 
 @dataclass(frozen=True)
@@ -163,22 +165,29 @@ class Cells:
 
     def names(self, solution: "Solution") -> list[str]:
         """Return the fields that there are."""
-        return [name for name in self.arrays(solution, slice(1)) if name != "points"]
+        parts = [part.arrays(solution, slice(1)) for part in self.samples]
+        return [name for name in self._known(parts) if name != "points"]
 
     def arrays(self, solution: "Solution", rows: slice) -> dict[str, np.ndarray]:
         """Return the fields at all points, (steps, points) and (steps, points, 3 or 6), of some rows of a solution.
 
-        A stress that is known nowhere is left out, and so is what `content` does not name.
+        A stress that is known nowhere is left out, and so are what `content` does not name and, unless it names them,
+        the stress tensors of bodies.
         """
         parts = [part.arrays(solution, rows) for part in self.samples]
-        known = {name for part in self.samples for name, told in part.known.items() if told}
-        names = [name for name in parts[0] if "stress" not in name or name in known]
-        chosen = self.content.chosen(names)
+        chosen = self.content.chosen(self._known(parts))
+        if self.whole and self.content.fields is None:
+            chosen = [name for name in chosen if name not in _TENSORS]
         result = {name: self._joined([part[name] for part in parts]) for name in chosen}
         if self.content.geometry == "reference":
             at_rest = self._joined([part.at_rest for part in self.samples])
             result["points"] = np.repeat(at_rest, len(result["points"]), axis=0)
         return by_precision(result, self.content)
+
+    def _known(self, parts: Sequence[dict[str, np.ndarray]]) -> list[str]:
+        """Return the names of the arrays of samples but for a stress that is known nowhere."""
+        known = {name for part in self.samples for name, told in part.known.items() if told}
+        return [name for name in parts[0] if "stress" not in name or name in known]
 
     def _joined(self, parts: Sequence[np.ndarray]) -> np.ndarray:
         """Return values (steps, points, ...) of all samples in the order of the cells."""

@@ -127,9 +127,7 @@ def as_dataset(data: Variables, coordinates: Variables, attributes: dict[str, An
     dataset = xarray.Dataset(data, coordinates, attributes)
     if not single:
         return dataset
-    arc = dataset["arc_length"].to_numpy()
-    before = np.append(arc[:-1] == arc[1:], False)
-    dataset["arc_length"] = "station", np.where(before, np.nextafter(arc, -np.inf), arc), dataset["arc_length"].attrs
+    dataset["arc_length"] = "station", told_apart(dataset["arc_length"].to_numpy()), dataset["arc_length"].attrs
     dataset["beam"] = (), dataset["beam"].to_numpy()[0], dataset["beam"].attrs
     return dataset.swap_dims(station="arc_length")
 
@@ -137,17 +135,26 @@ def as_dataset(data: Variables, coordinates: Variables, attributes: dict[str, An
 def to_pandas(solution: "Solution", beam: Beam | None = None) -> Any:
     """Return a pandas.DataFrame of quantities along a beam, or along all, with a row for each time and station.
 
-    Its index is time [s] or load_factor, number of the beam and arc_length [m]; columns: see `arrays`.
+    Its index is time [s] or load_factor, number of the beam and arc_length [m]; columns: see `arrays`. No row of the
+    index is there twice: see `told_apart`, for both sides of a shared end and for the rows before and after a jump.
     Raises InputError for a beam of another model; MissingPackageError without pandas.
     """
     with needed_for("to_pandas"):
         import pandas
     data, coordinates = arrays(solution, beam)
     over, stations = ("load_factor" if solution.static else "time"), len(coordinates["beam"][1])
-    columns = {over: np.repeat(solution.at, stations)}
-    columns |= {name: np.tile(coordinates[name][1], len(solution)) for name in ("beam", "arc_length", "x0", "y0")}
+    places = {name: coordinates[name][1] for name in ("beam", "arc_length", "x0", "y0")}
+    places["arc_length"] = told_apart(places["arc_length"])
+    columns = {over: np.repeat(told_apart(solution.at), stations)}
+    columns |= {name: np.tile(values, len(solution)) for name, values in places.items()}
     columns |= {name: values.ravel() for name, (_, values, _) in data.items() if values.ndim == 2}
     return pandas.DataFrame(columns).set_index([over, "beam", "arc_length"])
+
+
+def told_apart(values: np.ndarray) -> np.ndarray:
+    """Return values (n,) of which the first of two equal neighbours is one unit of the last digit smaller."""
+    before = np.append(values[:-1] == values[1:], False)
+    return np.where(before, np.nextafter(values, -np.inf), values)
 
 
 def side_by_side(parts: list[tuple[Variables, Variables]]) -> tuple[Variables, Variables]:

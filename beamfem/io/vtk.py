@@ -43,9 +43,10 @@ def write_vtk(
 
     .vtkhdf, also where `path` has no suffix: all steps in one file, for ParaView 5.12 or newer; .pvd: a collection
     of .vtu files, one a step, in the folder <stem>. geometry: "reference" leaves the points where they were, to be
-    warped by `displacement`. fields: names of those to write, all by default; single: numbers of four bytes, half
-    the size, seven digits. Names and units: docs/paraview.md. Raises InputError for another suffix and for unknown
-    fields; BeamfemError if .vtkhdf is asked for without h5py. Warns where the shape of a section, and so its
+    warped by `displacement`. fields: names of those to write, by default all but the stress tensors of bodies, with
+    which VTK would drop fields: it draws curved cells with at most 18 numbers at a point; single: numbers of four
+    bytes, half the size, seven digits. Names and units: docs/paraview.md. Raises InputError for another suffix and for
+    unknown fields; BeamfemError if .vtkhdf is asked for without h5py. Warns where the shape of a section, and so its
     stress, is not known.
     """
     path = path_of(path)

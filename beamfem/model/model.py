@@ -25,6 +25,7 @@ from beamfem.model.misplaced import beam_like, listed, refused, touching
 from beamfem.model.model_outputs import ModelOutputs
 from beamfem.model.model_parts import ModelParts
 from beamfem.model.named import require_different_names
+from beamfem.model.plausible import warn_of_units
 from beamfem.model.point_load import PointLoad
 from beamfem.model.support import LineSupport, PointSupport, Support
 from beamfem.once import cached_property, shared_property
@@ -32,6 +33,7 @@ from beamfem.registry import offered
 from beamfem.units import Units, units_of
 from beamfem.validation import shown
 
+_UNNAMED = "N, m, s"
 _KINDS: dict[str, tuple[type, ...]] = {
     "beams": (Beam,),
     "supports": (PointSupport, LineSupport),
@@ -70,6 +72,11 @@ class Model(ModelParts, ModelOutputs):
     UnknownPointError
         For a support, load, joint or connector on a beam that is not in the model.
 
+    Warns
+    -----
+    UnitsWarning
+        If a Young's modulus, a density, gravity or a section cannot be meant in the units that are named.
+
     Examples
     --------
     >>> model = bf.Model([beam], supports=[bf.Clamp(beam.start)], loads=[bf.PointForce(beam.end, (0.0, -1e4))])
@@ -82,7 +89,7 @@ class Model(ModelParts, ModelOutputs):
     loads: Sequence[Load] = ()
     joints: Sequence[Joint] = ()
     connectors: Sequence[Contribution] = ()
-    units: str = "N, m, s"
+    units: str = _UNNAMED
 
     def __getstate__(self) -> dict[str, object]:
         """Return the fields only: cached meshes refer to beams by identity, so copies rebuild theirs."""
@@ -124,6 +131,8 @@ class Model(ModelParts, ModelOutputs):
             for point in connector.points:
                 self._require(connector, point)
         self._require_touches()
+        if self.units != _UNNAMED:
+            warn_of_units(self.beams, self.loads, self.units, self._units)
 
     def _require(self, item: object, place: Beam | Point | None) -> None:
         kind = type(item).__name__
@@ -171,7 +180,9 @@ class Model(ModelParts, ModelOutputs):
 
         Examples
         --------
-        >>> bf.Model([beam], units="N, mm").unit("Pa")
+        >>> steel = bf.Material(2e5, 0.3, 7.8e-9)
+        >>> strip = bf.Beam(bf.Line((0, 0), (500, 0)), 4, bf.CRBF(3), bf.Rectangle(20, 4), steel)
+        >>> bf.Model([strip], units="N, mm").unit("Pa")
         'MPa'
         """
         return self._units.of(unit)

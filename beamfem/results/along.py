@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import reference_axis
 from beamfem.once import cached_property
 from beamfem.results import postprocess
-from beamfem.results.beam_stress import stress_at
+from beamfem.results.beam_stress import stress_at, stress_over_height
 from beamfem.results.free_bodies import Cuts
 from beamfem.results.section_forces import at_points
 from beamfem.results.turns import turned_of
@@ -85,18 +85,18 @@ class AxisPoints:
 
 
 @dataclass(frozen=True, eq=False)
-class OnePoint(AxisPoints):
-    """The point at a fraction of the length; where two elements meet, that of the one towards the beam's end."""
+class PointsAt(AxisPoints):
+    """Points at any places `cuts` of a beam."""
 
-    fraction: float
+    cuts: Cuts
 
     @cached_property
     def element(self) -> np.ndarray:
-        return np.array([self.mesh.locate(self.fraction)[0]])
+        return self.cuts.element
 
     @cached_property
     def xi(self) -> np.ndarray:
-        return np.array([self.mesh.locate(self.fraction)[1]])
+        return self.cuts.xi
 
 
 def section_forces(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> dict[str, np.ndarray]:
@@ -113,17 +113,22 @@ def rotation(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray)
     return postprocess.section_rotation(points.mesh, p, points.now(p), points.element, points.xi, counted)
 
 
+Values = Callable[[AxisPoints, "Solution", slice | np.ndarray], np.ndarray]
+
+
 @dataclass(frozen=True)
 class Quantity:
     """A field along the axis: label for plots, unit, and values(points, solution, rows) -> (rows, points).
 
-    unknown: what the model must define if the values are nan.
+    unknown: what the model must define if the values are nan; over_height: the same, (rows, points, layers, heights)
+    at `HEIGHTS` of each layer, of a field whose `values` are the extremes over them; None for others.
     """
 
     label: str
     unit: str
-    values: Callable[[AxisPoints, "Solution", slice | np.ndarray], np.ndarray]
+    values: Values
     unknown: str = ""
+    over_height: Values | None = None
 
     def unknown_of(self, beams: Iterable[Beam]) -> str:
         """Return why it is not known of any of these beams."""
@@ -177,7 +182,14 @@ def _of_stress(label: str, name: str) -> Quantity:
     return Quantity(label, "Pa", _stress(name), _NO_STRESS)
 
 
-_VON_MISES = _of_stress("von Mises stress", "von_mises")
+def _over_height(name: Literal["von_mises", "utilisation"]) -> Values:
+    def values(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+        return stress_over_height(solution, points.mesh, Cuts(points.element, points.xi), rows, name)
+
+    return values
+
+
+_VON_MISES = Quantity("von Mises stress", "Pa", _stress("von_mises"), _NO_STRESS, _over_height("von_mises"))
 QUANTITIES = {
     "moment": Quantity("bending moment", "N m", _section_force("moment")),
     "normal": Quantity("normal force", "N", _section_force("normal")),
@@ -195,6 +207,7 @@ QUANTITIES = {
         "-",
         _stress("utilisation"),
         "give a material its strength, Material(..., strength=)",
+        _over_height("utilisation"),
     ),
     "rotation": Quantity("rotation", "rad", rotation),
     "displacement": Quantity("displacement", "m", _displacement),

@@ -10,9 +10,11 @@ from beamfem.model.beam import Beam
 from beamfem.model.distributions import distributions
 from beamfem.model.mesh import BeamMesh
 from beamfem.registry import offered
+from beamfem.results.extremes import Measure, estimate, extreme_of_beams
 from beamfem.results.free_bodies import Cuts
 from beamfem.results.neighbours import of_beam
-from beamfem.results.section_forces import at_points, in_parts, stations
+from beamfem.results.peak import Part, Peak
+from beamfem.results.section_forces import at_points, by_element, in_parts, peak_of, stations
 from beamfem.results.self_stress import self_stress
 from beamfem.results.strength import strengths
 from beamfem.results.stresses import von_mises
@@ -23,69 +25,18 @@ from beamfem.validation import require_known, shown
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
-Part = Literal["lower", "upper", "tension", "compression", "shear", "von_mises", "utilisation"]
 PARTS: tuple[Part, ...] = ("lower", "upper", "tension", "compression", "shear", "von_mises", "utilisation")
-_HEIGHTS = np.linspace(0.0, 1.0, 9)  # fractions of a layer: its faces, and the peak of a parabolic shear stress
+HEIGHTS = np.linspace(0.0, 1.0, 9)  # fractions of a layer: its faces, and the peak of a parabolic shear stress
 _VALUES = 4_000_000  # most values in one array
-
-
-@dataclass(frozen=True)
-class Peak:
-    """The extreme of a stress, which unpacks into its value, arc length and row.
-
-    Parameters
-    ----------
-    value : float, [Pa]
-        The stress; a utilisation is a ratio [-].
-    arc_length : float, [m]
-        Where it is.
-    row : int
-        Row of the solution.
-    at : float
-        Load factor of that row, or time of a motion [s].
-    beam : Beam
-        The beam.
-    part : str
-        Which stress it is.
-    static : bool, default True
-        Whether `at` is a load factor.
-    units : Units
-        Units of the model, for the text.
-
-    Examples
-    --------
-    >>> value, arc_length, row = solution.stresses(beam).peak("tension")
-    """
-
-    value: float
-    arc_length: float
-    row: int
-    at: float
-    beam: Beam
-    part: Part = "von_mises"
-    static: bool = True
-    units: Units = field(default=Units(), repr=False)
-
-    def __iter__(self) -> Iterator[float]:
-        return iter((self.value, self.arc_length, self.row))
-
-    def __repr__(self) -> str:
-        return f"Peak({self.part} {self.in_words if np.isfinite(self.value) else 'is not known'}, of {self.beam!r})"
-
-    @property
-    def in_words(self) -> str:
-        """Value and place with their units."""
-        unit = "" if self.part == "utilisation" else f" {self.units.of('Pa')}"
-        when = f"load factor {self.at:.4g}" if self.static else f"t = {self.at:.4g} {self.units.of('s')}"
-        return f"{self.value:.4g}{unit} at {self.arc_length:.4g} {self.units.of('m')} in row {self.row}, {when}"
 
 
 @dataclass(frozen=True)
 class BeamStress:
     """Extreme stresses of the sections of a beam, at the stations of its section forces.
 
-    The stress is the Cauchy stress, as in `Fields`; it is nan for sections that define none. Each layer is evaluated at
-    its faces and at seven heights between them.
+    Between stations stresses may be larger: `peak` finds their extremes there too. The stress is the Cauchy stress, as
+    in `Fields`; it is nan for sections that define none. Each layer is evaluated at its faces and at seven heights
+    between them.
 
     Parameters
     ----------
@@ -110,6 +61,8 @@ class BeamStress:
         Whether `at` are load factors.
     units : Units
         Units of the model, for the text of peaks.
+    solution : Solution
+        The solution, which `peak` evaluates between stations.
 
     Examples
     --------
@@ -130,6 +83,7 @@ class BeamStress:
     beam: Beam
     static: bool = True
     units: Units = field(default=Units(), repr=False)
+    solution: "Solution" = field(repr=False, kw_only=True)
 
     def __repr__(self) -> str:
         rows, stations = self.von_mises.shape
@@ -142,7 +96,7 @@ class BeamStress:
         return offered(BeamStress._repr_html_)(self)
 
     def peak(self, part: Part = "von_mises") -> Peak:
-        """Return the peak along the beam and over the rows.
+        """Return the peak along the beam, at and between its stations, and over the rows.
 
         It is the smallest value of `compression`, the largest magnitude of `lower` and `upper`, and the largest value
         of the others.
@@ -168,13 +122,13 @@ class BeamStress:
         >>> round(arc_length, 3), row
         (0.0, 1)
         """
-        require_known(f"there is no stress {shown(part)}", part, PARTS)
-        values = getattr(self, part)
-        if not np.isfinite(values).any():
-            return Peak(np.nan, np.nan, -1, np.nan, self.beam, part, self.static, self.units)
-        row, station = np.unravel_index(np.nanargmax(_measured(part, values)), values.shape)
-        place = float(self.arc_length[station]), int(row), float(self.at[row])
-        return Peak(float(values[row, station]), *place, self.beam, part, self.static, self.units)
+        _require_part(part)
+        unit = "-" if part == "utilisation" else "Pa"
+
+        def at(solution: "Solution", mesh: BeamMesh, cuts: Cuts, rows: np.ndarray) -> np.ndarray:
+            return stress_at(solution, mesh, cuts.element, cuts.xi, rows)[part]
+
+        return peak_of(self.solution, self.beam, (part, unit), getattr(self, part), _measure(part), at)
 
 
 def beam_stress(solution: "Solution", beam: Beam) -> BeamStress:
@@ -185,7 +139,7 @@ def beam_stress(solution: "Solution", beam: Beam) -> BeamStress:
     stress = dict(zip(PARTS, of_beam(solution, number, _at_stations), strict=True))
     arc = mesh.arc_length(cuts.element, cuts.xi)
     units = units_of(solution.model.units)
-    return BeamStress(arc, at=solution.at, beam=beam, static=solution.static, units=units, **stress)
+    return BeamStress(arc, at=solution.at, beam=beam, static=solution.static, units=units, solution=solution, **stress)
 
 
 def _at_stations(solution: "Solution", mesh: BeamMesh) -> np.ndarray:
@@ -200,18 +154,28 @@ def peak_stress(solution: "Solution", part: Part = "von_mises") -> Peak:
 
     Warns of beams with sections that define no stress.
     """
-    peaks = [beam_stress(solution, beam).peak(part) for beam in solution.model.beams]
-    sizes = _measured(part, np.array([peak.value for peak in peaks]))
+    _require_part(part)
+    measure, beams = _measure(part), solution.model.beams
+    sizes = np.array([_estimate(solution, beam, part, measure) for beam in beams])
     unknown = np.isnan(sizes)
     if part != "utilisation":  # which a material without a strength does not have either
         what = "nan" if unknown.all() else "left out"
-        warn_of_unknown_stress(solution.model.beams, np.flatnonzero(unknown).tolist(), what)
-    return peaks[0 if unknown.all() else int(np.nanargmax(sizes))]
+        warn_of_unknown_stress(beams, np.flatnonzero(unknown).tolist(), what)
+    return extreme_of_beams(sizes, measure, lambda number: beam_stress(solution, beams[number]).peak(part))[1]
 
 
-def _measured(part: Part, values: np.ndarray) -> np.ndarray:
+def _require_part(part: str) -> None:
+    require_known(f"there is no stress {shown(part)}", part, PARTS)
+
+
+def _estimate(solution: "Solution", beam: Beam, part: Part, measure: Measure) -> float:
+    values, mesh = getattr(beam_stress(solution, beam), part), solution.model.meshes[solution.model.number_of(beam)]
+    return estimate(*by_element(mesh, values), measure)
+
+
+def _measure(part: Part) -> Measure:
     """Return what is largest at the peak."""
-    return -values if part == "compression" else np.abs(values) if part in ("lower", "upper") else values
+    return np.negative if part == "compression" else np.abs if part in ("lower", "upper") else np.asarray
 
 
 def stress_at(
@@ -222,27 +186,37 @@ def stress_at(
     rows: slice | np.ndarray = slice(None),
 ) -> dict[str, np.ndarray]:
     """Return the stresses of `BeamStress` (steps, points) of some rows at points (element, xi) of a beam, by name."""
-    chunk = max(1, _VALUES // (len(_HEIGHTS) * max(len(xi), 1)))
+    chunk = max(1, _VALUES // (len(HEIGHTS) * max(len(xi), 1)))
     chosen = list(in_parts(len(solution), rows, chunk)) or [slice(0)]
     parts = [_of_rows(solution, mesh, element, xi, part) for part in chosen]
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
+def stress_over_height(
+    solution: "Solution",
+    mesh: BeamMesh,
+    cuts: Cuts,
+    rows: slice | np.ndarray,
+    name: Literal["von_mises", "utilisation"],
+) -> np.ndarray:
+    """Return a stress (rows, points, layers, heights) at equal distances between the faces of each layer.
+
+    A shear stress that is not known there, as the width is not, counts as zero.
+    """
+    layers = _layers(solution, mesh, cuts, rows)
+    parts = [
+        (von_mises(along, np.where(np.isnan(sheared), 0.0, sheared)), strength) for along, sheared, strength in layers
+    ]
+    ratio = name == "utilisation"
+    return np.stack([values / strength if ratio else values for values, strength in parts], axis=2)
+
+
 def _of_rows(
     solution: "Solution", mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, rows: slice | np.ndarray
 ) -> dict[str, np.ndarray]:
-    normal, shear, moment = np.moveaxis(at_points(solution, mesh, Cuts(element, xi), rows), 1, 0)
-    distribution, extremes = distributions(mesh, element, xi), dict[str, np.ndarray]()
-    strength = strengths(mesh, element, xi, distribution.layers.shape[1])
-    for layer in range(distribution.layers.shape[1]):
-        low, high = np.moveaxis(distribution.layers[:, layer], -1, 0)
-        y = low[:, None] + (high - low)[:, None] * _HEIGHTS
-        along = distribution.normal_stress(layer, y, normal, moment) + self_stress(
-            solution, mesh, element, xi, layer, y, rows
-        )
-        sheared = distribution.shear_stress(layer, y, shear)
+    extremes = dict[str, np.ndarray]()
+    for along, sheared, strength in _layers(solution, mesh, Cuts(element, xi), rows):
         equivalent = von_mises(along, sheared)
-        fraction = equivalent / strength[layer][:, None]
         stresses = {
             "lower": along[..., 0],
             "upper": along[..., -1],
@@ -251,11 +225,27 @@ def _of_rows(
             "shear": np.abs(sheared).max(axis=-1),
             # without a known width there is no shear stress inside: the faces, free of shear stress, still count
             "von_mises": np.fmax.reduce(equivalent, axis=-1),
-            "utilisation": np.fmax.reduce(fraction, axis=-1),
+            "utilisation": np.fmax.reduce(equivalent / strength, axis=-1),
         }
         # missing layers of a section coincide with its upper face
         extremes = {name: _joined(name, extremes[name], stresses[name]) for name in stresses} if extremes else stresses
     return extremes
+
+
+def _layers(
+    solution: "Solution", mesh: BeamMesh, cuts: Cuts, rows: slice | np.ndarray
+) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Yield normal and shear stress (rows, points, heights) [Pa] and the strength (points, 1) [Pa] of each layer."""
+    element, xi = cuts.element, cuts.xi
+    normal, shear, moment = np.moveaxis(at_points(solution, mesh, cuts, rows), 1, 0)
+    distribution = distributions(mesh, element, xi)
+    strength = strengths(mesh, element, xi, distribution.layers.shape[1])
+    for layer in range(distribution.layers.shape[1]):
+        low, high = np.moveaxis(distribution.layers[:, layer], -1, 0)
+        y = low[:, None] + (high - low)[:, None] * HEIGHTS
+        along = distribution.normal_stress(layer, y, normal, moment)
+        along = along + self_stress(solution, mesh, element, xi, layer, y, rows)
+        yield along, distribution.shear_stress(layer, y, shear), strength[layer][:, None]
 
 
 def _joined(name: str, before: np.ndarray, layer: np.ndarray) -> np.ndarray:

@@ -32,7 +32,8 @@ class Exports:
         geometry : {"deformed", "reference"}, default "deformed"
             "reference" writes the reference positions of the points, to be warped by `displacement`.
         fields : sequence of str, optional
-            Names of the fields to write, by default all.
+            Names of the fields to write, by default all but the stress tensors of bodies: VTK draws curved cells with
+            at most 18 numbers at a point and drops what is more.
         single : bool, default False
             Whether to write numbers of four bytes: half the size, seven digits.
 
@@ -96,7 +97,9 @@ class Exports:
         -------
         pandas.DataFrame
             One row for each step and station, with time [s] or load_factor, number of the beam and arc_length [m] as
-            index.
+            index. Both sides of an end that two elements share have a row: the arc length of the one before it, like
+            the load factor of the row before a jump, is smaller by one last digit, so that no row of the index is
+            there twice.
 
         Raises
         ------

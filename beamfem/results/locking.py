@@ -15,25 +15,34 @@ from beamfem.assembly.blocks import build_block
 from beamfem.assembly.equations import STATICS, linearise, predicted_stresses, residual
 from beamfem.assembly.round_off import row_floors
 from beamfem.assembly.system import System, system_of
+from beamfem.element.coordinates import ShearFree
 from beamfem.element.element import Element, has_stations
 from beamfem.element.law_points import law_points
+from beamfem.errors import LockingWarning
 from beamfem.kernels.block import Block
 from beamfem.model.model import Model
+from beamfem.once import kept_with
 from beamfem.results import postprocess
+from beamfem.results.element_shapes import heights, pairs, shared
+from beamfem.results.finding import Finding
 from beamfem.results.imposed import imposed_measures
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution, State
 
-_TOLD = 1e-3  # relative change of a result above which the user is warned
+_TOLD = 1e-3  # relative change of a result above which `warnings` has a sentence
+_WARNED = 1e-2  # and above which there is a Python warning
 # repeated with the stresses of the last prediction: the large locking stresses would restrain the first step
 _PREDICTIONS = 3
+_LEAST = 1e-9  # of a length: height of a section without one
+_SHORT = 0.1  # of the height of the section: length of elements that do not lock
 _ROWS = 32  # rows of a solution among which the most strained is assessed
 
 
-def locking_warnings(solution: "Solution") -> tuple[str, ...]:
+@kept_with
+def locking(solution: "Solution") -> tuple[Finding, ...]:
     """Return a warning if locking changes the displacements by more than 1e-3 of the largest."""
-    if not _unlocked(solution.model):
+    if not len(solution) or not _unlocked(solution.model):
         return ()
     rows = np.unique(np.linspace(0, len(solution) - 1, _ROWS).astype(int))
     energy = sum(
@@ -42,10 +51,10 @@ def locking_warnings(solution: "Solution") -> tuple[str, ...]:
     )
     span = None if solution.static else float(np.ptp(solution.at))
     change = _change(solution[int(rows[np.argmax(energy)])], span)
-    return _sentences(solution.model, change, "the largest displacement")
+    return _found(solution.model, change, "the largest displacement")
 
 
-def frequency_warnings(state: "State", shapes: np.ndarray) -> tuple[str, ...]:
+def frequency_locking(state: "State", shapes: np.ndarray) -> tuple[Finding, ...]:
     """Return a warning if locking changes a frequency, from the Rayleigh quotient with locking-free strains.
 
     state: the state about which the modes were found; shapes (m, n): over all coordinates.
@@ -63,7 +72,29 @@ def frequency_warnings(state: "State", shapes: np.ndarray) -> tuple[str, ...]:
         stiffness = float(shape @ (before @ shape))
         if stiffness > 0.0:
             change = max(change, 0.5 * abs(1.0 - float(shape @ (after @ shape)) / stiffness))
-    return _sentences(state.model, change, "a frequency")
+    return _found(state.model, change, "a frequency")
+
+
+def weights(system: System) -> np.ndarray:
+    """Return weights (2, m), the second that of an angle of 1, of angles between neighbouring nodes.
+
+    While their sum is below 1, locking changes displacements by less than 1 %. Cubic elements lock by at most about
+    half of a^2 (1 + (l / h)^2), where a is the largest angle between the sections at their ends, now and in the
+    reference, in sum. Others lock by about (l / h)^2 / 3 at most, however little they bend.
+    """
+    neighbours = shared(system, pairs)
+    ratio = neighbours.length / np.maximum(heights(system), _LEAST * neighbours.length)
+    result, unlocked = np.zeros((2, len(ratio))), _unlocked(system.model)
+    for number, mesh in enumerate(system.model.meshes):
+        own = neighbours.mesh == number
+        if mesh.block not in unlocked:
+            continue
+        if has_stations(mesh.beam.element.field) and not isinstance(mesh.beam.element.coordinates, ShearFree):
+            result[0, own] = 2.0 * np.hypot(1.0, ratio[own]) / np.sqrt(_WARNED)
+            result[1, own] = result[0, own] * neighbours.curved[own]
+        else:
+            result[1, own] = np.inf if ratio[own].max() > _SHORT else 0.0
+    return result
 
 
 def _change(state: "State", span: float | None) -> float:
@@ -114,14 +145,15 @@ def _unlocked_blocks(system: System) -> tuple[Block, ...]:
     return tuple(blocks)
 
 
-def _sentences(model: Model, change: float, what: str) -> tuple[str, ...]:
+def _found(model: Model, change: float, what: str) -> tuple[Finding, ...]:
     if change <= _TOLD:
         return ()
     elements = _unlocked(model).values()
     names = ", ".join(dict.fromkeys(f"{element.name} ({element.forces.name} forces)" for element in elements))
     cures = " or ".join(dict.fromkeys(f'integration="{element.integration}"' for element in elements))
     size = f"about {100.0 * change:.2g} %" if change < 1.0 else "more than 100 %"
-    return (
+    sentence = (
         f"elements lock: {names}; without locking {what} would change by {size} on this mesh. Use {cures}, or more "
-        "elements",
+        "elements"
     )
+    return (Finding(sentence, LockingWarning if change >= _WARNED else None),)

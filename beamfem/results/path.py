@@ -1,7 +1,7 @@
 """An equilibrium path: its states, its limit points and its bifurcations."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, overload
 
 import numpy as np
@@ -9,7 +9,8 @@ import numpy as np
 from beamfem.model.beam import Beam, Point
 from beamfem.once import cached_property
 from beamfem.results.fitting import require_crossing
-from beamfem.results.postprocess import Components, Fields, SectionForces
+from beamfem.results.postprocess import Components, Fields
+from beamfem.results.section_forces import SectionForces
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
 from beamfem.results.turns import start_rotations
@@ -153,7 +154,7 @@ class PathState(State):
             Normal and shear force [N] and moment [N m], (stations,).
         """
         forces = self._alone.section_forces(beam)
-        return SectionForces(forces.arc_length, forces.normal[0], forces.shear[0], forces.moment[0], forces.units)
+        return replace(forces, normal=forces.normal[0], shear=forces.shear[0], moment=forces.moment[0])
 
 
 @dataclass(frozen=True, eq=False)

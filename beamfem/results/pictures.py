@@ -55,9 +55,9 @@ class Pictures:
         colour : str, optional
             By default the time or load factor; or a field along the beams, whose extreme value is marked: "moment"
             [N m], "normal", "shear" [N], "rotation" [rad], "displacement" [m], "speed" [m/s], "axial_strain" [-]
-            (Green strain xx of the axis), "shear_angle" [rad]; of the stress of a section [Pa] "stress" or "von_mises"
-            (its largest von Mises stress), "upper", "lower" (faces), "outer" (the larger of both), "tension",
-            "compression", "shear_stress"; or "utilisation" [-] of the strength.
+            (Green strain xx of the axis), "shear_angle" [rad]; of the stress [Pa] "stress" or "von_mises" (von Mises
+            stress over the height), of each section "upper", "lower" (faces), "outer" (the larger of both),
+            "tension", "compression", "shear_stress" (extremes); or "utilisation" [-] of the strength, over the height.
         shapes : int, optional
             Number of steps, one of them the last; by default the last alone, of motions and paths 9.
         undeformed : bool, default True

@@ -1,6 +1,6 @@
 """Results derived from states: fields, section forces, energies, momenta; vectorised over steps."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -21,10 +21,8 @@ from beamfem.model.reference import (
     reference_axis,
     reference_position,
 )
-from beamfem.registry import offered
 from beamfem.results.nodal import axis, axis_at, has_angles, nodal_angles, nodal_vectors, nodal_velocities
 from beamfem.section.law import ConstitutiveLaw
-from beamfem.units import Units
 
 
 @dataclass(frozen=True)
@@ -85,48 +83,6 @@ class Components:
     xy: np.ndarray
 
     __repr__ = brief
-
-
-@dataclass(frozen=True)
-class SectionForces:
-    """Section forces at the start, the Gauss points and the end of every element of a beam.
-
-    Nodes, and points where loads act, are listed twice: just before and just after them. Section forces balance each
-    other and all loads on the deformed beam, inertia included, exactly on any mesh.
-
-    Parameters
-    ----------
-    arc_length : array, [m], (stations,)
-        Arc lengths of the stations.
-    normal : array, [N], (steps, stations)
-        Force along the section's normal, > 0 in tension.
-    shear : array, [N], (steps, stations)
-        Force across the normal.
-    moment : array, [N m], (steps, stations)
-        Moment about the axis, > 0 if it increases the rotation along the beam.
-    units : Units
-        Units of the model, for tables.
-
-    Examples
-    --------
-    >>> forces = solution.section_forces(beam)
-    >>> round(float(forces.shear[-1, 0]), -1)  # at the clamp
-    -10000.0
-    """
-
-    arc_length: np.ndarray
-    normal: np.ndarray
-    shear: np.ndarray
-    moment: np.ndarray
-    units: Units = field(default=Units(), repr=False)
-
-    __repr__ = brief
-
-    def _unit_of(self, name: str) -> str:
-        return self.units.of({"arc_length": "m", "moment": "N m"}.get(name, "N"))
-
-    def _repr_html_(self) -> str:
-        return offered(SectionForces._repr_html_)(self)
 
 
 def position(mesh: BeamMesh, p: np.ndarray, fraction: float) -> np.ndarray:

@@ -14,9 +14,8 @@ from beamfem.results.energy_drift import EnergyDrift, energy_drift
 from beamfem.results.imposed import imposed_measures
 from beamfem.results.last_digits import remainders
 from beamfem.results.point_quantities import PointQuantities
-from beamfem.results.postprocess import SectionForces
 from beamfem.results.reactions import support_forces
-from beamfem.results.section_forces import section_forces
+from beamfem.results.section_forces import SectionForces, section_forces
 from beamfem.validation import number_below
 
 

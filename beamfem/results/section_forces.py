@@ -1,25 +1,108 @@
 """Section forces of beams from the equilibrium of their elements, at stations and at any other points."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.model.beam import Beam
 from beamfem.model.mesh import BeamMesh
+from beamfem.registry import offered
 from beamfem.results.acting import Rows, rows_of
+from beamfem.results.extremes import Measure, extreme
 from beamfem.results.free_bodies import Cuts, Parted, cut_free, parted
 from beamfem.results.last_digits import exactly
 from beamfem.results.loading import loading
 from beamfem.results.neighbours import of_beam
-from beamfem.results.postprocess import SectionForces
-from beamfem.units import units_of
+from beamfem.results.peak import Force, Part, Peak
+from beamfem.units import Units, units_of
+from beamfem.validation import require_known, shown
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
 _VALUES = 2_000_000  # most values in one array
+FORCES: tuple[Force, ...] = get_args(Force)
+Values = Callable[["Solution", BeamMesh, Cuts, np.ndarray], np.ndarray]  # of some rows (rows, points)
+
+
+@dataclass(frozen=True)
+class SectionForces:
+    """Section forces at the start, the Gauss points, the middle and the end of every element of a beam.
+
+    Nodes, and points where loads act, are listed twice: just before and just after them. Section forces balance each
+    other and all loads on the deformed beam, inertia included, exactly on any mesh. Between stations they
+    may be larger: `peak` finds their extremes there too.
+
+    Parameters
+    ----------
+    arc_length : array, [m], (stations,)
+        Arc lengths of the stations.
+    normal : array, [N], (steps, stations)
+        Force along the section's normal, > 0 in tension.
+    shear : array, [N], (steps, stations)
+        Force across the normal.
+    moment : array, [N m], (steps, stations)
+        Moment about the axis, > 0 if it increases the rotation along the beam.
+    units : Units
+        Units of the model, for tables.
+    beam : Beam
+        The beam.
+    solution : Solution
+        The solution, which `peak` evaluates between stations.
+
+    Examples
+    --------
+    >>> forces = solution.section_forces(beam)
+    >>> round(float(forces.shear[-1, 0]), -1)  # at the clamp
+    -10000.0
+    """
+
+    arc_length: np.ndarray
+    normal: np.ndarray
+    shear: np.ndarray
+    moment: np.ndarray
+    units: Units = field(default=Units(), repr=False)
+    beam: Beam = field(repr=False, kw_only=True)
+    solution: "Solution" = field(repr=False, kw_only=True)
+
+    __repr__ = brief
+
+    def peak(self, part: Force = "moment") -> Peak:
+        """Return the section force of largest magnitude along the beam, at and between its stations, and over the rows.
+
+        Parameters
+        ----------
+        part : str, default "moment"
+            "normal", "shear" or "moment".
+
+        Returns
+        -------
+        Peak
+            Value [N] or [N m], arc length [m], row, load factor or time there, and beam.
+
+        Raises
+        ------
+        InputError
+            For another part.
+
+        Examples
+        --------
+        >>> value, arc_length, row = solution.section_forces(beam).peak("moment")
+        >>> round(value, -1), round(arc_length, 3)  # at the clamp
+        (-20000.0, 0.0)
+        """
+        require_known(f"there is no section force {shown(part)}", part, FORCES)
+        return extreme_force(self, part, np.abs)
+
+    def _unit_of(self, name: str) -> str:
+        return self.units.of({"arc_length": "m", "moment": "N m"}.get(name, "N"))
+
+    def _repr_html_(self) -> str:
+        return offered(SectionForces._repr_html_)(self)
 
 
 def section_forces(solution: "Solution", beam: Beam) -> SectionForces:
@@ -29,7 +112,46 @@ def section_forces(solution: "Solution", beam: Beam) -> SectionForces:
     cuts = stations(mesh)
     arc = mesh.arc_length(cuts.element, cuts.xi)
     normal, shear, moment = of_beam(solution, number, _at_stations)
-    return SectionForces(arc, normal, shear, moment, units_of(solution.model.units))
+    units = units_of(solution.model.units)
+    return SectionForces(arc, normal, shear, moment, units, beam=beam, solution=solution)
+
+
+def extreme_force(forces: SectionForces, part: Force, measure: Measure) -> Peak:
+    """Return the section force of largest measure, at and between stations."""
+    number = FORCES.index(part)
+
+    def at(solution: "Solution", mesh: BeamMesh, cuts: Cuts, rows: np.ndarray) -> np.ndarray:
+        return at_points(solution, mesh, cuts, rows)[:, number]
+
+    values, unit = np.atleast_2d(getattr(forces, part)), "N m" if part == "moment" else "N"  # a state has no rows
+    return peak_of(forces.solution, forces.beam, (part, unit), values, measure, at)
+
+
+def peak_of(
+    solution: "Solution", beam: Beam, named: tuple[Part | Force, str], values: np.ndarray, measure: Measure, at: Values
+) -> Peak:
+    """Return the peak of a quantity of a beam: the value of largest measure, at and between stations.
+
+    named: the quantity and its SI unit; values (rows, stations).
+    """
+    mesh = solution.model.meshes[solution.model.number_of(beam)]
+
+    def in_row(row: int, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
+        return at(solution, mesh, Cuts(element, xi), np.array([row]))[0]
+
+    value, row, element, xi = extreme(*by_element(mesh, values), measure, in_row)
+    part, unit = named
+    place = (np.nan, -1, np.nan)
+    if row >= 0:
+        arc = mesh.arc_length(np.array([element]), np.array([xi]))
+        place = float(arc[0]), row, float(solution.at[row])
+    return Peak(value, *place, beam, part, solution.static, units_of(solution.model.units), unit)
+
+
+def by_element(mesh: BeamMesh, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return values at stations (rows, stations) as (rows, elements, stations of each), and xi of these."""
+    xi = _station_xi(mesh)
+    return values.reshape(len(values), mesh.elements, len(xi)), xi
 
 
 def _at_stations(solution: "Solution", mesh: BeamMesh) -> np.ndarray:
@@ -67,6 +189,12 @@ def _at_cuts(rows: Rows, mesh: BeamMesh, elements: np.ndarray, own: Parted, cuts
 
 
 def stations(mesh: BeamMesh) -> Cuts:
-    """Return the ends and Gauss points of every element of a beam."""
-    xi = np.array([0.0, *mesh.beam.element.quadrature()[0], 1.0])
+    """Return the ends, the Gauss points and the middle of every element of a beam."""
+    xi = _station_xi(mesh)
     return Cuts(np.repeat(np.arange(mesh.elements), len(xi)), np.tile(xi, mesh.elements))
+
+
+def _station_xi(mesh: BeamMesh) -> np.ndarray:
+    gauss = mesh.beam.element.quadrature()[0]
+    middle = [] if len(gauss) % 2 else [0.5]  # a Gauss point of odd rules
+    return np.sort(np.concatenate([[0.0], gauss, middle, [1.0]]))

@@ -1,7 +1,6 @@
 """A solution: states of a model over load factor or time, and the results derived from them."""
 
 from dataclasses import dataclass, field
-from itertools import chain
 from typing import overload
 
 import numpy as np
@@ -11,15 +10,13 @@ from beamfem.errors import InputError
 from beamfem.model.model import Model
 from beamfem.once import cached_property
 from beamfem.registry import offered
-from beamfem.results.energy_balance import energy_warnings
+from beamfem.results.checks import findings
 from beamfem.results.exports import Exports
 from beamfem.results.fitting import made_read_only, require_rows, require_state
-from beamfem.results.locking import locking_warnings
 from beamfem.results.pictures import Pictures
 from beamfem.results.quantities import Quantities
-from beamfem.results.status import Statistics, Status
+from beamfem.results.status import Statistics, Status, counted
 from beamfem.results.turns import start_rotations
-from beamfem.results.unjoined import unjoined_warnings
 from beamfem.validation import shown, whole
 
 
@@ -120,7 +117,12 @@ class Solution(Quantities, Pictures, Exports):
         span = f"{what} {self.at[0]:g} to {self.at[-1]:g}{unit}" if len(self.at) else "empty"
         unstable = "" if self.stability is None or self.stability.all() else f"{(~self.stability).sum()} unstable, "
         drift = "" if self.energy_drift is None else f"; {self.energy_drift}"
-        return f"{type(self).__name__}({len(self.at)} states, {unstable}{span}, of {self.model!r}{drift})"
+        return f"{type(self).__name__}({len(self.at)} states, {unstable}{span}, of {self.model!r}{drift}{self._warned})"
+
+    @property
+    def _warned(self) -> str:
+        """The number of warnings for the text, empty if there are none."""
+        return f"; {counted(len(self.warnings), 'warning')}, see its warnings" if self.warnings else ""
 
     def __len__(self) -> int:
         return len(self.at)
@@ -166,9 +168,11 @@ class Solution(Quantities, Pictures, Exports):
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings to heed before using the results, on locking and on missing joints too; empty if there are none."""
-        found = locking_warnings(self), energy_warnings(self), unjoined_warnings(self)
-        return (*self.statistics.warnings, *chain.from_iterable(found))
+        """Warnings to heed before using the results, in sentences; empty if there are none.
+
+        A solve has issued those of errors of 1 % and more as Python warnings too, each with a category.
+        """
+        return (*self.statistics.warnings, *(finding.sentence for finding in findings(self)))
 
     @cached_property
     def stable(self) -> np.ndarray:

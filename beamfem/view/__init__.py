@@ -7,7 +7,7 @@ from beamfem.registry import offer
 from beamfem.results.beam_stress import BeamStress
 from beamfem.results.energies import Energy
 from beamfem.results.pictures import Pictures
-from beamfem.results.postprocess import SectionForces
+from beamfem.results.section_forces import SectionForces
 from beamfem.results.solution import Solution, State
 from beamfem.solve.modes.modes import Modes
 from beamfem.solve.stability.buckling import Buckling

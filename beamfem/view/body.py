@@ -105,13 +105,15 @@ class _Scene:
         import pyvista
 
         self.shapes = shapes
-        self.surface = pyvista.PolyData(self._points(0), _faces(shapes))
+        self.surface = pyvista.PolyData(
+            self._points(0), _faces(shapes.points, [len(parts) for parts in self._parts(0)])
+        )
         with no_display_needed():
             self.plotter = pyvista.Plotter(off_screen=off_screen, window_size=list(size))
         self.plotter.set_background("white")
         self.plotter.enable_anti_aliasing("ssaa")
         options: dict[str, Any] = {"color": _PLAIN}
-        if any(len(layers) > 1 for layers in shapes.layers):
+        if shapes.quantity is None and any(len(layers) > 1 for layers in shapes.layers):
             # neighbouring layers differ in strength
             numbers = [np.repeat(np.arange(len(layers)), 4 * layers[0].shape[1]) for layers in shapes.layers]
             self.surface["layer"] = np.array([_STRONG, _PALE], dtype=np.uint8)[np.concatenate(numbers) % 2]
@@ -149,22 +151,27 @@ class _Scene:
         self.plotter.camera.zoom(1.3 if self.shapes.quantity is None else 1.1)  # a colour bar stands beside the body
         self.plotter.add_axes(color="black", zlabel="")
 
+    def _parts(self, order: int) -> list[list[np.ndarray]]:
+        """Two faces (points, 2 faces, 2) [m] of the parts of each beam: layers, or the strips of a field."""
+        if self.shapes.quantity is None:
+            return [[faces[order] for faces in layers] for layers in self.shapes.layers]
+        return [[faces for faces, _ in strips] for strips in self.shapes.strips(order)]
+
     def _points(self, order: int) -> np.ndarray:
         """Four corners of the section at each point: below and above, behind and before (points * 4, 3)."""
-        flat = np.concatenate([faces[order] for layers in self.shapes.layers for faces in layers])
-        z = 0.5 * _by_layer(self.shapes, self.widths)[:, None, None] * np.array([-1.0, 1.0])
+        parts = self._parts(order)
+        flat = np.concatenate([faces for of_beam in parts for faces in of_beam])
+        widths = [np.tile(width, len(of_beam)) for width, of_beam in zip(self.widths, parts, strict=True)]
+        z = 0.5 * np.concatenate(widths)[:, None, None] * np.array([-1.0, 1.0])
         corners = np.concatenate(
             [np.repeat(flat[:, :, None], 2, axis=2), np.broadcast_to(z, (len(flat), 2, 2))[..., None]], axis=-1
         )
         return corners.reshape(-1, 3)
 
     def _values(self, order: int) -> np.ndarray:
-        return np.repeat(_by_layer(self.shapes, [values[order] for values in self.shapes.values]), 4)
-
-
-def _by_layer(shapes: Shapes, values: Sequence[np.ndarray]) -> np.ndarray:
-    """Repeat values at the points of each beam (points,) for each of its layers."""
-    return np.concatenate([np.tile(value, len(parts)) for value, parts in zip(values, shapes.layers, strict=True)])
+        """The field at these corners (points * 4,)."""
+        fields = [field.ravel() for strips in self.shapes.strips(order) for _, field in strips]
+        return np.repeat(np.concatenate(fields), 2)
 
 
 def _widths(shapes: Shapes) -> list[np.ndarray]:
@@ -182,18 +189,18 @@ def _width(points: AxisPoints) -> np.ndarray:
     return np.where(area > 0.0, area / height, height)
 
 
-def _faces(shapes: Shapes) -> np.ndarray:
-    """Quadrilaterals of the surface as PyVista counts them: four sides of each piece of a layer, and its caps."""
+def _faces(points: Sequence[AxisPoints], counts: Sequence[int]) -> np.ndarray:
+    """Quadrilaterals of the surface as PyVista counts them: four sides of each piece of a part, and its caps."""
     faces = []
     first = 0
-    parts = [points for points, layers in zip(shapes.points, shapes.layers, strict=True) for _ in layers]
+    parts = [own for own, count in zip(points, counts, strict=True) for _ in range(count)]
     # corners of a section: 0 below behind, 1 below before, 2 above behind, 3 above before
     sides = np.array([(0, 1, 5, 4), (2, 6, 7, 3), (1, 3, 7, 5), (0, 4, 6, 2)])
-    for points in parts:
-        number = len(points.xi)
+    for own in parts:
+        number = len(own.xi)
         within = np.arange(number - 1)
         # two points stand at the common end of two elements
-        start = within[(within + 1) % (points.pieces + 1) != 0]
+        start = within[(within + 1) % (own.pieces + 1) != 0]
         faces.append((4 * (first + start)[:, None, None] + sides).reshape(-1, 4))
         last = 4 * (first + number - 1)
         faces.append(np.array([(4 * first, 4 * first + 2, 4 * first + 3, 4 * first + 1),

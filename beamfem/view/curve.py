@@ -8,7 +8,8 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
-from beamfem.results.along import QUANTITIES, OnePoint, Quantity
+from beamfem.results.along import QUANTITIES, PointsAt, Quantity
+from beamfem.results.free_bodies import Cuts
 from beamfem.results.solution import Solution
 from beamfem.validation import require_known, shown
 from beamfem.view.frames import axis_of_rows
@@ -93,7 +94,8 @@ def _taken(solution: Solution, which: str, given: Drawn) -> tuple[str, np.ndarra
 def _of_section(solution: Solution, quantity: Quantity, point: Point) -> tuple[str, str, np.ndarray]:
     """Return label, unit and values (steps,) of a quantity along the axis at a point. Raises InputError."""
     mesh = solution.model.mesh_of(point)
-    values = quantity.values(OnePoint(mesh, 0, point.fraction), solution, np.arange(len(solution)))[:, 0]
+    at = Cuts(*(np.array([value]) for value in mesh.locate(point.fraction)))
+    values = quantity.values(PointsAt(mesh, 0, at), solution, np.arange(len(solution)))[:, 0]
     if not np.isfinite(values).any():
         why = quantity.unknown_of([point.beam])
         raise InputError(f"the section at this point has no {quantity.label} to draw: {why}")

@@ -41,9 +41,10 @@ def plot_shapes(
 
     path: file to write (PNG, SVG, PDF; folders are created); colour: None for the time or load factor, or a field along
     the beams, whose extreme value is marked: "moment" [N m], "normal", "shear" [N], "rotation" [rad], "displacement"
-    [m], "speed" [m/s], "axial_strain" [-] (Green strain xx of the axis), "shear_angle" [rad]; of the stress of a
-    section [Pa] "stress" or "von_mises" (its largest von Mises stress), "upper", "lower" (faces), "outer" (the larger
-    of both), "tension", "compression", "shear_stress"; "utilisation" [-] of the strength;
+    [m], "speed" [m/s], "axial_strain" [-] (Green strain xx of the axis), "shear_angle" [rad]; of the stress [Pa]
+    "stress" or "von_mises" (von Mises stress over the height), of each section "upper", "lower" (faces), "outer" (the
+    larger of both), "tension", "compression", "shear_stress" (extremes); "utilisation" [-] of the strength, over the
+    height;
     shapes: number of steps, one of them the last; by default the last alone, of motions and paths 9; undeformed: draw
     the reference axes dashed; supports and loads: draw their symbols, each load on the shape at which it is largest.
     Raises InputError; MissingPackageError without matplotlib.

@@ -5,6 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.results import extremes
+from beamfem.results.along import AxisPoints, PointsAt
+from beamfem.results.extremes import estimate, extreme_of_beams
+from beamfem.results.free_bodies import Cuts
 from beamfem.view.frames import moment_of
 from beamfem.view.places import place
 from beamfem.view.shapes import Shapes, even
@@ -37,15 +41,37 @@ class Extreme:
 
 
 def extreme_of(shapes: Shapes) -> Extreme:
-    """Return the value of largest magnitude of the field of some shapes."""
+    """Return the value of largest magnitude of the field of some shapes, at and between the points of their axes."""
     assert shapes.quantity is not None
-    sizes = [np.where(np.isfinite(values), np.abs(values), -1.0) for values in shapes.values]
-    beam = int(np.argmax([size.max() for size in sizes]))
-    order, point = np.unravel_index(int(sizes[beam].argmax()), sizes[beam].shape)
+    fields = [_by_element(points, values) for points, values in zip(shapes.points, shapes.values, strict=True)]
+    estimates = np.array([estimate(*field, np.abs) for field in fields])
+    beam, found = extreme_of_beams(estimates, np.abs, lambda number: _of_beam(shapes, number, *fields[number]))
     solution, unit = shapes.solution, shapes.quantity.unit
-    value = f"{shapes.values[beam][order, point]:.4g}" + ("" if unit == "-" else f" {solution.model.unit(unit)}")
+    value = f"{found.value:.4g}" + ("" if unit == "-" else f" {solution.model.unit(unit)}")
     if even(shapes.values):
         return Extreme(value, "everywhere", None)
-    where = f"at {place(solution.model, shapes.points[beam].reference[point])}"
-    when = f", {moment_of(solution, int(shapes.rows[order]))}" if len(shapes.rows) > 1 else ""
-    return Extreme(f"extreme {value}", where + when, shapes.axis[beam][order, point])
+    row = int(shapes.rows[found.row])
+    points = _points_at(shapes, beam, np.array([found.element]), np.array([found.xi]))
+    where = f"at {place(solution.model, points.reference[0])}"
+    when = f", {moment_of(solution, row)}" if len(shapes.rows) > 1 else ""
+    return Extreme(f"extreme {value}", where + when, points.positions(solution.p[[row]])[0][0, 0])
+
+
+def _of_beam(shapes: Shapes, beam: int, values: np.ndarray, xi: np.ndarray) -> extremes.Extreme:
+    assert shapes.quantity is not None
+    along = shapes.quantity.values
+
+    def at(order: int, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
+        return along(_points_at(shapes, beam, element, xi), shapes.solution, shapes.rows[[order]])[0]
+
+    return extremes.extreme(values, xi, np.abs, at)
+
+
+def _by_element(points: AxisPoints, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return values (rows, points) as (rows, elements, points of each), and xi of these."""
+    count = points.pieces + 1
+    return values.reshape(len(values), points.mesh.elements, count), points.xi[:count]
+
+
+def _points_at(shapes: Shapes, beam: int, element: np.ndarray, xi: np.ndarray) -> PointsAt:
+    return PointsAt(shapes.points[beam].mesh, 0, Cuts(element, xi))

@@ -45,7 +45,8 @@ def fields_of(shapes: Shapes, names: Sequence[str]) -> list[dict[str, Any]]:
         values = np.concatenate(parts, axis=1)
         known = np.isfinite(values)
         levels = np.where(known, 1.0 + np.round((np.where(known, values, low) - low) / (high - low) * _LEVELS), 0.0)
-        label = f"{quantity.label} [{solution.model.unit(quantity.unit)}]"
+        whole = "" if quantity.over_height is None else ", largest over the height"  # a page has one colour a section
+        label = f"{quantity.label}{whole} [{solution.model.unit(quantity.unit)}]"
         result.append({"name": name, "label": label, "low": low, "high": high, "values": as_text(levels.astype("u1"))})
     return result
 

@@ -8,7 +8,8 @@ import numpy as np
 from beamfem.model.beam import Beam
 from beamfem.results.beam_stress import PARTS, BeamStress
 from beamfem.results.energies import Energy
-from beamfem.results.postprocess import SectionForces
+from beamfem.results.peak import Force
+from beamfem.results.section_forces import SectionForces, extreme_force
 from beamfem.tabulate import as_html
 from beamfem.validation import shown
 from beamfem.view.summary import largest_displacement, model_rows
@@ -68,13 +69,12 @@ def section_forces_table(forces: SectionForces) -> str:
     """Return the extremes of section forces as an HTML table, each with its place and row."""
     unit = forces.units.of
     rows = []
-    for name, si in (("normal", "N"), ("shear", "N"), ("moment", "N m")):
-        values = np.atleast_2d(getattr(forces, name))  # those of a state of a path have no rows
-        for which, find in (("smallest", np.argmin), ("largest", np.argmax)):
-            row, station = np.unravel_index(int(find(values)), values.shape)
-            at, value = float(forces.arc_length[station]), float(values[row, station])
-            value = 0.0 if abs(value) <= _NOTHING * np.abs(values).max() else value
-            rows.append((f"{which} {name} [{unit(si)}]", value, at, int(row)))
+    named: tuple[tuple[Force, str], ...] = (("normal", "N"), ("shear", "N"), ("moment", "N m"))
+    for name, si in named:
+        for which, measure in (("smallest", np.negative), ("largest", np.asarray)):
+            value, at, row = extreme_force(forces, name, measure)
+            value = 0.0 if abs(value) <= _NOTHING * np.abs(getattr(forces, name)).max() else value
+            rows.append((f"{which} {name} [{unit(si)}]", value, at, row))
     head = ("", "value", f"at arc length [{unit('m')}]", "row")
     return f"<b>SectionForces</b>{as_html(head, rows)}"
 

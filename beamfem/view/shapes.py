@@ -9,6 +9,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.once import cached_property
 from beamfem.results.along import AxisPoints, Quantity, quantity
+from beamfem.results.beam_stress import HEIGHTS
 from beamfem.results.many_beams import LikeBeams, like_beams, of_each
 from beamfem.results.solution import Solution
 from beamfem.view.frames import axis_points
@@ -19,6 +20,7 @@ FIELD_COLOURS = "viridis"  # told apart by the colour-blind, and its lightness r
 _LIGHT, _DARK = np.array([0.68, 0.78, 0.88]), np.array([0.07, 0.22, 0.42])
 _DASHED, _DASHES = "0.55", (0, (5, 3))  # axes in the reference
 _UNKNOWN = 0.8  # grey of what has no value
+_THIN = 0.01  # of the larger side of a picture
 _SLABS = 40_000  # of bodies in a picture; above, axes alone are drawn
 
 
@@ -96,10 +98,39 @@ class Shapes:
             raise InputError(f"no beam has a {self.quantity.label} to draw: {why}")
         return result
 
+    def strips(self, order: int) -> list[list[tuple[np.ndarray, np.ndarray]]]:
+        """Strips along each beam in a row: their two faces (points, 2 faces, 2) [m] and the field there (points, 2).
+
+        A field that varies over the height has several strips in each layer, any other one for each layer.
+        """
+        if self._over_height is None:
+            return [
+                [(faces[order], np.repeat(values[order, :, None], 2, axis=-1)) for faces in layers]
+                for layers, values in zip(self.layers, self.values, strict=True)
+            ]
+        result = []
+        for layers, values in zip(self.layers, self._over_height, strict=True):
+            strips = []
+            for number, faces in enumerate(layers):
+                low, high = np.moveaxis(faces[order][:, :, None], 1, 0)
+                between = low + HEIGHTS[:, None] * (high - low)
+                field = values[order, :, number]
+                strips += [(between[:, i : i + 2], field[:, i : i + 2]) for i in range(len(HEIGHTS) - 1)]
+            result.append(strips)
+        return result
+
+    @cached_property
+    def _over_height(self) -> list[np.ndarray] | None:
+        """The field of each beam at `HEIGHTS` of each layer (rows, points, layers, heights), None if it is the same."""
+        over_height = None if self.quantity is None else self.quantity.over_height
+        if over_height is None:
+            return None
+        return of_each(self.groups, lambda points: over_height(points, self.solution, self.rows))
+
     @cached_property
     def limits(self) -> tuple[float, float]:
         """Smallest and largest value of the field in these rows."""
-        return limits(self.values)
+        return limits(self.values if self._over_height is None else [*self.values, *self._over_height])
 
     @cached_property
     def box(self) -> np.ndarray:
@@ -116,7 +147,9 @@ class Shapes:
 
     @property
     def _bodies_drawn(self) -> bool:
-        return len(self.rows) * sum(len(points.xi) for points in self.points) <= _SLABS
+        varies = self.quantity is not None and self.quantity.over_height is not None
+        strips = len(HEIGHTS) - 1 if varies else 1
+        return strips * len(self.rows) * sum(len(points.xi) for points in self.points) <= _SLABS
 
     def draw(self, axes: Any, order: int, fraction: float = 1.0) -> list[Any]:
         """Draw the shape of the row number `order`; fraction: from 0 for pale to 1 for strong. Return the artists."""
@@ -141,37 +174,63 @@ class Shapes:
         return drawn
 
     def _by_field(self, axes: Any, order: int, fraction: float) -> list[Any]:
-        from matplotlib import colormaps
         from matplotlib.collections import LineCollection, PolyCollection
 
-        pieces, slabs, means = [], [], []
-        for points, axis, body, values in zip(self.points, self.axis, self.body, self.values, strict=True):
-            shape = (points.mesh.elements, points.pieces + 1)
-            r, faces = axis[order].reshape(*shape, 2), body[order].reshape(*shape, 2, 2)
-            value = values[order].reshape(shape)
-            pieces.append(np.stack([r[:, :-1], r[:, 1:]], axis=2).reshape(-1, 2, 2))
-            slab = np.stack([faces[:, :-1, 0], faces[:, 1:, 0], faces[:, 1:, 1], faces[:, :-1, 1]], axis=2)
-            slabs.append(slab.reshape(-1, 4, 2))
-            means.append(0.5 * (value[:, :-1] + value[:, 1:]).ravel())
-        low, high = self.limits
-        fractions = (np.concatenate(means) - low) / (high - low)
-        colours = np.where(np.isfinite(fractions)[:, None], colormaps[FIELD_COLOURS](fractions)[:, :3], _UNKNOWN)
-        # paler by white, not by transparency, which would show where slabs overlap
-        strength = 0.35 + 0.65 * fraction
-        colours = 1.0 - strength * (1.0 - colours)
-        layer = 2 + fraction
         drawn: list[Any] = []
         if self._bodies_drawn:
-            fill = PolyCollection(list(np.concatenate(slabs)), facecolors=colours, edgecolors="face", linewidths=0.3)
+            slabs, means = [], []
+            for points, strips in zip(self.points, self.strips(order), strict=True):
+                for faces, field in strips:
+                    ends = _between(points, faces)
+                    corners = [ends[:, 0, 0], ends[:, 1, 0], ends[:, 1, 1], ends[:, 0, 1]]
+                    slabs.append(np.stack(corners, axis=1))
+                    means.append(_between(points, field).mean(axis=(1, 2)))
+            colours = self._colours(np.concatenate(means), fraction)
+            drawn.append(
+                PolyCollection(list(np.concatenate(slabs)), facecolors=colours, edgecolors="face", linewidths=0.3)
+            )
             parts = [faces[order] for layers in self.layers for faces in layers]
             outlines = [np.concatenate([faces[:, 0], faces[::-1, 1]]) for faces in parts]
-            edges = str(1.0 - 0.75 * strength)
-            drawn += [fill, PolyCollection(outlines, facecolors="none", edgecolors=edges, linewidths=0.4)]
-        drawn.append(LineCollection(list(np.concatenate(pieces)), colors=colours, linewidths=2.0, capstyle="round"))
+            edges = str(1.0 - 0.75 * _strength(fraction))
+            drawn.append(PolyCollection(outlines, facecolors="none", edgecolors=edges, linewidths=0.4))
+        lines, along = [], []
+        for points, axis, values in zip(self.points, self.axis, self.values, strict=True):
+            # on a body whose field varies over the height, the extreme over it would be painted on its axis
+            if self._over_height is None or not self._bodies_drawn or self._thin(points):
+                lines.append(_between(points, axis[order]))
+                along.append(_between(points, values[order]).mean(axis=1))
+        if lines:
+            colours = self._colours(np.concatenate(along), fraction)
+            drawn.append(LineCollection(list(np.concatenate(lines)), colors=colours, linewidths=2.0, capstyle="round"))
+        layer = 2 + fraction
         for artist in drawn:
             artist.set_zorder(layer)
             axes.add_collection(artist, autolim=False)
         return drawn
+
+    def _thin(self, points: AxisPoints) -> bool:
+        """Return whether a body is hardly higher than a line."""
+        return float(np.ptp(points.faces, axis=1).max()) < _THIN * float(np.max(self.box[1] - self.box[0]))
+
+    def _colours(self, values: np.ndarray, fraction: float) -> np.ndarray:
+        """Return the colours (n, 3) of values (n,) of the field."""
+        from matplotlib import colormaps
+
+        low, high = self.limits
+        fractions = (values - low) / (high - low)
+        colours = np.where(np.isfinite(fractions)[:, None], colormaps[FIELD_COLOURS](fractions)[:, :3], _UNKNOWN)
+        return np.asarray(1.0 - _strength(fraction) * (1.0 - colours))
+
+
+def _between(points: AxisPoints, values: np.ndarray) -> np.ndarray:
+    """Return values (points, ...) at both ends of the pieces of all elements (pieces, 2, ...)."""
+    table = values.reshape(points.mesh.elements, points.pieces + 1, *values.shape[1:])
+    return np.stack([table[:, :-1], table[:, 1:]], axis=2).reshape(-1, 2, *values.shape[1:])
+
+
+def _strength(fraction: float) -> float:
+    """Return how strong a colour is; paler ones are mixed with white, not transparent, which would show overlaps."""
+    return 0.35 + 0.65 * fraction
 
 
 def limits(values: Sequence[np.ndarray]) -> tuple[float, float]:

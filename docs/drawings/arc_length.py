@@ -50,7 +50,7 @@ def step(axes):
 
 def steps(axes):
     """Draw the rows of a path over two limit points."""
-    common = {"element": bf.CRBF(3), "section": bf.Section(6.0, 2.0), "material": bf.Material(7.2e6, 0.3, 1.0)}
+    common = {"element": bf.CRBF(3), "section": bf.Section(6.0, 2.0), "material": bf.Material(7.2e6, 0.3, 2.7e-5)}
     column = bf.Beam(bf.Line((0, 0), (0, 120)), 6, **common)
     bar = bf.Beam(bf.Line((0, 120), (120, 120)), 10, **common)
     loaded = bar.at(0.2)

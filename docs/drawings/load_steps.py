@@ -16,7 +16,7 @@ def smooth(x, y):
 
 
 def frame(force):
-    common = {"element": bf.CRBF(3), "section": bf.Section(6.0, 2.0), "material": bf.Material(7.2e6, 0.3, 1.0)}
+    common = {"element": bf.CRBF(3), "section": bf.Section(6.0, 2.0), "material": bf.Material(7.2e6, 0.3, 2.7e-5)}
     column = bf.Beam(bf.Line((0, 0), (0, 120)), 6, **common)
     bar = bf.Beam(bf.Line((0, 120), (120, 120)), 10, **common)
     supports, joints = [bf.Pin(column.start), bf.Pin(bar.end)], [bf.Rigid(column.end, bar.start)]

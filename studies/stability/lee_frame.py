@@ -19,7 +19,7 @@ OUT = Path("out/lee_frame")
 
 def trace(element: bf.Element | None = None, elements: int = 10, youngs_modulus: float = 7.2e6) -> bf.Path:
     """Return the path until the load point is 95 cm down; elements: of each member."""
-    section, material = bf.Section(area=6.0, second_moment=2.0), bf.Material(youngs_modulus, 0.3, 1.0)
+    section, material = bf.Section(area=6.0, second_moment=2.0), bf.Material(youngs_modulus, 0.3, 2.7e-5)
     element = element or bf.CRBF(4)
     column = bf.Beam(bf.Line((0, 0), (0, 120)), elements, element, section, material)
     beam = bf.Beam(bf.Line((0, 120), (120, 120)), elements, element, section, material)

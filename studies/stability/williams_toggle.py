@@ -29,7 +29,7 @@ OUT = Path("out/williams_toggle")
 
 def toggle(deflection: float | None, elements: int, order: int) -> bf.Model:
     """Return the toggle under a force of 1 lb on its crown, or with a prescribed deflection [in] of it."""
-    section, material = bf.Section(area=0.1885, second_moment=9.274e-4), bf.Material(1e7, 0.3, 1.0)
+    section, material = bf.Section(area=0.1885, second_moment=9.274e-4), bf.Material(1e7, 0.3, 2.5e-4)
     lines = (bf.Line((0, 0), (12.943, 0.386)), bf.Line((12.943, 0.386), (25.886, 0)))
     left, right = (bf.Beam(line, elements, bf.CRBF(order), section, material) for line in lines)
     supports: list[bf.Clamp | bf.Prescribed] = [bf.Clamp(left.start), bf.Clamp(right.end)]

@@ -16,6 +16,7 @@ from beamfem.cli.modelfile.starts import Equilibrium, Start, newton, start, stat
 from beamfem.cli.modelfile.table import Reader, Table, build, build_kind
 from beamfem.errors import InputError
 from beamfem.model.model import Model
+from beamfem.results.checks import warned
 from beamfem.solve.modes.modes import solve_modes
 from beamfem.solve.motion.dynamics import simulate
 from beamfem.solve.motion.equations_of_motion import Integrator
@@ -51,7 +52,7 @@ class Static:
 
     def run(self, model: Model, at: Sequence[float]) -> Found:
         if self.at is None:
-            return Found(solve_through(model, at, self.steps, self.newton, snap=self.snap))
+            return Found(warned(solve_through(model, at, self.steps, self.newton, snap=self.snap)))
         further = [value for value in at if all(abs(value - other) > SAME for other in self.at)]
         load_factors = sorted({*self.at, *further})
         return Found(solve_static(model, self.steps, self.newton, at=load_factors, snap=self.snap))

@@ -15,11 +15,13 @@ from beamfem.linalg.general_pairs import general_pairs
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
+from beamfem.once import cached_property
 from beamfem.registry import offered
+from beamfem.results.checks import may_lock, warn_of
 from beamfem.results.drawing_options import ModeOptions
-from beamfem.results.locking import frequency_warnings
+from beamfem.results.locking import frequency_locking
 from beamfem.results.solution import Solution, State
-from beamfem.results.status import Statistics, Status
+from beamfem.results.status import Statistics, Status, counted
 from beamfem.solve.modes.lowest import WRONG, lowest_pairs
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.modes.rigid import unresisted
@@ -72,7 +74,8 @@ class Modes:
 
     def __repr__(self) -> str:
         listed = ", ".join(f"{value:.6g}" for value in self.frequencies[:12])
-        return f"Modes({listed}{' ...' if len(self) > 12 else ''} {self.model.unit('Hz')})"
+        warned = f"; {counted(len(self.warnings), 'warning')}, see its warnings" if self.warnings else ""
+        return f"Modes({listed}{' ...' if len(self) > 12 else ''} {self.model.unit('Hz')}{warned})"
 
     def _repr_html_(self) -> str:
         return offered(Modes._repr_html_)(self)
@@ -90,10 +93,17 @@ class Modes:
         """UNSTABLE if a mode grows, otherwise COMPLETED; a solve that misses modes raises an error."""
         return Status.UNSTABLE if np.any(self.growth > 0.0) else Status.COMPLETED
 
-    @property
+    @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings on the accuracy of the frequencies due to the mesh, in sentences; empty if there are none."""
-        return frequency_warnings(self.state, self.modes[len(self.rigid) :])
+        """Warnings on the accuracy of the frequencies due to the mesh, in sentences; empty if there are none.
+
+        `solve_modes` has issued those of errors of 1 % and more as Python warnings too.
+        """
+        return tuple(finding.sentence for finding in frequency_locking(self.state, self._elastic_shapes))
+
+    @property
+    def _elastic_shapes(self) -> np.ndarray:
+        return self.modes[len(self.rigid) :]
 
     def solution(self, mode: int = 0, amplitude: float | None = None, frames: int = 25) -> Solution:
         """Return one period of a mode as a Solution to draw or export.
@@ -257,6 +267,11 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     ConvergenceError
         If modes were missed.
 
+    Warns
+    -----
+    LockingWarning
+        If locking changes a frequency by 1 % or more.
+
     Examples
     --------
     >>> bf.solve_modes(model, count=2).frequencies.round(2)
@@ -291,7 +306,10 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     rates = np.append(np.zeros(len(rigid)), rates[order])[:count]
     rest_state = State(p, np.zeros_like(p), np.zeros_like(p), load_factor, model)
     frequencies = rates.imag / (2.0 * np.pi)
-    return Modes(model, rest_state, frequencies, rates.real, upright(shapes), words[:count])
+    modes = Modes(model, rest_state, frequencies, rates.real, upright(shapes), words[:count])
+    if may_lock(system, rest_state.p[None], 2.0):
+        warn_of(frequency_locking(rest_state, modes._elastic_shapes))
+    return modes
 
 
 def _general(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:

@@ -13,6 +13,7 @@ from beamfem.kernels.motion_record import ITERATIONS
 from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
 from beamfem.model.turns import rotation_pairs
+from beamfem.results.checks import warned
 from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
@@ -83,6 +84,13 @@ def simulate(
         If a step does not converge; its `solution` has all states so far. Any other exception during the solve, such as
         KeyboardInterrupt, carries the states so far as its `solution` too.
 
+    Warns
+    -----
+    LockingWarning
+        If locking changes displacements by 1 % or more.
+    LargeStrainWarning
+        If strains of a linear law exceed 0.2, or the utilisation of a strength exceeds 1.
+
     Examples
     --------
     >>> motion = bf.simulate(model, duration=0.02, step=0.001)
@@ -149,7 +157,7 @@ def simulate(
         solution = replace(solution, statistics=statistics)
     for sentence in energy_warnings(solution):
         warn(sentence, EnergyWarning)
-    return solution
+    return warned(solution)
 
 
 def _solution(

@@ -13,6 +13,7 @@ from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
 from beamfem.progress import progress
 from beamfem.results.bent import advice
+from beamfem.results.checks import warned
 from beamfem.results.path import Bifurcation, Path, PathState
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
@@ -87,6 +88,13 @@ def trace_equilibrium(
     ----------
     Riks 1979; Wagner and Wriggers 1988 (bifurcations); Magisano, Leonetti and Garcea 2017 (stresses).
 
+    Warns
+    -----
+    LockingWarning
+        If locking changes displacements by 1 % or more.
+    LargeStrainWarning
+        If strains of a linear law exceed 0.2, or the utilisation of a strength exceeds 1.
+
     Examples
     --------
     >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e6, 0.0))])
@@ -148,7 +156,7 @@ def trace_equilibrium(
             report(len(record.rows))
         else:
             record.end("the path has reached the end that was asked for")
-    return record.path()
+    return warned(record.path())
 
 
 def _require_load(system: System) -> None:

@@ -11,6 +11,7 @@ from beamfem.assembly.compiled import tell_of_compilation
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
+from beamfem.results.checks import warned
 from beamfem.results.solution import Solution
 from beamfem.results.turns import start_rotations
 from beamfem.solve.newton.iteration import Newton, require_newton
@@ -82,6 +83,12 @@ def solve_static(
     -----
     UnstableWarning
         If some rows are unstable equilibria.
+    RoundOffWarning
+        If round-off leaves few digits of the forces.
+    LockingWarning
+        If locking changes displacements by 1 % or more.
+    LargeStrainWarning
+        If strains of a linear law exceed 0.2, or the utilisation of a strength exceeds 1.
 
     Examples
     --------
@@ -91,9 +98,10 @@ def solve_static(
     """
     if at is None:
         equal = np.arange(1, count("steps", steps)) / steps
-        return solve_through(model, equal.tolist(), steps, newton, snap=snap, resolved=True)
+        return warned(solve_through(model, equal.tolist(), steps, newton, snap=snap, resolved=True))
     load_factors = _ascending(at)
-    return _rows_at(solve_through(model, load_factors, steps, newton, snap=snap, end=load_factors[-1]), load_factors)
+    through = solve_through(model, load_factors, steps, newton, snap=snap, end=load_factors[-1])
+    return warned(_rows_at(through, load_factors))
 
 
 def _ascending(at: Sequence[float]) -> list[float]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.equations import STATICS, linearise, load_slope, predicted_stresses, residual
+from beamfem.assembly.equations import STATICS, linearise, load_change, predicted_stresses, residual
 from beamfem.assembly.imposed_forces import imposed_forces
 from beamfem.assembly.round_off import loses_digits
 from beamfem.assembly.system import System
@@ -65,7 +65,8 @@ class Corrected:
 class Continuation:
     """A system whose load factor is unknown, measured in lengths of the model and in `load_scale`.
 
-    load_step: largest change of a small load factor in one step.
+    load_step: largest change of a small load factor in one step; piece: load factors between which functions that act
+    have no kink, so that slopes are taken inside of it.
 
     The squared length of a change of y is the mean of the squared scaled changes of the unknown coordinates, plus that
     of the load factor; it depends neither on units nor on the mesh.
@@ -75,6 +76,7 @@ class Continuation:
     newton: Newton
     load_scale: float
     load_step: float
+    piece: tuple[float, float] = (-np.inf, np.inf)
 
     @cached_property
     def functions_of_time(self) -> list[FunctionOfTime]:
@@ -131,9 +133,12 @@ class Continuation:
         stresses give the tangent no information on them.
         """
         moved = bool(np.any(tangent[self.system.prescribed_dofs]))
-        if not moved or abs(tangent[-1]) < _GROWS_WELL * self.load_scale:
-            return tangent
-        result = np.zeros(len(tangent))
+        return self.load_axis if moved and abs(tangent[-1]) >= _GROWS_WELL * self.load_scale else tangent
+
+    @property
+    def load_axis(self) -> np.ndarray:
+        """The change of y (n + 1,) by 1 of the load factor alone."""
+        result = np.zeros(len(self.scale))
         result[-1] = 1.0
         return result
 
@@ -201,18 +206,26 @@ class Continuation:
         """
         system, p, at = self.system, y[:-1], float(y[-1])
         zeros, free, prescribed = np.zeros(len(p)), system.free_dofs, system.prescribed_dofs
-        width = _SLOPE_WIDTH * self.load_scale
+        before, after = self._around(at)
         unbalanced, tangent = linearise(system, p, zeros, zeros, at, STATICS, stresses)
         factors = tangent.factorised(system.rotated)
         balance, along = np.zeros(len(y)), np.zeros(len(y))
         balance[free], _ = factors.correction(unbalanced[free])
-        along[free] = factors.solve(-load_slope(system, p, at, width)[free])
-        change = system.prescribed_values(at + width) - system.prescribed_values(at - width)
-        along[prescribed] = change / (2.0 * width)
+        along[free] = factors.solve(-load_change(system, p, before, after)[free] / (after - before))
+        change = system.prescribed_values(after) - system.prescribed_values(before)
+        along[prescribed] = change / (after - before)
         along[-1] = 1.0
         if not (np.isfinite(balance).all() and np.isfinite(along).all()):
             raise LinAlgError("the tangent is singular")
         return balance, along, factors
+
+    def _around(self, at: float) -> tuple[float, float]:
+        """Return two load factors around one, inside of the piece if this one is, between which slopes are taken."""
+        width, (low, high) = _SLOPE_WIDTH * self.load_scale, self.piece
+        if not low <= at <= high:
+            return at - width, at + width
+        width = min(width, 0.5 * (high - low))
+        return max(at - width, low), min(at + width, high)
 
 
 class _InPlane(SingleCorrections):
@@ -263,7 +276,13 @@ class _InPlane(SingleCorrections):
         return self.after_first()[1]
 
 
-def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> tuple[Continuation, PathPoint]:
+def begin(
+    system: System,
+    p: np.ndarray,
+    load_factor: float,
+    newton: Newton,
+    piece: tuple[float, float] = (-np.inf, np.inf),
+) -> tuple[Continuation, PathPoint]:
     """Return the continuation of a model and its first point, that of the equilibrium p, towards larger loads.
 
     The soft load is the load factor whose forces would move the softest mode by about a length of the model, or whose
@@ -271,7 +290,7 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
     movement and load have equal parts in the tangent of the first point. Neither depends on the size of the loads or
     on units. Raises LinAlgError if the tangent is singular, ConvergenceError if loads are too large or too small.
     """
-    plain = Continuation(system, newton, 1.0, 1.0)
+    plain = Continuation(system, newton, 1.0, 1.0, piece)
     zeros = np.zeros(len(p))
     loses_digits(system, p, load_factor)
     _, tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)
@@ -294,10 +313,10 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
     growing = np.zeros(len(p) + 1)
     growing[-1] = 1.0
     y = np.append(p, load_factor)
-    moving = Continuation(system, newton, soft, soft).linearised(y, growing).tangent[-1] / soft
+    moving = Continuation(system, newton, soft, soft, piece).linearised(y, growing).tangent[-1] / soft
     balanced = soft * moving / np.sqrt(max(1.0 - moving**2, _LARGEST_RATIO**-2))
     # the first tangent of a flat start says nothing about the movement further on
-    line = Continuation(system, newton, soft if flat else max(balanced, soft), _LOAD_STEP * soft)
+    line = Continuation(system, newton, soft if flat else max(balanced, soft), _LOAD_STEP * soft, piece)
     return line, line.linearised(y, growing)
 
 

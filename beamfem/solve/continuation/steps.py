@@ -95,11 +95,16 @@ def too_small(line: Continuation, point: PathPoint, size: float) -> bool:
     return size < _SMALLEST * max(1.0, abs(point.load_factor) / line.load_scale)
 
 
-def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refused:
-    """Return the step of a given length from a point with its critical points, or the reason of its rejection."""
+def take_step(line: Continuation, point: PathPoint, size: float, to: float | None = None) -> Step | Refused:
+    """Return the step of a given length from a point with its critical points, or the reason of its rejection.
+
+    to: load factor at the end of the step, if it is given.
+    """
     change = size * point.tangent
     farthest = _FARTHEST * size
     start, stresses, plane = point.y + change, line.stresses(point.y, change), line.plane(point.tangent)
+    if to is not None:
+        start[-1], plane = to, line.load_axis
     corrected = line.correct(start, stresses, plane, farthest, counted=True)
     if not corrected.ended.good:
         return Refused(corrected.ended.value, corrected.iterations)

@@ -1,6 +1,7 @@
 """Equilibrium paths by arc-length continuation, through limit points in load and in displacement."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from itertools import pairwise
 
@@ -21,7 +22,9 @@ from beamfem.solve.continuation.steps import Refused, Step, longest_step, take_s
 from beamfem.solve.newton.iteration import Newton, require_newton
 from beamfem.solve.paths.branches import leave
 from beamfem.solve.paths.path_record import PathRecord
+from beamfem.solve.start.functions_of_time import functions_of_time
 from beamfem.solve.start.interrupted import kept
+from beamfem.solve.start.kinks import kinks_between
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import refuse_memory, refuse_multipliers
 from beamfem.solve.start.system_to_solve import system_to_solve
@@ -30,6 +33,8 @@ from beamfem.validation import count, finite, function_of_one, optional, positiv
 
 _FIRST_STEP = 2e-3  # along the path, see Continuation
 _ITERATIONS = 15  # a shorter step is cheaper than more iterations
+_AHEAD = 1.2  # of a step: kinks are looked for up to there, so that none is left next to its end
+_NEAR_START = 0.01  # of the load factor: where an undeclared kink at load factor 0 is looked for
 
 Until = float | Callable[[PathState], bool] | None
 
@@ -129,7 +134,7 @@ def trace_equilibrium(
     _require_crossing(model, start)
     record = PathRecord(model)
     with kept(lambda: record.path() if record.rows else None), progress("points of the path", points) as report:
-        line, point = _first(system, newton, record)
+        line, point = _first(system, newton, record, direction)
         size = _FIRST_STEP if step is None else step / abs(point.tangent[-1])
         if step is not None and too_small(line, point, size):
             raise InputError(f"step must be larger: {step:g} of the load factor moves the model by round-off only")
@@ -145,12 +150,15 @@ def trace_equilibrium(
             if len(record.rows) >= points:
                 record.end(f"the {points} points are used up")
                 break
-            taken, landing = _step(line, point, size, record, until if isinstance(until, float) else None)
+            line, kink = _piece(line, point, size)
+            taken, landing = _step(line, point, size, record, until if isinstance(until, float) else None, kink)
             size = taken.next_size
             landed = landing is not None
             point = taken.segment.after if landing is None else landing
             record.add(point.y, point.negative_pivots == 0)
             record.add_critical(line, taken, point)
+            if point.load_factor == kink:
+                line, point = _beyond(line, point)
             line, rescaled = line.rescaled(point)
             point, size = rescaled, size * line.length(point.tangent)
             report(len(record.rows))
@@ -181,15 +189,45 @@ def _require_crossing(model: Model, start: Bifurcation | None) -> None:
         raise InputError("start is a bifurcation of another model; trace the path of this one first")
 
 
-def _first(system: System, newton: Newton, record: PathRecord) -> tuple[Continuation, PathPoint]:
+def _piece(line: Continuation, point: PathPoint, size: float) -> tuple[Continuation, float | None]:
+    """Return the continuation up to the next kink of a function, and its load factor, if a step may reach it."""
+    if not line.functions_of_time:
+        return line, None
+    size = min(size, longest_step(line, point))
+    ahead = point.load_factor + _AHEAD * size * float(point.tangent[-1])
+    kink = next(iter(kinks_between(line.functions_of_time, point.load_factor, ahead, jumps=False)), None)
+    low, high = line.piece
+    if kink is not None and kink > point.load_factor:
+        high = kink
+    elif kink is not None:
+        low = kink
+    return replace(line, piece=(low, high)), kink
+
+
+def _beyond(line: Continuation, point: PathPoint) -> tuple[Continuation, PathPoint]:
+    """Return the continuation and the point at a kink with the slopes behind it, in the direction of the path."""
+    grows = float(np.sign(point.tangent[-1]))
+    line = replace(line, piece=(point.load_factor, np.inf) if grows > 0.0 else (-np.inf, point.load_factor))
+    try:
+        return line, line.linearised(point.y, grows * line.load_axis)
+    except LinAlgError:
+        raise ConvergenceError(f"the path ends at the kink at load factor {point.load_factor:.6g}") from None
+
+
+def _first(system: System, newton: Newton, record: PathRecord, direction: int) -> tuple[Continuation, PathPoint]:
     """Return the continuation and the point at load factor 0."""
+    functions, piece = functions_of_time(system), (-np.inf, np.inf)
+    with suppress(InputError):  # from a function that is not defined so far
+        declared = any(0.0 in function.kinks for function in functions)
+        if declared or kinks_between(functions, -_NEAR_START, 1.3 * _NEAR_START):
+            piece = (0.0, np.inf) if direction > 0 else (-np.inf, 0.0)
     first = first_equilibrium(system, newton)
     record.iterations += first.iterations
     if not first.ended.good:
         record.add(np.append(system.reference, 0.0), stable=False)
         raise ConvergenceError(f"no equilibrium under the loads that do not scale: {first.ended.value}")
     try:
-        return begin(system, first.state, 0.0, newton)
+        return begin(system, first.state, 0.0, newton, piece)
     except LinAlgError:
         raise ConvergenceError("there is no path from load factor 0: the tangent is singular") from None
 
@@ -213,17 +251,22 @@ def _branch(
 
 
 def _step(
-    line: Continuation, point: PathPoint, size: float, record: PathRecord, end: float | None
+    line: Continuation, point: PathPoint, size: float, record: PathRecord, end: float | None, kink: float | None
 ) -> tuple[Step, PathPoint | None]:
     """Return the longest accepted step from a point up to `size`, and the point on it with the load factor `end`.
 
-    Raises ConvergenceError with the most frequent reason for rejections, since round-off decides the shortest steps.
+    kink: load factor of the next kink of a function that acts, at which the step ends if it is that long. Raises
+    ConvergenceError with the most frequent reason for rejections, since round-off decides the shortest steps.
     """
     size = min(size, longest_step(line, point, end))
     reasons: list[str] = []
     while True:
-        outcome = take_step(line, point, size)
+        to_kink = np.inf if kink is None else (kink - point.load_factor) / float(point.tangent[-1])
+        reaches = size >= to_kink / _AHEAD
+        outcome = take_step(line, point, to_kink, kink) if reaches else take_step(line, point, size)
         record.iterations += outcome.iterations
+        if isinstance(outcome, Step) and _passes(outcome, kink):
+            outcome = Refused(f"a function has a kink at load factor {kink:.6g} within the step", outcome.iterations)
         if isinstance(outcome, Step):
             try:
                 landing = None if end is None else _landing(line, outcome, end)
@@ -241,6 +284,12 @@ def _step(
                 f"{record.ended}, with steps along it down to {size:.1e}{advice(record.model, point.y[:-1])}",
                 record.path(),
             )
+
+
+def _passes(step: Step, kink: float | None) -> bool:
+    """Return whether a step passes a kink."""
+    before, after = step.segment.before.load_factor, step.segment.after.load_factor
+    return kink is not None and (after - kink) * (before - kink) < 0.0
 
 
 def _landing(line: Continuation, step: Step, load_factor: float) -> PathPoint | None:

@@ -15,17 +15,23 @@ _NOTABLE = 1e-3  # of the largest slope: a smaller jump is none
 _SAME = 1e-7  # of the range: kinks closer than this are one
 
 
-def kinks_between(functions: Sequence[FunctionOfTime], begin: float, end: float) -> list[float]:
+def kinks_between(functions: Sequence[FunctionOfTime], begin: float, end: float, jumps: bool = True) -> list[float]:
     """Return the load factors between two others at which functions have kinks, from `begin` on.
 
-    They are declared, or found where the slope jumps however close one looks.
+    They are declared, or found where the slope jumps however close one looks; jumps: whether values may jump there.
     """
     low, high = sorted((begin, end))
     found: list[float] = []
     for function in functions:
-        kinks = [kink for kink in function.kinks if low < kink < high]
-        found += kinks or _jumps_of_slope(function, low, high)
+        kinks = [kink for kink in function.kinks if low < kink < high] or _jumps_of_slope(function, low, high)
+        found += [kink for kink in kinks if jumps or not _value_jumps(function, kink, high - low)]
     return _apart(found, begin, end)
+
+
+def _value_jumps(function: FunctionOfTime, at: float, span: float) -> bool:
+    """Return whether a function changes as much within 1e-6 of a span as within 1e-3 of it."""
+    near, far = (abs(function.at(at + d * span) - function.at(at - d * span)) for d in (1e-6, 1e-3))
+    return near > 0.1 * far > 0.0
 
 
 def kinks_and_turning_points(functions: Sequence[FunctionOfTime], begin: float, end: float) -> list[float]:

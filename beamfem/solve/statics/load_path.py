@@ -2,7 +2,7 @@
 
 from collections import deque
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -83,7 +83,8 @@ class PathFollower:
         growing = np.zeros(len(p) + 1)
         growing[-1] = 1.0
         try:
-            line, point = self.line, self.line.linearised(np.append(p, load_factor), growing)
+            line = replace(self.line, piece=(load_factor, end)) if self.line.functions_of_time else self.line
+            point = line.linearised(np.append(p, load_factor), growing)
         except LinAlgError:
             raise PathLostError("the tangent is singular there", 0, 0) from None
         before: PathPoint | None = None

@@ -1,0 +1,59 @@
+"""Paths under functions of the load factor with kinks: tables, triangles, and what functions do not declare."""
+
+import numpy as np
+import pytest
+
+import beamfem as bf
+
+BAR = bf.Beam(bf.Line((0, 0), (100, 0)), 6, bf.CRBF(2), bf.Rectangle(5, 5), bf.Material(2e5, 0.3, 1e-9))
+CLAMP = bf.Clamp(BAR.start)
+
+
+def triangle(f):
+    return 1.0 - abs(1.0 - 2.0 * f)
+
+
+FUNCTIONS = {
+    "table from 0 to 1": (bf.Interpolated([(0.0, 0.0), (1.0, 1.0)]), []),
+    "table beyond both ends": (bf.Interpolated([(-1.0, -1.0), (2.0, 2.0)]), []),
+    "table with a peak": (bf.Interpolated([(0.0, 0.0), (0.5, 1.0), (1.0, 0.0)]), [0.5]),
+    "table with four kinks": (bf.Interpolated([(0, 0), (0.3, 1), (0.6, 0.25), (0.8, 0.3), (1, 0.6)]), [0.3, 0.6, 0.8]),
+    "declared triangle": (bf.Piecewise(triangle, [0.5]), [0.5]),
+    "triangle": (triangle, [0.5]),
+    "bend": (lambda f: f if f < 0.4 else 0.4 + 0.3 * (f - 0.4), [0.4]),
+    "plateau": (lambda f: min(f / 0.7, 1.0), []),
+}
+
+
+@pytest.mark.parametrize("force", [True, False], ids=["force", "motion"])
+@pytest.mark.parametrize(("function", "kinks"), FUNCTIONS.values(), ids=FUNCTIONS)
+def test_a_path_goes_on_across_kinks_with_a_row_at_each(function, kinks, force):
+    """A path under a table from 0 to 1 ended at load factor 0, a triangle at its peak. The end is that of statics."""
+    if force:
+        model = bf.Model([BAR], [CLAMP], [bf.PointForce(BAR.end, (0.0, 1000.0), amplitude=function)])
+        plain = bf.Model([BAR], [CLAMP], [bf.PointForce(BAR.end, (0.0, 1000.0))])
+    else:
+        model = bf.Model([BAR], [CLAMP, bf.Prescribed(BAR.end, uy=lambda f: 20.0 * function(f))])
+        plain = bf.Model([BAR], [CLAMP, bf.Prescribed(BAR.end, uy=20.0)])
+    path = bf.trace_equilibrium(model, 1.0)
+    assert path.load_factor[-1] == pytest.approx(1.0, rel=1e-12)
+    for kink in kinks:
+        assert np.abs(path.load_factor - kink).min() < 1e-9
+    assert not path.limit_points
+    assert not path.bifurcations
+    reached = [function(at) for at in path.load_factor]
+    again = bf.trace_equilibrium(plain, max(reached), points=len(path) + 5)
+    assert path.displacement(BAR.end)[int(np.argmax(reached)), 1] == pytest.approx(
+        again.displacement(BAR.end)[-1, 1], rel=1e-8
+    )
+    static = bf.solve_static(model)
+    assert path.displacement(BAR.end)[-1] == pytest.approx(static.displacement(BAR.end)[-1], rel=1e-7, abs=1e-9)
+    assert len(path) < 20
+
+
+def test_a_path_downward_uses_the_other_side_of_a_kink_at_its_start():
+    table = bf.Interpolated([(-1.0, -3.0), (0.0, 0.0), (1.0, 1.0)])
+    model = bf.Model([BAR], [CLAMP], [bf.PointForce(BAR.end, (0.0, 1000.0), amplitude=table)])
+    path = bf.trace_equilibrium(model, -1.0)
+    plain = bf.Model([BAR], [CLAMP], [bf.PointForce(BAR.end, (0.0, -3000.0))])
+    assert path.displacement(BAR.end)[-1] == pytest.approx(bf.solve_static(plain).displacement(BAR.end)[-1], rel=1e-8)

@@ -219,3 +219,13 @@ def test_the_same_results_as_python_saves(tmp_path):
     (tmp_path / "a.toml").write_text(f'{ARM}{LIFT}[[files]]\nkind = "results"\nfile = "a.h5"\n')
     assert invoke("run", tmp_path / "a.toml").exit_code == 0
     np.testing.assert_array_equal(bf.load(tmp_path / "a.h5").p, bf.solve_static(held(arm())).p)
+
+
+@pytest.mark.parametrize("name", ["/tmp/other/a.html", "../a.html", "out/../../a.html"])
+@pytest.mark.parametrize("section", ["files", "curves"])
+def test_a_model_file_writes_only_below_its_folder(tmp_path, name, section):
+    """A model file from somebody else could replace any .h5, .png or .html of the one who runs it."""
+    keys = f'kind = "page"\nfile = "{name}"' if section == "files" else f'file = "{name}"\nx = "time"\ny = "kinetic"'
+    (tmp_path / "below").mkdir()
+    text = f"{ARM}{LIFT}{MOTION}[[{section}]]\n{keys}\n"
+    require_refused(tmp_path / "below" / "a.toml", text, "file", "is not below the folder of the model file")

@@ -29,6 +29,16 @@ _SUFFIXES = {
 }
 
 
+def below(folder: Path, name: str) -> Path:
+    """Return a file below a folder. Raises InputError for one elsewhere, since a model file may come from anybody."""
+    if not (folder / name).resolve().is_relative_to(folder.resolve()):
+        raise InputError(
+            f"{name} is not below the folder of the model file, {folder.resolve()}, and could replace any file; name "
+            "one below it, or let the command write it with --out, --vtk or --plot"
+        )
+    return folder / name
+
+
 def require_target(option: str, path: Path | None) -> None:
     """Raise InputError if a file of this kind cannot be written: wrong suffix, a folder of that name, missing package.
 

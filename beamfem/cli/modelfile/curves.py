@@ -8,7 +8,7 @@ from beamfem.cli.modelfile.outputs import require_supported
 from beamfem.cli.modelfile.places import Places
 from beamfem.cli.modelfile.quantities import QUANTITIES
 from beamfem.cli.modelfile.table import Table, build
-from beamfem.cli.targets import require_target
+from beamfem.cli.targets import below, require_target
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
 from beamfem.model.model import Model
@@ -40,7 +40,10 @@ def curves(root: Table, places: Places, model: Model, analysis: Analysis) -> tup
     axis = "time" if analysis.moving else "load_factor"
 
     def file(table: Table, key: str) -> Path:
-        return table.source.file.parent / table.text(key)
+        try:
+            return below(table.source.file.parent, table.text(key))
+        except InputError as error:
+            raise table.error(str(error), key) from None
 
     def quantity(table: Table, key: str) -> Quantity:
         if not isinstance(table.values[key], dict):

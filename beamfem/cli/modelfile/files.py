@@ -12,7 +12,7 @@ from beamfem.cli.modelfile.analyses import Modes
 from beamfem.cli.modelfile.found import Analysis, Found
 from beamfem.cli.modelfile.places import Places
 from beamfem.cli.modelfile.table import Kinds, Reader, Table, build_kind
-from beamfem.cli.targets import require_target
+from beamfem.cli.targets import below, require_target
 from beamfem.errors import InputError
 from beamfem.io.boundary import Boundary
 from beamfem.io.cells import Cells, Content
@@ -267,8 +267,8 @@ def files(root: Table, places: Places, model: Model, analysis: Analysis) -> tupl
     """Return the files that a model file requests. Raises ModelFileError."""
 
     def file(table: Table, key: str) -> Path:
-        target = table.source.file.parent / table.text(key)
         try:
+            target = below(table.source.file.parent, table.text(key))
             require_target(_TARGETS.get(table.values["kind"], "curve"), target)
         except InputError as error:
             raise table.error(str(error), key) from None

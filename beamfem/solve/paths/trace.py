@@ -142,6 +142,9 @@ def trace_equilibrium(
             point = taken.segment.after if landing is None else landing
             record.add(point.y, point.negative_pivots == 0)
             record.add_critical(line, taken, point)
+            if start is not None and record.returns_to(line, start):
+                record.end("the branch is closed: it has come back to the bifurcation from which it starts")
+                break
             line, rescaled = line.rescaled(point)
             point, size = rescaled, size * line.length(point.tangent)
             report(len(record.rows))

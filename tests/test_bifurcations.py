@@ -261,3 +261,24 @@ def test_the_first_step_of_a_branch_is_not_beyond_a_condition_that_ends_the_path
     (first, *_) = bf.trace_equilibrium(model, 10.0).bifurcations
     branch = bf.trace_equilibrium(model, lambda state: state.load_factor > 20.0, start=first)
     assert branch.load_factor[-2] <= 20.0 < branch.load_factor[-1] < 40.0
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_a_branch_that_comes_back_to_its_start_ends_there_as_closed(bistable, direction):
+    _, model, primary = bistable
+    branch = trace_equilibrium(model, points=200, start=primary.bifurcations[0], direction=direction)
+    assert "the branch is closed" in branch.statistics.ended
+    # it passes the bifurcation where it crosses the primary path again, and ends at that of its start
+    loads = [primary.bifurcations[-1].load_factor, primary.bifurcations[0].load_factor]
+    assert loads_of(branch) == pytest.approx(loads, rel=1e-8)
+    assert len(branch.load_factor) < 100
+
+
+def test_a_limit_point_under_a_prescribed_displacement_alone_advises_no_displacement():
+    beam = bf.Beam(bf.Arc((0, 0), 1.0, 2.0, 1.1), 8, bf.CRBF(3), bf.Rectangle(0.02, 0.02), bf.Material(1e9, 0.3, 1.0))
+    supports = [bf.Pin(beam.start), bf.Pin(beam.end), bf.Prescribed(beam.at(0.3), uy=-0.5)]
+    model = bf.Model([beam], supports)
+    with pytest.raises(bf.LimitPointError) as raised:
+        bf.solve_static(model)
+    assert "prescribe a displacement" not in str(raised.value)
+    assert 'snap="jump"' in str(raised.value)

@@ -227,5 +227,6 @@ def test_a_model_file_writes_only_below_its_folder(tmp_path, name, section):
     """A model file from somebody else could replace any .h5, .png or .html of the one who runs it."""
     keys = f'kind = "page"\nfile = "{name}"' if section == "files" else f'file = "{name}"\nx = "time"\ny = "kinetic"'
     (tmp_path / "below").mkdir()
+    key = "files[1].file" if section == "files" else "curves[1].file"
     text = f"{ARM}{LIFT}{MOTION}[[{section}]]\n{keys}\n"
-    require_refused(tmp_path / "below" / "a.toml", text, "file", "is not below the folder of the model file")
+    require_refused(tmp_path / "below" / "a.toml", text, key, "is not below the folder of the model file")

@@ -187,6 +187,8 @@ class Segment:
             changed = self.change(start, end)
             if abs(changed) != 1:
                 return x, changed == 0
+            if self.at(start).tangent[-1] * self.at(end).tangent[-1] >= 0.0:
+                raise SegmentLostError("the load factor has an extremum that was not located")
         x = float(brentq(lambda x: self.at(x).tangent[-1], start, end, xtol=_SHARPNESS, rtol=1e-9))
         if abs(self.at(x).tangent[-1]) > _LEVEL * self.line.load_scale:
             raise SegmentLostError("the step leads to another path")

@@ -12,6 +12,8 @@ from beamfem.results.turns import first_turns
 from beamfem.solve.continuation.continuation import Continuation, PathPoint
 from beamfem.solve.continuation.steps import Step
 
+_SAME_POINT = 1e-5  # lengths of the model, radians: bifurcations are located to about 1e-8
+
 
 class PathRecord:
     """Results so far; rows: points y (n + 1,), whether they are stable, and counted rotations (m,) [rad].
@@ -55,6 +57,11 @@ class PathRecord:
             if crossing.fraction <= fraction:
                 state = vars(self.state(crossing.y))
                 self.bifurcations.append(Bifurcation(**state, mode=crossing.mode[:-1], tangent=crossing.tangent))
+
+    def returns_to(self, line: Continuation, start: Bifurcation) -> bool:
+        """Return whether one of the bifurcations found is that from which the branch starts."""
+        changes = [np.append(found.p - start.p, found.at - start.at) for found in self.bifurcations]
+        return any(line.length(change) < _SAME_POINT for change in changes)
 
     def state(self, y: np.ndarray, stability: bool | None = False) -> PathState:
         """Return the state of y (n + 1,), coordinates and load factor; stability: whether it is stable, if known."""

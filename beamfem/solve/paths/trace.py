@@ -157,6 +157,9 @@ def trace_equilibrium(
             point = taken.segment.after if landing is None else landing
             record.add(point.y, point.negative_pivots == 0)
             record.add_critical(line, taken, point)
+            if start is not None and record.returns_to(line, start):
+                record.end("the branch is closed: it has come back to the bifurcation from which it starts")
+                break
             if point.load_factor == kink:
                 line, point = _beyond(line, point)
             line, rescaled = line.rescaled(point)

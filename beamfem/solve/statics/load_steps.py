@@ -177,9 +177,11 @@ def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap
     load_factor = float(turn.limit[-1])
     where = f"a limit point at load factor {load_factor:.6g}: beyond it there is no equilibrium nearby"
     if snap == "error":
+        loaded = follower.system.loads_at(1.0).any
+        instead = "; or prescribe a displacement (Prescribed) instead of the load" if loaded else ""
         raise LimitPointError(
             f'{where}. trace_equilibrium follows the path around it; snap="jump" goes to the state in which the '
-            "structure comes to rest; or prescribe a displacement (Prescribed) instead of the load",
+            f"structure comes to rest{instead}",
             load_factor,
             done.solution(),
         )

@@ -34,7 +34,7 @@ lint: $(VENV)/.ready
 
 $(VENV)/.ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[cli,plot,vtk,mesh,cad,store,pandas,xarray,test]"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[plot,vtk,mesh,cad,store,pandas,xarray,test]"
 	touch $@
 
 $(VENV)/.docs: $(VENV)/.ready pyproject.toml

@@ -14,13 +14,7 @@ def main() -> None:
     usual = signal.default_int_handler
     if signal.getsignal(signal.SIGINT) is usual:  # it may be ignored, as under nohup
         signal.signal(signal.SIGINT, _end)
-    from beamfem.extras import needed_for
-
-    try:
-        with needed_for("the command beamfem"):
-            from beamfem.cli.app import main as run
-    except ImportError as error:
-        sys.exit(f"error: {error}")
+    from beamfem.cli.app import main as run
 
     if not set(sys.argv[1:]) <= _TOLD_AT_ONCE:
         import_module("beamfem.public")

@@ -28,6 +28,8 @@ from beamfem.whole import imports_all, whole_package
 if TYPE_CHECKING:
     from beamfem.public import *
 
+    __version__: str
+
 # what is public, by theme; where it is: in `beamfem.public`
 _CONTENTS = {
     "Model": "Model Beam Point Material graded",
@@ -75,6 +77,10 @@ imports_all("beamfem.public")
 
 def __getattr__(name: str) -> Any:
     """Return what is public, imported at the first call: a second or so, which no import of the package pays."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("beamfem")
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}", name=name, obj=sys.modules[__name__])
     public = whole_package()

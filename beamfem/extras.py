@@ -15,7 +15,6 @@ _EXTRAS = {
     "meshio": "mesh",
     "pillow": "plot",
     "pyvista": "vtk",
-    "typer": "cli",
     "vtk": "vtk",
     "xarray": "xarray",
 }

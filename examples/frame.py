@@ -6,13 +6,13 @@ Prints how far the weight sinks, about P L^2 h / (E I) + P L^3 / (3 E I), and wh
 import beamfem as bf
 
 height, reach = 3.0, 1.5  # m
-common = {
-    "element": bf.CRBF(order=3),
-    "section": bf.Tube(diameter=0.1, thickness=0.005),
-    "material": bf.Material(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850.0),
-}
-column = bf.Beam(bf.Line((0, 0), (0, height)), elements=4, **common)
-bar = bf.Beam(bf.Line((0, height), (reach, height)), elements=2, **common)
+common = (
+    bf.CRBF(order=3),
+    bf.Tube(diameter=0.1, thickness=0.005),
+    bf.Material(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850.0),
+)
+column = bf.Beam(bf.Line((0, 0), (0, height)), 4, *common)
+bar = bf.Beam(bf.Line((0, height), (reach, height)), 2, *common)
 model = bf.Model(
     [column, bar],
     supports=[bf.Clamp(column.start)],

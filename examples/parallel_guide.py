@@ -7,9 +7,9 @@ import beamfem as bf
 
 spring_steel = bf.Material(youngs_modulus=2.0e5, poisson_ratio=0.3, density=7.85e-9)
 section = bf.Rectangle(width=10.0, height=0.2)
-leaf = {"elements": 4, "element": bf.CRBF(order=4), "section": section, "material": spring_steel}
-left = bf.Beam(bf.Line((0, 0), (0, 50)), **leaf)
-right = bf.Beam(bf.Line((30, 0), (30, 50)), **leaf)
+leaf = (4, bf.CRBF(order=4), section, spring_steel)  # elements, element, section, material
+left = bf.Beam(bf.Line((0, 0), (0, 50)), *leaf)
+right = bf.Beam(bf.Line((30, 0), (30, 50)), *leaf)
 stage = bf.Beam(bf.Line((0, 50), (30, 50)), 1, bf.CRBF(order=2), bf.Rectangle(width=10.0, height=10.0), spring_steel)
 guide = bf.Model(
     [left, right, stage],

@@ -5,13 +5,13 @@ Lee, Manuel and Rossow (1968); the limit loads of Reissner's beam by collocation
 
 import beamfem as bf
 
-common = {
-    "element": bf.CRBF(order=4),
-    "section": bf.Section(area=6.0, second_moment=2.0),
-    "material": bf.Material(youngs_modulus=7.2e6, poisson_ratio=0.3, density=2.7e-5),
-}
-column = bf.Beam(bf.Line((0, 0), (0, 120)), elements=10, **common)
-bar = bf.Beam(bf.Line((0, 120), (120, 120)), elements=10, **common)
+common = (
+    bf.CRBF(order=4),
+    bf.Section(area=6.0, second_moment=2.0),
+    bf.Material(youngs_modulus=7.2e6, poisson_ratio=0.3, density=2.7e-5),
+)
+column = bf.Beam(bf.Line((0, 0), (0, 120)), 10, *common)
+bar = bf.Beam(bf.Line((0, 120), (120, 120)), 10, *common)
 loaded = bar.at(0.2)
 model = bf.Model(
     [column, bar],

@@ -12,7 +12,7 @@ def deflection(load: float, slenderness: float) -> float:
     steel = bf.Material(youngs_modulus=2e11, poisson_ratio=0.3, density=7800.0)
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), elements=4, element=bf.CRBF(order=4), section=section, material=steel)
     force = bf.PointForce(beam.end, (0, load * steel.youngs_modulus * section.second_moment))
-    return bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [force])).displacement(beam.end)[-1, 1]
+    return float(bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [force])).displacement(beam.end)[-1, 1])
 
 
 if __name__ == "__main__":  # needed where executor=concurrent.futures.ProcessPoolExecutor is added

@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -82,20 +83,20 @@ def test_solves_need_no_extra_and_what_does_names_it(tmp_path):
     }
 
 
-@pytest.mark.parametrize("command", [["-m", "beamfem"], ["-c", "import beamfem_command as c; c.main()"]])
-def test_the_command_names_its_extra(command, tmp_path):
-    (tmp_path / "typer.py").write_text("raise ModuleNotFoundError(name='typer')")
-    done = subprocess.run(
-        [sys.executable, *command],
-        env={"PYTHONPATH": f"{tmp_path}:{Path(bf.__file__).parents[1]}"},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 1
-    assert done.stderr == (
-        'error: the command beamfem needs typer, which is not installed: pip install "beamfem[cli]"\n'
-    )
+def test_the_long_description_has_no_link_to_a_file_beside_it():
+    """Package indexes show the README alone: its picture and its links were broken there."""
+    root = Path(bf.__file__).parents[1]
+    settings = tomllib.loads((root / "pyproject.toml").read_text())["tool"]["hatch"]["metadata"]["hooks"]
+    text = (root / "README.md").read_text()
+    assert "](docs/" in text
+    for each in settings["fancy-pypi-readme"]["substitutions"]:
+        text = re.sub(each["pattern"], each["replacement"], text)
+    assert re.findall(r"\]\((?!https?:)[^)]*\)", text) == []
+    assert "Examples to copy" in text
+
+
+def test_the_package_tells_its_version():
+    assert bf.__version__ == version("beamfem")
 
 
 def test_a_missing_package_that_no_extra_has_is_not_hidden():
@@ -106,6 +107,6 @@ def test_a_missing_package_that_no_extra_has_is_not_hidden():
 def test_every_extra_named_is_one_of_the_project():
     project = tomllib.loads((Path(bf.__file__).parents[1] / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"]
-    assert set(EXTRA_OF.values()) | {"cli"} <= set(extras)
+    assert set(EXTRA_OF.values()) <= set(extras)
     ours = set(extras) - {"all", "test", "bench", "docs"}
     assert extras["all"] == [f"beamfem[{','.join(name for name in extras if name in ours)}]"]

@@ -66,7 +66,7 @@ class Beam:
     """
 
     curve: Curve
-    elements: int | Sequence[float] | Literal["knots"]
+    elements: int | Sequence[float] | np.ndarray | Literal["knots"]
     element: Element
     section: CrossSection | Tapered
     material: Material | None = None
@@ -298,7 +298,7 @@ def _without_dimensions(value: object) -> bool:
     return isinstance(value, np.ndarray) and value.ndim == 0
 
 
-def _fractions(values: Sequence[float]) -> tuple[float, ...]:
+def _fractions(values: Sequence[float] | np.ndarray) -> tuple[float, ...]:
     """Return element ends given by a user as fractions. Raises InputError."""
     try:
         ends = numbers("elements", values)

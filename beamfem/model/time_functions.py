@@ -35,7 +35,7 @@ class Interpolated:
     (0.5, 1.0)
     """
 
-    points: Sequence[Sequence[float]]
+    points: Sequence[Sequence[float]] | np.ndarray
 
     __repr__ = brief
 
@@ -86,7 +86,7 @@ class Piecewise:
     """
 
     function: Callable[[float], Any]
-    kinks: Sequence[float]
+    kinks: Sequence[float] | np.ndarray
 
     __repr__ = brief
 

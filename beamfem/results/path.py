@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, overload
+from typing import Any, SupportsIndex, overload
 
 import numpy as np
 
@@ -221,10 +221,10 @@ class Path(Solution):
         return f"{super().__repr__()[:-1]}; {text}; ended because {self.statistics.ended})"
 
     @overload
-    def __getitem__(self, row: int) -> PathState: ...
+    def __getitem__(self, row: SupportsIndex) -> PathState: ...
     @overload
     def __getitem__(self, row: slice) -> Solution: ...
-    def __getitem__(self, row: int | slice) -> PathState | Solution:
+    def __getitem__(self, row: SupportsIndex | slice) -> PathState | Solution:
         """Return the state of a row, or a Solution of the rows of a slice, without limit points and bifurcations."""
         return super().__getitem__(row)  # type: ignore[return-value]
 

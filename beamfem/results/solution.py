@@ -1,7 +1,7 @@
 """A solution: states of a model over load factor or time, and the results derived from them."""
 
 from dataclasses import dataclass, field
-from typing import overload
+from typing import SupportsIndex, overload
 
 import numpy as np
 
@@ -128,10 +128,10 @@ class Solution(Quantities, Pictures, Exports):
         return len(self.at)
 
     @overload
-    def __getitem__(self, row: int) -> State: ...
+    def __getitem__(self, row: SupportsIndex) -> State: ...
     @overload
     def __getitem__(self, row: slice) -> "Solution": ...
-    def __getitem__(self, row: int | slice) -> "State | Solution":
+    def __getitem__(self, row: SupportsIndex | slice) -> "State | Solution":
         """Return the state of a row, or a Solution of the rows of a slice with the statistics of the whole solve.
 
         Raises InputError for an empty slice or any other key, IndexError beyond the last row.

@@ -37,7 +37,7 @@ def solve_static(
     steps: int = 1,
     newton: Newton | None = None,
     *,
-    at: Sequence[float] | None = None,
+    at: Sequence[float] | np.ndarray | None = None,
     snap: Snap = "error",
 ) -> Solution:
     """Find the static equilibria from load factor 0 to 1, along the path that starts at 0.
@@ -104,7 +104,7 @@ def solve_static(
     return warned(_rows_at(through, load_factors))
 
 
-def _ascending(at: Sequence[float]) -> list[float]:
+def _ascending(at: Sequence[float] | np.ndarray) -> list[float]:
     """Return the load factors requested by a user. Raises InputError."""
     load_factors = [finite(f"at[{i}]", value) for i, value in enumerate(items("at", at))]
     rising = all(after - before > SAME for before, after in pairwise(load_factors))

@@ -24,7 +24,7 @@ def test_surface_encloses_the_volume_of_the_beam(bent):
     shapes = Shapes(bent, np.array([0]))
     scene = body._Scene.__new__(body._Scene)
     scene.shapes = shapes
-    surface = pyvista.PolyData(scene._points(0), body._faces(shapes)).triangulate().clean()
+    surface = pyvista.PolyData(scene._points(0), scene._surface()).triangulate().clean()
     assert surface.n_open_edges == 0
     assert surface.volume == pytest.approx(1e-4, rel=1e-9)
 

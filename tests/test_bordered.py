@@ -165,6 +165,7 @@ def test_a_connector_at_a_clamp_changes_nothing(part):
     assert tips[0] == pytest.approx(tips[1], abs=1e-8 * np.ptp(tips[1][:, 1]))
 
 
+@pytest.mark.filterwarnings("ignore::beamfem.EnergyWarning")  # long steps damp nearly all of the vibration
 @pytest.mark.parametrize("step", [1e-3, 0.1, 1.0])
 @pytest.mark.parametrize("density", [1.0, 1e-6, 1e-9])
 def test_connectors_may_hold_and_load_a_beam_of_hardly_any_mass(density, step):

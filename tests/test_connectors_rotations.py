@@ -227,6 +227,7 @@ def test_what_needs_rotations_is_refused():
                 bf.solve_static(bf.Model([own, other], [bf.Clamp(own.start), bf.Clamp(other.start)], connectors=model))
 
 
+@pytest.mark.filterwarnings("ignore::beamfem.EnergyWarning")  # ten steps, of which the start counts
 def test_a_start_goes_between_models_with_and_without_angles():
     own, loads = loaded()
     middle = own.at(0.5)

@@ -18,6 +18,7 @@ import beamfem as bf
 from beamfem.assembly.callbacks import Deferred
 from beamfem.cli.app import app
 from beamfem.solve.motion.compiled_steps import CompiledSteps
+from beamfem.solve.statics import load_steps
 
 ROOT = Path(__file__).parents[1]
 BEAM = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(1), bf.Rectangle(0.1, 0.1), bf.Material(2e11, 0.3, 7800.0))
@@ -59,16 +60,19 @@ def test_a_motion_that_is_interrupted_keeps_its_states(third_time, save_every):
     assert "`solution`" in caught.value.__notes__[0]
 
 
-def test_a_static_solve_that_is_interrupted_keeps_its_rows():
-    def amplitude(load_factor):
+def test_a_static_solve_that_is_interrupted_keeps_its_rows(monkeypatch):
+    solve = load_steps.solve_equilibrium
+
+    def interrupted(system, start, load_factor, *others):
         if load_factor > 0.6:
             raise KeyboardInterrupt
-        return load_factor
+        return solve(system, start, load_factor, *others)
 
-    model = bf.Model([BEAM], [bf.Clamp(BEAM.start)], [bf.PointForce(BEAM.end, (0.0, -1e5), amplitude=amplitude)])
+    monkeypatch.setattr(load_steps, "solve_equilibrium", interrupted)
+    model = bf.Model([BEAM], [bf.Clamp(BEAM.start)], [bf.PointForce(BEAM.end, (0.0, -1e5))])
     with pytest.raises(KeyboardInterrupt) as caught:
         bf.solve_static(model, steps=4)
-    assert caught.value.solution.load_factor.tolist() == [0.0, 0.25]
+    assert caught.value.solution.load_factor.tolist() == [0.0, 0.25, 0.5]
 
 
 def test_the_command_line_saves_what_was_found_and_says_so(third_time, tmp_path):

@@ -102,3 +102,31 @@ def test_ends_that_stay_together_or_that_a_connector_ties_are_not_warned_of():
     assert bf.solve_static(bf.Model(FRAME, pinned, PUSH, JOINTS[:1])).warnings == ()
     tie = SpringDamper(FRAME[1].at(0.5), FRAME[2].start, stiffness=10.0)
     assert bf.solve_static(bf.Model(FRAME, FEET, PUSH, JOINTS[:1], [tie])).warnings == ()
+
+
+RING = bf.Beam(bf.Arc((0, 0), 1.0, 0.0, 2 * np.pi), 24, bf.CRBF(2), SECTION, STEEL)
+RING_PULLED = [bf.Clamp(RING.at(0.5))], [bf.PointForce(RING.start, (0.01, 0.0))]
+
+
+def test_a_closed_axis_whose_ends_are_not_joined_is_warned_of():
+    """A slit ring: the force at its start bends half of it alone, and (pi / 2) F R^3 / (E I) is how far this goes."""
+    slit = bf.solve_static(bf.Model([RING], *RING_PULLED))
+    (said,) = slit.warnings
+    assert said.startswith("The start of beam 0 and the end of beam 0 are both at (1, 0), but no joint connects them, ")
+    moved = np.hypot(*slit.displacement(RING.start)[-1])
+    assert f"they move {moved:.3g} m apart. If they belong together, add a Rigid or a Hinge" in said
+    for joint in (bf.Rigid, bf.Hinge):
+        assert bf.solve_static(bf.Model([RING], *RING_PULLED, [joint(RING.end, RING.start)])).warnings == ()
+    tie = SpringDamper(RING.end, RING.start, stiffness=10.0)
+    assert bf.solve_static(bf.Model([RING], *RING_PULLED, connectors=[tie])).warnings == ()
+
+
+def test_an_end_that_comes_back_to_its_own_beam_is_found():
+    """The outline of a 6; a joint of the other end with another beam joins nothing here."""
+    six = bf.Beam(bf.Polyline([(0, 3), (0, 0), (1, 0), (1, 1), (0, 1)]), 24, bf.CRBF(2), SECTION, STEEL, "six")
+    post = line((0, 3), (0, 4))
+    model = bf.Model([six, post], [bf.Clamp(post.end)], joints=[bf.Rigid(six.start, post.start)])
+    ((end, other),) = unjoined_ends(model)
+    assert (end, other.beam, other.fraction) == (six.end, six, pytest.approx(2.0 / 6.0, abs=1e-5))
+    fine = bf.Beam(six.curve, bf.graded(40, 1e9), bf.CRBF(1), SECTION, STEEL)
+    assert len({other.fraction for _, other in unjoined_ends(bf.Model([fine], [bf.Clamp(fine.start)]))}) == 1

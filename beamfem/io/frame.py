@@ -232,6 +232,8 @@ def _axis(curves: list[Curve]) -> tuple[Curve, np.ndarray]:
     if len(straight) < len(curves):
         return Chain(tuple(curves)), ends
     points = (straight[0].start, *(line.end for line in straight))
+    if points[0] == points[-1]:
+        return Polyline(points), ends
     way = np.diff(np.array(points), axis=0)
     whole = way.sum(axis=0)
     off = np.abs(way[:, 0] * whole[1] - way[:, 1] * whole[0])

@@ -101,10 +101,22 @@ def items(name: str, values: Any) -> list[Any]:
     """Return what a list, tuple or array holds, or raise InputError naming it: text, sets and mappings are none."""
     if type(values) is list or type(values) is tuple:
         return list(values)
+    if hasattr(values, "columns") or isinstance(values, np.ma.MaskedArray):
+        values = _plain_array(name, values)
     if not isinstance(values, str | bytes | bytearray | Set | Mapping):
         with suppress(TypeError):
             return list(values)
     raise InputError(f"{name} must be a list, got {shown(values)}")
+
+
+def _plain_array(name: str, values: Any) -> np.ndarray:
+    """Return the rows of a table, which iterates over the names of its columns. Raises InputError for masked values."""
+    if isinstance(values, np.ma.MaskedArray):
+        if np.ma.is_masked(values):
+            raise InputError(f"{name} has masked values, got {shown(values)}")
+        return np.asarray(values.data)
+    table = np.asarray(values)
+    return table[0] if len(table) == 1 else table
 
 
 def text(name: str, value: Any) -> str:

@@ -44,7 +44,7 @@ def kinks_along(load: AlongBeam, name: str) -> tuple[float, ...]:
     def numbers(arc_length: float) -> np.ndarray:
         return load.values_of(name, np.array([arc_length])).ravel()
 
-    return find_jumps(getattr(load, name), numbers, beam.curve.length, beam.samples)
+    return find_jumps(f"{name} of {type(load).__name__}", getattr(load, name), numbers, beam.curve.length, beam.samples)
 
 
 def jumps_along(load: AlongBeam) -> tuple[float, ...]:

@@ -171,7 +171,7 @@ class Beam:
         """Arc lengths (nj,) [m] at which the section jumps, or has a declared kink."""
         if self.prismatic:
             return ()
-        return find_jumps(self.section, self._measured, self.curve.length, self.samples)
+        return find_jumps("section of a Beam", self.section, self._measured, self.curve.length, self.samples)
 
     @property
     def element_count(self) -> int:

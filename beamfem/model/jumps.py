@@ -5,26 +5,34 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.errors import InputError
 from beamfem.model.time_functions import kinks_of
 
 _STANDS_OUT = 1.25  # ratio of the change in an interval to the smaller one beside it, above which it is bisected
 _SMALLEST = 1e-9  # smallest change that counts as a jump, relative to the largest value
 _CLOSE = 1e-12  # of the length: accuracy of a jump
+_MOST = 1000  # jumps between two samples: a function with more is noise
 
 
-def find_jumps(function: Any, values: Callable[[float], np.ndarray], length: float, samples: int) -> tuple[float, ...]:
+def find_jumps(
+    name: str, function: Any, values: Callable[[float], np.ndarray], length: float, samples: int
+) -> tuple[float, ...]:
     """Return the arc lengths (nj,) [m] within (0, length) that a function declares as `kinks`, or at which it jumps.
 
     values: the relevant numbers (k,) of the function's result at an arc length. Declared kinks are not checked.
     Otherwise each of `samples` equal intervals whose end values differ by more than those of its neighbours is
     bisected: a change that does not decrease with the interval is a jump. A change that reverses within an interval is
-    not detected.
+    not detected. Raises InputError, with the name of the function, if it returns other values when it is called again,
+    or jumps everywhere.
     """
     if hasattr(function, "kinks"):
         near = _CLOSE * length
         return tuple(kink for kink in kinks_of(function) if near < kink < length - near)
     at = np.linspace(0.0, length, samples + 1)
     sampled = np.array([values(s) for s in at.tolist()])
+    for i in (0, samples // 2, samples):
+        if not np.array_equal(values(float(at[i])), sampled[i], equal_nan=True):
+            raise InputError(f"{name} returns other values each time it is called for the arc length {at[i]:g}")
     largest = np.abs(sampled).max(axis=0)
     unit = np.where(largest > 0.0, largest, 1.0)
     sampled = sampled / unit
@@ -32,7 +40,7 @@ def find_jumps(function: Any, values: Callable[[float], np.ndarray], length: flo
     beside = np.minimum(np.append(change[1:], np.inf), np.append(np.inf, change[:-1]))
     if samples == 1:
         beside = np.zeros(1)
-    part = _Part(lambda s: values(s) / unit, _CLOSE * length)
+    part = _Part(name, lambda s: values(s) / unit, _CLOSE * length)
     jumps: list[float] = []
     for i in np.flatnonzero((change > _SMALLEST) & (change > _STANDS_OUT * beside)).tolist():
         jumps += part.jumps(float(at[i]), sampled[i], float(at[i + 1]), sampled[i + 1])
@@ -42,8 +50,8 @@ def find_jumps(function: Any, values: Callable[[float], np.ndarray], length: flo
 class _Part:
     """Bisection of a function between two arc lengths [m] down to a distance `close` [m]."""
 
-    def __init__(self, values: Callable[[float], np.ndarray], close: float) -> None:
-        self.values, self.close = values, close
+    def __init__(self, name: str, values: Callable[[float], np.ndarray], close: float) -> None:
+        self.name, self.values, self.close, self.count = name, values, close, 0
 
     def jumps(self, low: float, at_low: np.ndarray, high: float, at_high: np.ndarray) -> list[float]:
         """Return all jumps between two arc lengths with known values, in ascending order."""
@@ -65,6 +73,12 @@ class _Part:
                 if change < last_change / 8.0:
                     return []
                 last_change = change
+        self.count += 1
+        if self.count > _MOST:
+            raise InputError(
+                f"{self.name} has jumps everywhere near the arc length {low:g}; a function of the arc length has "
+                "pieces in which it is continuous"
+            )
         before = self.jumps(*begin, low, at_low) if _size(begin[1], at_low) > _SMALLEST else []
         after = self.jumps(high, at_high, *end) if _size(at_high, end[1]) > _SMALLEST else []
         return [*before, 0.5 * (low + high), *after]

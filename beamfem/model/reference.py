@@ -1,9 +1,11 @@
 """The stress-free reference of a beam: axis, section stiffness and inertia at points of elements."""
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
+from beamfem.alike import of_package
 from beamfem.element.axis import Axis, cross, dot
 from beamfem.element.coordinates import across
 from beamfem.element.element import Element
@@ -11,9 +13,12 @@ from beamfem.element.fields import Field, d_slots, r_slots, slots
 from beamfem.element.forces import Forces
 from beamfem.element.law_points import coupled_fractions
 from beamfem.element.structural import section_frame
+from beamfem.errors import InputError
+from beamfem.model.beam import Beam
 from beamfem.model.grid import Grid
 from beamfem.quadrature import gauss
 from beamfem.section.protocol import CrossSection
+from beamfem.validation import shown
 
 _SHORT, _INSIDE = 1e-4, 1e-6  # of an element: half the interval of a curvature, and its distance from the ends
 
@@ -134,22 +139,39 @@ def length_rule(field: Field) -> tuple[np.ndarray, np.ndarray]:
     return gauss(max(field.degree, field.director_degree) + 1)
 
 
+def _stiffness(beam: Beam, arc: float, at: Axis) -> np.ndarray:
+    """Return the section stiffness (n, ns, ns) at an arc length, for points of the axis. Raises InputError."""
+    forces = beam.element.forces
+    found = forces.stiffness(beam.section_at(arc), beam.material, beam.element.coordinates, at)
+    kind: Any = type(forces)
+    if of_package(kind):
+        return found
+    shape = (*at.r_s.shape[:-1], len(forces.shear_measures), len(forces.shear_measures))
+    right = isinstance(found, np.ndarray) and found.dtype == np.float64 and not isinstance(found, np.ma.MaskedArray)
+    if not right or found.shape != shape or not np.isfinite(found).all():
+        raise InputError(
+            f"stiffness of {kind.__name__} must be an array {shape} of finite floats, got {shown(found)} of shape "
+            f"{np.shape(found)}"
+        )
+    return found
+
+
 def stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return section stiffness (n, ns, ns) and strain measures (n, ns) of the reference at points (element, xi)."""
     beam, forces = grid.beam, grid.beam.element.forces
     if grid.straight and beam.prismatic:
         # the same at all points
         at, strains = _straight_axis(forces, *grid.tangent[0].tolist())
-        stiffness = forces.stiffness(beam.section_at(0.0), beam.material, beam.element.coordinates, at)
+        stiffness = _stiffness(beam, 0.0, at)
         return stiffness.repeat(len(element), axis=0), strains.repeat(len(element), axis=0)
     at = reference_axis(grid, element, xi)
     strains = forces.strains(at)
     if beam.prismatic:
-        return forces.stiffness(beam.section_at(0.0), beam.material, beam.element.coordinates, at), strains
+        return _stiffness(beam, 0.0, at), strains
     parts = []
     for i, arc in enumerate(grid.section_arc_length(element, xi)):
         point_axis = Axis(*(getattr(at, name)[i : i + 1] for name in Axis._fields))
-        parts.append(forces.stiffness(beam.section_at(arc), beam.material, beam.element.coordinates, point_axis))
+        parts.append(_stiffness(beam, arc, point_axis))
     return np.concatenate(parts), strains
 
 

@@ -10,6 +10,8 @@ from beamfem.solve.motion.equations_of_motion import EquationsOfMotion, Integrat
 from beamfem.solve.motion.saving import Saving
 from beamfem.validation import shown
 
+_SAME = 1e-6  # of a step: accuracy of the time of the state that it returns
+
 
 class OwnSteps:
     """Marches through time with a user-defined integrator; why: the reason of a failure.
@@ -62,6 +64,13 @@ class OwnSteps:
                 f"step of {name} must return a State of the model, such as "
                 f"dataclasses.replace(begin, p=p, v=v, a=a, at=end), got {shown(reached)}"
             )
+        if abs(reached.at - time) > _SAME * (time - self._time):
+            raise InputError(
+                f"step of {name} must return the state at its end, {time:.6g}, with dataclasses.replace(..., at=end); "
+                f"it is at {shown(reached.at)}"
+            )
+        if any(np.asarray(values).dtype != np.float64 for values in (reached.p, reached.v, reached.a)):
+            raise InputError(f"step of {name} must return p, v and a as float64, which keeps the digits of the solver")
         found = np.array([reached.p, reached.v, reached.a])
         if not np.isfinite(found).all():
             self.why = f"step of {name} returned numbers that are not finite"

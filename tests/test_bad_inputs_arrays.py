@@ -90,7 +90,10 @@ class Short:
         return replace(begin, p=begin.p.astype(np.float32), at=end)
 
 
-@pytest.mark.parametrize(
+CASES = [(Standing(), "must return the state at its end"), (Short(), "float64")]
+
+
+@pytest.mark.parametrize(("integrator", "words"), CASES)
     ("integrator", "words"), [(Standing(), "must return the state at its end"), (Short(), "float64")]
 )
 def test_an_integrator_that_returns_another_state_than_asked_for_is_refused(integrator, words):

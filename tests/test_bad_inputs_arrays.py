@@ -94,8 +94,6 @@ CASES = [(Standing(), "must return the state at its end"), (Short(), "float64")]
 
 
 @pytest.mark.parametrize(("integrator", "words"), CASES)
-    ("integrator", "words"), [(Standing(), "must return the state at its end"), (Short(), "float64")]
-)
 def test_an_integrator_that_returns_another_state_than_asked_for_is_refused(integrator, words):
     model = bf.Model([BAR], [bf.Clamp(BAR.start)], [bf.Gravity((0.0, -9.81))])
     with pytest.raises(bf.InputError, match=words):

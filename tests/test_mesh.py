@@ -207,6 +207,6 @@ def test_the_files_are_what_the_script_makes(tmp_path, monkeypatch):
 def test_a_closed_ring_of_lines_is_one_chain():
     """Its edges sum to zero: "a Line needs two different points"."""
     points = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
-    mesh = bf.LineMesh(points, np.array([(0, 1), (1, 2), (2, 3), (3, 0)]), {}, {})
+    mesh = bf.LineMesh(points, np.array([(0, 1, -1), (1, 2, -1), (2, 3, -1), (3, 0, -1)]), {}, {})
     frame = mesh.frame(8, bf.CRBF(2), bf.Rectangle(0.1, 0.1), bf.Material(1e9, 0.3, 1.0), members="chains")
     assert sum(beam.curve.length for beam in frame.beams) == pytest.approx(4.0, rel=1e-12)

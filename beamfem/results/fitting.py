@@ -96,7 +96,12 @@ def _require_array(item: Any, name: str, shape: tuple[int, ...], kinds: str = _R
             f"{name} of {type(item).__name__} must be an array {shape} of {what}, as its model has "
             f"{item.model.size} coordinates, got {got}"
         )
-    if values is not given or values.dtype.kind in "iu" or values.dtype.itemsize < 8:
+    if values.dtype.kind == "f" and values.dtype.itemsize < 8:
+        raise InputError(
+            f"{name} of {type(item).__name__} must be in double precision, got {values.dtype}, in which the digits of "
+            "strains are lost"
+        )
+    if values is not given or values.dtype.kind in "iu":
         object.__setattr__(item, name, values if kinds == "b" else values.astype(float))
 
 

@@ -13,6 +13,8 @@ import numpy as np
 
 from beamfem.assembly.system import System
 from beamfem.errors import EnergyWarning, warn
+from beamfem.kernels.neighbouring_nodes import exceeds
+from beamfem.kernels.pointers import address_of
 from beamfem.results import large_strains, locking
 from beamfem.results.element_shapes import pairs, rows_looked_at, shared
 from beamfem.results.energy_balance import energy_warnings
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
 
 _Solution = TypeVar("_Solution", bound="Solution")
 _Check = Callable[["Solution"], Iterable[Finding]]
+_LOCKED, _STRAINED = 1, 2  # results of `exceeds`
 
 
 def findings(solution: "Solution") -> tuple[Finding, ...]:
@@ -51,48 +54,36 @@ def warn_of(found: Iterable[Finding]) -> None:
             warn(finding.sentence, finding.kind)
 
 
-class _Limits(NamedTuple):
-    """Weights of stretches and angles between neighbouring nodes, whose sum exceeds 1 where a closer look is needed.
+class _Bounds(NamedTuple):
+    """Arguments of `exceeds` for the elements of a model; hindered: see `large_strains.hindered`."""
 
-    locked, curved (m,): of an angle, and a constant, for locking; stretched, bent (m,): for large strains; most: the
-    largest of the weights; constant: the largest of `curved`; hindered: see `large_strains.hindered`.
-    """
-
-    locked: np.ndarray
-    curved: np.ndarray
-    stretched: np.ndarray
-    bent: np.ndarray
-    most: float
-    constant: float
+    pairs: int
+    numbers: np.ndarray
+    factors: np.ndarray
+    addresses: tuple[int, int]
     hindered: bool
 
 
-def _limits(system: System) -> _Limits:
-    (locked, curved), (stretched, bent) = locking.weights(system), large_strains.weights(system)
-    most = max(float(np.hypot(stretched, bent).max()), float(locked.max()))
-    return _Limits(locked, curved, stretched, bent, most, float(curved.max()), large_strains.hindered(system))
+def _bounds(system: System) -> _Bounds:
+    """Return bounds below which no strains are large, and no result changes by 1 % without locking."""
+    neighbours = shared(system, pairs)
+    weights = np.vstack([locking.weights(system), large_strains.weights(system)])
+    factors = np.hstack([neighbours.at_rest.view(float), weights.T])
+    addresses = address_of(neighbours.numbers), address_of(factors)
+    return _Bounds(len(factors), neighbours.numbers, factors, addresses, large_strains.hindered(system))
 
 
-def may_lock(system: System, p: np.ndarray, times: float = 1.0) -> bool:
-    """Return whether locking may change results by 1 % in states p (rows, n); times: of what they deform."""
-    chord, sections = shared(system, pairs).change(p)
-    return _may_lock(shared(system, _limits), times * np.abs((chord * sections.conj()).imag))
+def may_lock(system: System, p: np.ndarray) -> bool:
+    """Return whether locking may change frequencies about a state p (n,) by 1 %, which are sensitive twice as much."""
+    bounds = shared(system, _bounds)
+    return bool(exceeds(1, len(p), bounds.pairs, 2.0, p, *bounds.addresses) & _LOCKED)
 
 
-def _may_lock(limits: _Limits, angles: np.ndarray) -> bool:
-    return bool((angles * limits.locked + limits.curved).max() > 1.0)
-
-
-def _needed(solution: "Solution") -> list[_Check]:
+def _needed(solution: "Solution") -> Iterable[_Check]:
     """Return the checks that may find what is worth a Python warning, in the rows that are looked at."""
-    system = loading(solution)[0]
-    limits = shared(system, _limits)
-    chord, sections = shared(system, pairs).change(solution.p[rows_looked_at(solution)])
-    close = np.abs(chord - sections).max() * limits.most + limits.constant <= 1.0
-    if close and not limits.hindered:
-        return []
-    deformed = chord * sections.conj()
-    stretches, angles = np.abs(deformed.real - 1.0), np.abs(deformed.imag)
-    strained = limits.hindered or (stretches * limits.stretched + angles * limits.bent).max() > 1.0
-    checks = ((_may_lock(limits, angles), locking.locking), (strained, large_strains.large_strains))
-    return [check for needed, check in checks if needed]
+    bounds, p = shared(loading(solution)[0], _bounds), solution.p[rows_looked_at(solution)]
+    found = exceeds.compiled(len(p), p.strides[0] // p.itemsize, bounds.pairs, 1.0, address_of(p), *bounds.addresses)
+    if found & _LOCKED:
+        yield locking.locking
+    if found & _STRAINED or bounds.hindered:
+        yield large_strains.large_strains

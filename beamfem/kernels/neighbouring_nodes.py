@@ -8,17 +8,17 @@ NUMBERS, FACTORS = 8, 10  # of a pair
 
 
 @routine("iiidrnr", "i")
-def exceeds(rows, stride, pairs, times, p, numbers, factors):
+def exceeds(rows, size, pairs, times, p, numbers, factors):
     """Return 1 if weighted angles between neighbouring nodes exceed 1, plus 2 if stretches and angles do in sum.
 
-    rows: states p, `stride` numbers apart; times: factor of angles; numbers (pairs, NUMBERS): of the coordinates x1,
+    p (rows, size): states; times: factor of angles; numbers (pairs, NUMBERS): of the coordinates x1,
     y1, x2, y2 of the nodes, then for each its angle and -1, or x and y of its r_y; factors (pairs, FACTORS): inverse
     of the chord and of both r_y in the reference, as complex numbers, a factor of the angle and a constant of the first
     sum, and factors of the stretch and the angle in the second.
     """
     first, second = 0, 0
     for row in range(rows):
-        q = at(p, row * stride)
+        q = at(p, row * size)
         for k in range(pairs):
             own, f = at(numbers, k * NUMBERS), at(factors, k * FACTORS)
             dx, dy = q[own[2]] - q[own[0]], q[own[3]] - q[own[1]]

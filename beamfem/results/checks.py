@@ -2,7 +2,7 @@
 
 A solve decides by the nodes of the elements whether a closer look is worth it; `solution.warnings` takes that look
 anyway. To add a check, write a function that returns findings and list it in `findings`; if it is cheap, or a bound
-decides whether it is needed, in `_needed` too.
+decides whether it is needed, in `warned` too.
 """
 
 from collections.abc import Callable, Iterable
@@ -43,7 +43,13 @@ def findings(solution: "Solution") -> tuple[Finding, ...]:
 
 def warned(solution: _Solution) -> _Solution:
     """Return a solution that has just been found, after Python warnings of what is wrong with it by 1 % and more."""
-    warn_of(chain.from_iterable(check(solution) for check in _needed(solution)))
+    bounds = shared(loading(solution)[0], _bounds)
+    p = solution.p[rows_looked_at(solution)].copy()  # writable, whose address is found in half the time
+    found = exceeds.compiled(*p.shape, bounds.pairs, 1.0, address_of(p), *bounds.addresses)
+    if found & _LOCKED:
+        warn_of(locking.locking(solution))
+    if found & _STRAINED or bounds.hindered:
+        warn_of(large_strains.large_strains(solution))
     return solution
 
 
@@ -77,13 +83,3 @@ def may_lock(system: System, p: np.ndarray) -> bool:
     """Return whether locking may change frequencies about a state p (n,) by 1 %, which are sensitive twice as much."""
     bounds = shared(system, _bounds)
     return bool(exceeds(1, len(p), bounds.pairs, 2.0, p, *bounds.addresses) & _LOCKED)
-
-
-def _needed(solution: "Solution") -> Iterable[_Check]:
-    """Return the checks that may find what is worth a Python warning, in the rows that are looked at."""
-    bounds, p = shared(loading(solution)[0], _bounds), solution.p[rows_looked_at(solution)]
-    found = exceeds.compiled(len(p), p.strides[0] // p.itemsize, bounds.pairs, 1.0, address_of(p), *bounds.addresses)
-    if found & _LOCKED:
-        yield locking.locking
-    if found & _STRAINED or bounds.hindered:
-        yield large_strains.large_strains

@@ -7,16 +7,16 @@ decides whether it is needed, in `warned` too.
 
 from collections.abc import Callable, Iterable
 from itertools import chain
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from beamfem.assembly.system import System
 from beamfem.errors import EnergyWarning, warn
-from beamfem.kernels.neighbouring_nodes import exceeds
+from beamfem.kernels.neighbouring_nodes import LOCKED, STRAINED, exceeds
 from beamfem.kernels.pointers import address_of
 from beamfem.results import large_strains, locking
-from beamfem.results.element_shapes import pairs, rows_looked_at, shared
+from beamfem.results.element_shapes import ROWS, pairs, rows_looked_at, shared
 from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.finding import Finding
 from beamfem.results.loading import loading
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 _Solution = TypeVar("_Solution", bound="Solution")
 _Check = Callable[["Solution"], Iterable[Finding]]
-_LOCKED, _STRAINED = 1, 2  # results of `exceeds`
 
 
 def findings(solution: "Solution") -> tuple[Finding, ...]:
@@ -43,12 +42,10 @@ def findings(solution: "Solution") -> tuple[Finding, ...]:
 
 def warned(solution: _Solution) -> _Solution:
     """Return a solution that has just been found, after Python warnings of what is wrong with it by 1 % and more."""
-    bounds = shared(loading(solution)[0], _bounds)
-    p = solution.p[rows_looked_at(solution)].copy()  # writable, whose address is found in half the time
-    found = exceeds.compiled(*p.shape, bounds.pairs, 1.0, address_of(p), *bounds.addresses)
-    if found & _LOCKED:
+    found = _found(loading(solution)[0], solution.p[rows_looked_at(solution)])
+    if found & LOCKED:
         warn_of(locking.locking(solution))
-    if found & _STRAINED or bounds.hindered:
+    if found & STRAINED:
         warn_of(large_strains.large_strains(solution))
     return solution
 
@@ -60,26 +57,38 @@ def warn_of(found: Iterable[Finding]) -> None:
             warn(finding.sentence, finding.kind)
 
 
-class _Bounds(NamedTuple):
-    """Arguments of `exceeds` for the elements of a model; hindered: see `large_strains.hindered`."""
+class _Bounds:
+    """Bounds below which no strains are large, and no result changes by 1 % without locking; states: to be compared."""
 
-    pairs: int
-    numbers: np.ndarray
-    factors: np.ndarray
-    addresses: tuple[int, int]
-    hindered: bool
+    def __init__(self, system: System) -> None:
+        neighbours, size = shared(system, pairs), system.model.size
+        weights = np.vstack([locking.weights(system), large_strains.weights(system)])
+        factors = np.hstack([neighbours.at_rest.view(float), weights.T])
+        self.states = np.empty((ROWS, size))
+        self._arrays = self.states, neighbours.numbers, factors
+        known = STRAINED if large_strains.hindered(system) else 0
+        self._table = np.array([size, len(factors), known, *map(address_of, self._arrays)], dtype=np.int64)
+        self.table = address_of(self._table)
 
 
-def _bounds(system: System) -> _Bounds:
-    """Return bounds below which no strains are large, and no result changes by 1 % without locking."""
-    neighbours = shared(system, pairs)
-    weights = np.vstack([locking.weights(system), large_strains.weights(system)])
-    factors = np.hstack([neighbours.at_rest.view(float), weights.T])
-    addresses = address_of(neighbours.numbers), address_of(factors)
-    return _Bounds(len(factors), neighbours.numbers, factors, addresses, large_strains.hindered(system))
+def _unused(system: System) -> list[_Bounds]:
+    """Return a list of bounds, which no other thread uses while they are not in it."""
+    return [_Bounds(system)]
+
+
+def _found(system: System, p: np.ndarray, times: int = 1) -> int:
+    """Return what may be wrong with states p (rows, n), see `exceeds`; times: factor of angles for locking."""
+    unused = shared(system, _unused)
+    try:
+        bounds = unused.pop()
+    except IndexError:
+        bounds = _Bounds(system)
+    bounds.states[: len(p)] = p
+    found: int = exceeds.compiled(bounds.table, len(p), times)
+    unused.append(bounds)
+    return found
 
 
 def may_lock(system: System, p: np.ndarray) -> bool:
     """Return whether locking may change frequencies about a state p (n,) by 1 %, which are sensitive twice as much."""
-    bounds = shared(system, _bounds)
-    return bool(exceeds(1, len(p), bounds.pairs, 2.0, p, *bounds.addresses) & _LOCKED)
+    return bool(_found(system, p[None], 2) & LOCKED)

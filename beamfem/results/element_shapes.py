@@ -17,7 +17,7 @@ from beamfem.model.mesh import BeamMesh
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
-_ROWS = 32  # of a solution that are looked at
+ROWS = 32  # of a solution that are looked at
 _Found = TypeVar("_Found")
 
 
@@ -37,9 +37,9 @@ class Pairs(NamedTuple):
 
 
 def rows_looked_at(solution: "Solution") -> slice:
-    """Return up to `_ROWS` rows of a solution, the last one among them, and of few all but the first, its start."""
+    """Return up to `ROWS` rows of a solution, the last one among them, and of few all but the first, its start."""
     count = len(solution)
-    stride = -(-count // _ROWS)
+    stride = -(-count // ROWS)
     return slice((count - 1) % stride if stride > 1 else min(1, count - 1), None, stride)
 
 

@@ -12,7 +12,7 @@ _PART_1, _PART_2, _PART_3 = 1.57079632673412561417, 6.07710050630396597660e-11, 
 
 
 @inlined
-def _cosine_sine(angle):
+def cosine_sine(angle):
     """Return cosine and sine without a branch, so that it also works on lanes; Cody and Waite 1980."""
     quarters = np.floor(angle * 0.63661977236758134308 + 0.5)
     x = (angle - quarters * _PART_1) - quarters * _PART_2
@@ -79,7 +79,7 @@ def rotate_frame(count, angle, c, s, length, rows):
     """
     small_code()
     for i in range(0, count, WIDTH):
-        cosine, sine = _cosine_sine(angle[i])
+        cosine, sine = cosine_sine(angle[i])
         rows[i] = cosine * c[i] - sine * s[i]
         rows[ROW + i] = sine * c[i] + cosine * s[i]
         rows[2 * ROW + i] = length[i]

@@ -2,19 +2,21 @@
 
 A solve decides by the nodes of the elements whether a closer look is worth it; `solution.warnings` takes that look
 anyway. To add a check, write a function that returns findings and list it in `findings`; if it is cheap, or a bound
-decides whether it is needed, in `_needed` too.
+decides whether it is needed, in `warned` too.
 """
 
 from collections.abc import Callable, Iterable
 from itertools import chain
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from beamfem.assembly.system import System
 from beamfem.errors import EnergyWarning, warn
+from beamfem.kernels.neighbouring_nodes import LOCKED, STRAINED, exceeds
+from beamfem.kernels.pointers import address_of
 from beamfem.results import large_strains, locking
-from beamfem.results.element_shapes import pairs, rows_looked_at, shared
+from beamfem.results.element_shapes import ROWS, pairs, rows_looked_at, shared
 from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.finding import Finding
 from beamfem.results.loading import loading
@@ -40,7 +42,11 @@ def findings(solution: "Solution") -> tuple[Finding, ...]:
 
 def warned(solution: _Solution) -> _Solution:
     """Return a solution that has just been found, after Python warnings of what is wrong with it by 1 % and more."""
-    warn_of(chain.from_iterable(check(solution) for check in _needed(solution)))
+    found = _found(loading(solution)[0], solution.p[rows_looked_at(solution)])
+    if found & LOCKED:
+        warn_of(locking.locking(solution))
+    if found & STRAINED:
+        warn_of(large_strains.large_strains(solution))
     return solution
 
 
@@ -51,48 +57,38 @@ def warn_of(found: Iterable[Finding]) -> None:
             warn(finding.sentence, finding.kind)
 
 
-class _Limits(NamedTuple):
-    """Weights of stretches and angles between neighbouring nodes, whose sum exceeds 1 where a closer look is needed.
+class _Bounds:
+    """Bounds below which no strains are large, and no result changes by 1 % without locking; states: to be compared."""
 
-    locked, curved (m,): of an angle, and a constant, for locking; stretched, bent (m,): for large strains; most: the
-    largest of the weights; constant: the largest of `curved`; hindered: see `large_strains.hindered`.
-    """
-
-    locked: np.ndarray
-    curved: np.ndarray
-    stretched: np.ndarray
-    bent: np.ndarray
-    most: float
-    constant: float
-    hindered: bool
+    def __init__(self, system: System) -> None:
+        neighbours, size = shared(system, pairs), system.model.size
+        weights = np.vstack([locking.weights(system), large_strains.weights(system)])
+        factors = np.hstack([neighbours.at_rest.view(float), weights.T])
+        self.states = np.empty((ROWS, size))
+        self._arrays = self.states, neighbours.numbers, factors
+        known = STRAINED if large_strains.hindered(system) else 0
+        self._table = np.array([size, len(factors), known, *map(address_of, self._arrays)], dtype=np.int64)
+        self.table = address_of(self._table)
 
 
-def _limits(system: System) -> _Limits:
-    (locked, curved), (stretched, bent) = locking.weights(system), large_strains.weights(system)
-    most = max(float(np.hypot(stretched, bent).max()), float(locked.max()))
-    return _Limits(locked, curved, stretched, bent, most, float(curved.max()), large_strains.hindered(system))
+def _unused(system: System) -> list[_Bounds]:
+    """Return a list of bounds, which no other thread uses while they are not in it."""
+    return [_Bounds(system)]
 
 
-def may_lock(system: System, p: np.ndarray, times: float = 1.0) -> bool:
-    """Return whether locking may change results by 1 % in states p (rows, n); times: of what they deform."""
-    chord, sections = shared(system, pairs).change(p)
-    return _may_lock(shared(system, _limits), times * np.abs((chord * sections.conj()).imag))
+def _found(system: System, p: np.ndarray, times: int = 1) -> int:
+    """Return what may be wrong with states p (rows, n), see `exceeds`; times: factor of angles for locking."""
+    unused = shared(system, _unused)
+    try:
+        bounds = unused.pop()
+    except IndexError:
+        bounds = _Bounds(system)
+    bounds.states[: len(p)] = p
+    found: int = exceeds.compiled(bounds.table, len(p), times)
+    unused.append(bounds)
+    return found
 
 
-def _may_lock(limits: _Limits, angles: np.ndarray) -> bool:
-    return bool((angles * limits.locked + limits.curved).max() > 1.0)
-
-
-def _needed(solution: "Solution") -> list[_Check]:
-    """Return the checks that may find what is worth a Python warning, in the rows that are looked at."""
-    system = loading(solution)[0]
-    limits = shared(system, _limits)
-    chord, sections = shared(system, pairs).change(solution.p[rows_looked_at(solution)])
-    close = np.abs(chord - sections).max() * limits.most + limits.constant <= 1.0
-    if close and not limits.hindered:
-        return []
-    deformed = chord * sections.conj()
-    stretches, angles = np.abs(deformed.real - 1.0), np.abs(deformed.imag)
-    strained = limits.hindered or (stretches * limits.stretched + angles * limits.bent).max() > 1.0
-    checks = ((_may_lock(limits, angles), locking.locking), (strained, large_strains.large_strains))
-    return [check for needed, check in checks if needed]
+def may_lock(system: System, p: np.ndarray) -> bool:
+    """Return whether locking may change frequencies about a state p (n,) by 1 %, which are sensitive twice as much."""
+    return bool(_found(system, p[None], 2) & LOCKED)

@@ -17,57 +17,38 @@ from beamfem.model.mesh import BeamMesh
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
-_ROWS = 32  # of a solution that are looked at
+ROWS = 32  # of a solution that are looked at
 _Found = TypeVar("_Found")
 
 
 class Pairs(NamedTuple):
     """Neighbouring nodes (m,) of elements.
 
-    numbers (k,): of the coordinates of both nodes, x1, y1, x2, y2 (m,) each, then the angles of sections, then x and
-    then y of their r_y; angled, directed: numbers of the ends (2 m,) of pairs with such coordinates; chord, at_rest:
-    inverse of the chord and of r_y in the reference, as complex numbers; length (m,) [m]; curved (m,): largest angle
+    numbers (m, 8): of their coordinates, as `kernels.neighbouring_nodes` takes them; at_rest (m, 3): inverse of the
+    chord and of r_y at both ends in the reference, as complex numbers; length (m,) [m]; curved (m,): largest angle
     [rad] of the chord against the axis at its ends in the reference; mesh (m,): number of the beam.
     """
 
     numbers: np.ndarray
-    angled: np.ndarray
-    directed: np.ndarray
-    chord: np.ndarray
     at_rest: np.ndarray
     length: np.ndarray
     curved: np.ndarray
     mesh: np.ndarray
 
-    def change(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return what chords (rows, 1, m) and sections at their ends (rows, 2, m) are multiplied by, for p (rows, n).
-
-        Vectors are complex numbers.
-        """
-        q, m, k = p.take(self.numbers, axis=1), len(self.length), len(self.angled)
-        along = q[:, 2 * m : 4 * m] - q[:, : 2 * m]
-        chord = (along[:, :m] + 1j * along[:, m:]) * self.chord
-        sections = np.exp(1j * q[:, 4 * m : 4 * m + k])
-        if len(self.directed):
-            x, y = np.split(q[:, 4 * m + k :], 2, axis=1)
-            turned, sections = sections, np.empty((len(p), 2 * m), dtype=complex)
-            sections[:, self.angled], sections[:, self.directed] = turned, (x + 1j * y) * self.at_rest
-        return chord[:, None], sections.reshape(len(p), 2, m)
-
 
 def rows_looked_at(solution: "Solution") -> slice:
-    """Return up to `_ROWS` rows of a solution, the last one among them, and of few all but the first, its start."""
+    """Return up to `ROWS` rows of a solution, the last one among them, and of few all but the first, its start."""
     count = len(solution)
-    stride = -(-count // _ROWS)
+    stride = -(-count // ROWS)
     return slice((count - 1) % stride if stride > 1 else min(1, count - 1), None, stride)
 
 
 def shared(system: System, build: Callable[[System], _Found]) -> _Found:
     """Return a function of a model that is computed once for all that are alike."""
-    name = f"{build.__module__}.{build.__name__}"
-    if name not in system.alike:
-        system.alike[name] = build(system)
-    found: _Found = system.alike[name]
+    alike = system.alike
+    if build not in alike:
+        alike[build] = build(system)
+    found: _Found = alike[build]
     return found
 
 
@@ -80,24 +61,25 @@ def pairs(system: System) -> Pairs:
         columns.append(_section_columns(mesh)[nodes])
         frames.append(mesh.kinematics.frame[nodes])
         meshes.append(np.full(nodes.shape[1], number))
-    positions = np.concatenate(ends, axis=1).transpose(0, 2, 1).reshape(4, -1)
-    section = np.concatenate(columns, axis=1).reshape(-1, 2)
-    frame = np.concatenate(frames, axis=1)
-    directed = section[:, 1] >= 0
-    x1, y1, x2, y2 = system.reference[positions]
-    chord = (x2 - x1) + 1j * (y2 - y1)
-    d = system.reference[section[directed]]
-    leaning = np.angle((frame[..., 0] + 1j * frame[..., 1]) / chord)
+    positions, sections = np.concatenate(ends, axis=1), np.concatenate(columns, axis=1)
+    frame, p = np.concatenate(frames, axis=1), system.reference
+    chord = _vectors(p[positions[1]] - p[positions[0]])
+    directed = sections[..., 1] >= 0
+    at_rest = np.ones((3, len(chord)), dtype=complex)
+    at_rest[0] /= chord
+    at_rest[1:][directed] /= _vectors(p[sections[directed]])
     return Pairs(
-        np.concatenate([positions.ravel(), section[~directed, 0], section[directed].T.ravel()]),
-        np.flatnonzero(~directed),
-        np.flatnonzero(directed),
-        1.0 / chord,
-        1.0 / (d[:, 0] + 1j * d[:, 1]),
+        np.hstack([*positions, *sections]),
+        at_rest.T.copy(),
         np.abs(chord),
-        np.abs(leaning).max(axis=0),
+        np.abs(np.angle(_vectors(frame) / chord)).max(axis=0),
         np.concatenate(meshes),
     )
+
+
+def _vectors(components: np.ndarray) -> np.ndarray:
+    """Return vectors (..., 2 or more) as complex numbers."""
+    return np.asarray(components[..., 0] + 1j * components[..., 1])
 
 
 def _section_columns(mesh: BeamMesh) -> np.ndarray:

@@ -307,7 +307,7 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     rest_state = State(p, np.zeros_like(p), np.zeros_like(p), load_factor, model)
     frequencies = rates.imag / (2.0 * np.pi)
     modes = Modes(model, rest_state, frequencies, rates.real, upright(shapes), words[:count])
-    if may_lock(system, rest_state.p[None], 2.0):
+    if may_lock(system, rest_state.p):
         warn_of(frequency_locking(rest_state, modes._elastic_shapes))
     return modes
 

@@ -85,6 +85,8 @@ class FunctionOfTime:
 
 def functions_of_time(system: System) -> list[FunctionOfTime]:
     """Return every function of time that acts on the model of a system, each once."""
+    if system.proportional and not system.moved:
+        return []
     model = system.model
     by_id: dict[int, FunctionOfTime] = {}
     for load in model.loads:

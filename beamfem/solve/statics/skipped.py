@@ -30,9 +30,10 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
         done.iterations += 1
         if result.linear != done.negative_pivots:
             return True
-    moved = _moved(system, result.state, done.state)
-    if done.reached > 0.0 and result.first > _OVERSHOOT * moved + newton.tolerance:
-        return True
+    if done.reached > 0.0:
+        moved = _moved(system, result.state, done.state)
+        if result.first > _OVERSHOOT * moved + newton.tolerance:
+            return True
     if result.iterations < _SLOW:
         return False
     if result.iterations < _SLOW_FROM_REST and done.reached == 0.0 and _constant_forces(system, target):

@@ -97,8 +97,8 @@ def solve_static(
     array([ 0.    , -0.0153, -0.0305])
     """
     if at is None:
-        equal = np.arange(1, count("steps", steps)) / steps
-        return warned(solve_through(model, equal.tolist(), steps, newton, snap=snap, resolved=True))
+        equal = [k / steps for k in range(1, count("steps", steps))]
+        return warned(solve_through(model, equal, steps, newton, snap=snap, resolved=True))
     load_factors = _ascending(at)
     through = solve_through(model, load_factors, steps, newton, snap=snap, end=load_factors[-1])
     return warned(_rows_at(through, load_factors))
@@ -162,8 +162,9 @@ def solve_through(
     functions = functions_of_time(system)
     with kept(record.solution):
         try:
-            bends = kinks_and_turning_points(functions, 0.0, end)
-            reach(system, record, 1.0 / steps, newton, snap, [*stops, *bends], end)
+            if functions:
+                stops = [*stops, *kinks_and_turning_points(functions, 0.0, end)]
+            reach(system, record, 1.0 / steps, newton, snap, stops, end)
         except LinAlgError as error:
             raise ConvergenceError(f"beyond load factor {record.reached:.6g}: {error}", record.solution()) from error
     if resolved and functions:

@@ -1,0 +1,42 @@
+"""Stretches and angles between neighbouring nodes of elements, compared with bounds."""
+
+from beamfem.kernels.compiling import routine
+from beamfem.kernels.nodes import cosine_sine
+from beamfem.kernels.pointers import at, reals, wholes
+
+LOCKED, STRAINED = 1, 2
+NUMBERS, FACTORS = 8, 10  # of a pair
+
+
+@routine("nii", "i")
+def exceeds(table, rows, times):
+    """Return LOCKED if weighted angles between neighbouring nodes exceed 1, plus STRAINED if those for strains do.
+
+    table: size of a state, number of pairs, STRAINED if that is known already, addresses of the states p (rows, size),
+    of numbers and of factors. numbers (pairs, NUMBERS): of the coordinates x1, y1, x2, y2 of the nodes, then for each
+    its angle and -1, or x and y of its r_y. factors (pairs, FACTORS): inverse of the chord and of both r_y in the
+    reference, as complex numbers; for locking, a factor of the angle, multiplied by `times`, and a constant; for
+    strains, factors of the stretch and the angle.
+    """
+    size, pairs, strained = table[0], table[1], table[2]
+    p, numbers, factors = reals(table[3]), wholes(table[4]), reals(table[5])
+    locked = 0
+    for row in range(rows):
+        q = at(p, row * size)
+        for k in range(pairs):
+            own, f = at(numbers, k * NUMBERS), at(factors, k * FACTORS)
+            dx, dy = q[own[2]] - q[own[0]], q[own[3]] - q[own[1]]
+            along, across = dx * f[0] - dy * f[1], dx * f[1] + dy * f[0]
+            for end in range(2):
+                i, j = own[4 + 2 * end], own[5 + 2 * end]
+                if j < 0:
+                    x, y = cosine_sine(q[i])
+                else:
+                    c, s = f[2 + 2 * end], f[3 + 2 * end]
+                    x, y = q[i] * c - q[j] * s, q[i] * s + q[j] * c
+                stretch, angle = abs(along * x + across * y - 1.0), abs(across * x - along * y)
+                if times * angle * f[6] + f[7] > 1.0:
+                    locked = LOCKED
+                if stretch * f[8] + angle * f[9] > 1.0:
+                    strained = STRAINED
+    return locked + strained

@@ -215,4 +215,5 @@ def _statistics(saved: dict[str, Any]) -> Statistics:
     status = Status[saved.pop("status", Status.COMPLETED.name)]
     if np.isnan(saved.get("digits", np.nan)):
         saved.pop("digits", None)  # not known: that of the default, which equals itself
-    return Statistics(**saved | {"status": status, "warnings": tuple(saved.get("warnings", ()))})
+    sequences = {name: tuple(saved.get(name, ())) for name in ("warnings", "rule")}
+    return Statistics(**saved | {"status": status} | sequences)

@@ -13,6 +13,7 @@ from beamfem.model.time_functions import kinks_of
 from beamfem.once import kept_with
 from beamfem.results.connected import kinetic_of_connectors, potential_of_connectors
 from beamfem.results.energy_drift import driven
+from beamfem.results.resolution import resolved
 from beamfem.results.turns import start_rotations
 
 if TYPE_CHECKING:
@@ -65,9 +66,14 @@ def energy_warnings(solution: "Solution") -> tuple[str, ...]:
     """Return a warning if the energy of a motion rises by more than work, or falls by more than damping, explains.
 
     The largest difference of all rows counts. Differences below round-off of the strain energy, or below the accuracy
-    with which rows give the work of loads that vary between them, are none.
+    with which rows give the work of loads that vary between them, are none. Energies are evaluated only where steps
+    may not resolve the motion. Where supports move, every step has to be a row: reactions may alternate from step to
+    step.
     """
-    if solution.static or len(solution) < 2 or solution.loaded is not None or not _takes_amplitudes(solution):
+    if solution.static or len(solution) < 2 or solution.loaded is not None or resolved(solution):
+        return ()
+    moved = any(callable(item.value) for item in system_of(solution.model, static=False).prescribed)
+    if not _takes_amplitudes(solution) or (moved and len(solution) != solution.statistics.steps + 1):
         return ()
     balance, unit = _balance(_some_rows(solution)), solution.model.unit
     compared = f"compared with {balance.exchanged:.3g} {unit('J')} exchanged at most"

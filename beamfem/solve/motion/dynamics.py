@@ -26,7 +26,6 @@ from beamfem.solve.motion.march import Last, Record, initial_acceleration, march
 from beamfem.solve.motion.onto_supports import put_onto_supports, require_on_supports
 from beamfem.solve.motion.period_error import detuned
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
-from beamfem.solve.motion.resolution import resolved
 from beamfem.solve.motion.time_steps import SIDE, stretches
 from beamfem.solve.start.functions_of_time import functions_of_time
 from beamfem.solve.start.interrupted import kept
@@ -141,9 +140,8 @@ def simulate(
             f"converge: {failed.why}",
             solution,
         )
-    if not rule or system.history.laws or not resolved(solution, system, rule):  # laws with history dissipate too
-        for sentence in energy_warnings(solution):
-            warn(sentence, EnergyWarning)
+    for sentence in energy_warnings(solution):
+        warn(sentence, EnergyWarning)
     found = detuned(solution, system, acting)
     return replace(solution, statistics=replace(solution.statistics, warnings=found)) if found else solution
 

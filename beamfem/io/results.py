@@ -213,7 +213,7 @@ def _about(file: Any) -> dict[str, Any]:
 def _statistics(saved: dict[str, Any]) -> Statistics:
     """Return the statistics of a file; older files have no status and no warnings."""
     status = Status[saved.pop("status", Status.COMPLETED.name)]
-    for name in ("digits", "frequency", "period_error"):
-        if np.isnan(saved.get(name, np.nan)):
-            saved.pop(name, None)  # not known: that of the default, which equals itself
-    return Statistics(**saved | {"status": status, "warnings": tuple(saved.get("warnings", ()))})
+    if np.isnan(saved.get("digits", np.nan)):
+        saved.pop("digits", None)  # not known: that of the default, which equals itself
+    sequences = {name: tuple(saved.get(name, ())) for name in ("warnings", "rule")}
+    return Statistics(**saved | {"status": status} | sequences)

@@ -9,10 +9,11 @@ from beamfem.assembly.assembler import Assembler
 from beamfem.assembly.equations import ROUND_OFF, residual, sizes
 from beamfem.assembly.system import System, system_of
 from beamfem.kernels.motion_record import MotionLimits
-from beamfem.model.load import Load
 from beamfem.model.time_functions import kinks_of
 from beamfem.once import kept_with
 from beamfem.results.connected import kinetic_of_connectors, potential_of_connectors
+from beamfem.results.energy_drift import driven
+from beamfem.results.resolution import resolved
 from beamfem.results.turns import start_rotations
 
 if TYPE_CHECKING:
@@ -65,9 +66,14 @@ def energy_warnings(solution: "Solution") -> tuple[str, ...]:
     """Return a warning if the energy of a motion rises by more than work, or falls by more than damping, explains.
 
     The largest difference of all rows counts. Differences below round-off of the strain energy, or below the accuracy
-    with which rows give the work of loads that vary between them, are none.
+    with which rows give the work of loads that vary between them, are none. Energies are evaluated only where steps
+    may not resolve the motion. Where supports move, every step has to be a row: reactions may alternate from step to
+    step.
     """
-    if solution.static or len(solution) < 2 or solution.loaded is not None or not _takes_amplitudes(solution):
+    if solution.static or len(solution) < 2 or solution.loaded is not None or resolved(solution):
+        return ()
+    moved = any(callable(item.value) for item in system_of(solution.model, static=False).prescribed)
+    if not _takes_amplitudes(solution) or (moved and len(solution) != solution.statistics.steps + 1):
         return ()
     balance, unit = _balance(_some_rows(solution)), solution.model.unit
     compared = f"compared with {balance.exchanged:.3g} {unit('J')} exchanged at most"
@@ -97,7 +103,7 @@ def _takes_amplitudes(solution: "Solution") -> bool:
 
 def _some_rows(solution: "Solution") -> "Solution":
     """Return all rows, or of many the fastest ones of equal spans, with the first ones and the last."""
-    count = _WORKED if _driven(solution, system_of(solution.model, static=False)) else _ROWS
+    count = _WORKED if driven(solution) else _ROWS
     if len(solution) <= count:
         return solution
     speeds, bounds = np.einsum("sn,sn->s", solution.v, solution.v), np.linspace(0, len(solution), count + 1).astype(int)
@@ -124,17 +130,7 @@ def _balance(solution: "Solution") -> _Balance:
     exchanged = max(*(np.ptp(part) for part in parts), energy.kinetic.max(), _SMALL * np.abs(energy.strain).max())
     unknown = _summed(np.abs(np.diff(total)), ~known)
     doubt = _doubt(solution, forces, work + given) + unknown + _inaccuracy(system, solution.p, energy.strain)
-    return _Balance(solution.at, rise, loss, doubt, float(exchanged), _driven(solution, system))
-
-
-def _driven(solution: "Solution", system: System) -> bool:
-    """Return whether loads, supports or connectors may do work on a motion."""
-    moved = any(callable(item.value) for item in system.prescribed)
-    return moved or not system.connectors.keep_energy or any(map(_drives, solution.model.loads))
-
-
-def _drives(load: Load) -> bool:
-    return load.amplitude is not None or not load.conservative
+    return _Balance(solution.at, rise, loss, doubt, float(exchanged), driven(solution))
 
 
 def _summed(change: np.ndarray, known: np.ndarray) -> np.ndarray:

@@ -72,10 +72,10 @@ def _exchanged(energy: "Energy") -> float:
 def _conservative(solution: "Solution") -> bool:
     system = system_of(solution.model, static=False)
     damped = any(block.damping.any() for block in system.blocks)
-    return not _driven(solution) and not damped and not system.history.laws
+    return not driven(solution) and not damped and not system.history.laws
 
 
-def _driven(solution: "Solution") -> bool:
+def driven(solution: "Solution") -> bool:
     """Return whether loads or supports may do work on a motion, or connectors dissipate or add energy."""
     system = system_of(solution.model, static=False)
     moved = any(callable(item.value) for item in system.prescribed)

@@ -36,10 +36,8 @@ class Statistics:
     digits : float, [-]
         Exact digits of the forces of the last equilibrium, from the balance of loads and reactions, or of the largest
         force of the path where they have few; nan if unknown.
-    frequency : float, [Hz]
-        Of a motion, that of its second half, the root mean square of w / (2 pi); nan for less than two periods.
-    period_error : float, [-]
-        By which ratio the time steps lengthen the period at this frequency; nan if unknown.
+    rule : tuple of float
+        Of a motion by a scheme, its time step [s], alpha_m, alpha_f, gamma and beta [-], see `Scheme`; else empty.
     """
 
     iterations: int
@@ -49,8 +47,7 @@ class Statistics:
     status: Status = Status.COMPLETED
     warnings: tuple[str, ...] = ()
     digits: float = nan
-    frequency: float = nan
-    period_error: float = nan
+    rule: tuple[float, ...] = ()
 
     @property
     def outcome(self) -> str:

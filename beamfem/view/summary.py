@@ -9,6 +9,7 @@ import numpy as np
 
 from beamfem.model.model import Model
 from beamfem.model.named import names
+from beamfem.solve.motion.period_error import lengthened_period
 from beamfem.tabulate import as_html
 from beamfem.view.places import place
 
@@ -50,9 +51,10 @@ def solution_rows(solution: "Solution") -> list[tuple[str, str]]:
     ]
     if solution.energy_drift is not None:
         rows.append(("energy", str(solution.energy_drift)))
-    if statistics.period_error == statistics.period_error:  # else nan
-        at = f"{statistics.frequency:.4g} {solution.model.unit('Hz')}"
-        rows.append(("time step", f"lengthens the period by {100 * statistics.period_error:.2g} % at {at}"))
+    frequency, error = lengthened_period(solution)
+    if frequency > 0.0:
+        text = f"lengthens the period by {100 * error:.2g} % at {frequency:.4g} {solution.model.unit('Hz')}"
+        rows.append(("time step", text))
     if len(solution):
         name, value = largest_displacement(solution)
         rows.append((name, value))

@@ -25,7 +25,7 @@ from beamfem.solve.motion.initial_velocity import start_velocity
 from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, is_scheme, require_rule
 from beamfem.solve.motion.march import Last, Record, initial_acceleration, march, new_statistics
 from beamfem.solve.motion.onto_supports import put_onto_supports, require_on_supports
-from beamfem.solve.motion.period_error import detuned, main_frequency, period_error
+from beamfem.solve.motion.period_error import detuned
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.time_steps import SIDE, stretches
 from beamfem.solve.start.functions_of_time import functions_of_time
@@ -108,8 +108,7 @@ def simulate(
             f"step(motion, begin, end) as bf.Integrator describes it, got {shown(integrator)}"
         )
     system = system_to_solve(model, static=False)
-    if is_scheme(integrator):
-        require_rule(integrator, step)
+    rule = require_rule(integrator, step) if is_scheme(integrator) else ()
     tell_of_compilation()
     require_memory(model.size, duration, step, save_every)
     times = step * np.arange(int(np.ceil(duration / step - 1e-9)) + 1)
@@ -140,28 +139,31 @@ def simulate(
     record.states[0], record.rotations[0] = state[:3], first_turns(model, state[0], near)
     further = len(ends) - len(times)
     last = Last((0, state[:3].copy(), record.rotations[0].copy()))
-    with kept(lambda: _solution(system, times, record, last, further, unresolved)):
+    with kept(lambda: _solution(system, times, record, last, further, unresolved, rule)):
         failed = march(system, integrator, parts, prescribed, state, record, last)
-    solution = _solution(system, times, record, last, further, unresolved)
+    solution = _solution(system, times, record, last, further, unresolved, rule)
     if failed is not None:
         raise ConvergenceError(
             f"the iteration of the step from {failed.begin:.6g} {second} to {failed.end:.6g} {second} did not "
             f"converge: {failed.why}",
             solution,
         )
-    if is_scheme(integrator):
-        frequency = main_frequency(solution, system)
-        error = period_error(integrator.rule(step), frequency) if np.isfinite(frequency) else np.nan
-        found = detuned(solution, system, acting, frequency, error)
-        statistics = replace(solution.statistics, frequency=frequency, period_error=error, warnings=found)
-        solution = replace(solution, statistics=statistics)
     for sentence in energy_warnings(solution):
         warn(sentence, EnergyWarning)
+    found = detuned(solution, system, acting)
+    if found:
+        solution = replace(solution, statistics=replace(solution.statistics, warnings=found))
     return warned(solution)
 
 
 def _solution(
-    system: System, times: np.ndarray, record: Record, last: Last, further: int, unresolved: list[str]
+    system: System,
+    times: np.ndarray,
+    record: Record,
+    last: Last,
+    further: int,
+    unresolved: list[str],
+    rule: tuple[float, ...],
 ) -> Solution:
     done, state, last_rotations = last.step
     kept_steps = np.append(np.arange(0, done, record.every), done)
@@ -174,6 +176,6 @@ def _solution(
     for name in unresolved:
         ended += f"; the {name} varies within steps, which do not resolve it"
     status = Status.COMPLETED if done == len(times) - 1 else Status.STOPPED
-    summary = Statistics(int(record.statistics[ITERATIONS]), done, 0, ended, status)
+    summary = Statistics(int(record.statistics[ITERATIONS]), done, 0, ended, status, rule=rule)
     p, v, a = states.swapaxes(0, 1)
     return Solution(system.model, False, times[kept_steps], p, v, a, summary, turned=rotations)

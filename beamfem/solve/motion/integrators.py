@@ -39,8 +39,8 @@ def is_scheme(integrator: object) -> TypeGuard[Scheme]:
     return callable(getattr(integrator, "rule", None)) and not callable(getattr(integrator, "step", None))
 
 
-def require_rule(scheme: Scheme, step: float) -> None:
-    """Raise InputError unless the rule of a scheme gives an implicit method."""
+def require_rule(scheme: Scheme, step: float) -> tuple[float, ...]:
+    """Return the rule of a scheme. Raises InputError unless it gives an implicit method."""
     given = scheme.rule(step)
     try:
         rule = np.array(given, dtype=float)
@@ -52,6 +52,7 @@ def require_rule(scheme: Scheme, step: float) -> None:
             f"rule of {type(scheme).__name__} must return (step, alpha_m, alpha_f, gamma, beta) with alpha_m and "
             f"alpha_f below 1, and gamma and beta above 0, got {shown(given)}"
         )
+    return tuple(rule.tolist())
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,10 @@
 """Relative error of the period that the steps of a motion give the frequency that carries its energy."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from beamfem.assembly.system import System
+from beamfem.assembly.system import System, system_of
 from beamfem.errors import TimeStepWarning, warn
 from beamfem.kernels.motion_record import ALPHA_F, ALPHA_M, BETA, GAMMA, TIME_STEP
 from beamfem.model.damping import retardation_time
@@ -15,12 +17,19 @@ _DETUNED = 0.1  # of a period; a response that is out of phase by less over the 
 _ROWS = 200  # most rows at which energies are evaluated
 
 
-def period_error(rule: np.ndarray, frequency: float) -> float:
+def lengthened_period(solution: Solution) -> tuple[float, float]:
+    """Return the frequency [Hz] of a motion, and by which ratio its steps lengthen the period there; nan if unknown."""
+    rule = solution.statistics.rule
+    frequency = _main_frequency(solution) if rule else np.nan
+    return frequency, period_error(rule, frequency) if frequency > 0.0 else np.nan
+
+
+def period_error(rule: Sequence[float], frequency: float) -> float:
     """Return by which ratio a method lengthens the period of an undamped vibration; rule: see `Scheme`.
 
     The principal roots of the method for x'' + w^2 x = 0 turn by an angle a in a step h; the ratio is w h / a - 1.
     """
-    alpha_m, alpha_f, gamma, beta = rule[[ALPHA_M, ALPHA_F, GAMMA, BETA]]
+    alpha_m, alpha_f, gamma, beta = (rule[number] for number in (ALPHA_M, ALPHA_F, GAMMA, BETA))
     turn = 2.0 * np.pi * frequency * rule[TIME_STEP]
     stiffness = turn**2
     # in x, h x' and h^2 a
@@ -33,7 +42,7 @@ def period_error(rule: np.ndarray, frequency: float) -> float:
     return float(turn / angles[np.argmin(np.abs(angles - turn))] - 1.0)
 
 
-def main_frequency(solution: Solution, system: System) -> float:
+def _main_frequency(solution: Solution) -> float:
     """Return the frequency [Hz] of the second half of a motion: w^2 is the mean square velocity per displacement.
 
     nan for less than two periods, which define none.
@@ -41,7 +50,7 @@ def main_frequency(solution: Solution, system: System) -> float:
     half = slice(len(solution) // 2, None)
     if len(solution.at[half]) < 4:
         return np.nan
-    dofs = np.flatnonzero(system.positions)
+    dofs = np.flatnonzero(system_of(solution.model, static=False).positions)
     moved = solution.p[half][:, dofs]
     moved = moved - moved.mean(axis=0)
     speed = float(np.linalg.norm(solution.v[half][:, dofs]))
@@ -52,13 +61,14 @@ def main_frequency(solution: Solution, system: System) -> float:
     return frequency if frequency * float(np.ptp(solution.at[half])) >= _PERIODS else np.nan
 
 
-def detuned(
-    solution: Solution, system: System, functions: list[FunctionOfTime], frequency: float, error: float
-) -> tuple[str, ...]:
+def detuned(solution: Solution, system: System, functions: list[FunctionOfTime]) -> tuple[str, ...]:
     """Warn of a driven vibration near resonance whose period the steps change by more than half its damping ratio.
 
     Return the sentence. Only Kelvin-Voigt damping counts, with the ratio w t / 2 of the smallest retardation time t.
     """
+    if not functions or not any(block.damping.any() for block in system.blocks):
+        return ()
+    frequency, error = lengthened_period(solution)
     sections = [(beam.section, beam.material) for beam in solution.model.beams]
     times = [retardation_time(section, material) for section, material in sections if not callable(section)]
     damping = np.pi * frequency * min((time for time in times if time > 0.0), default=0.0)

@@ -41,7 +41,7 @@ def weights(system: System) -> np.ndarray:
     neighbours, meshes = shared(system, pairs), system.model.meshes
     linear = np.array([mesh.beam.law is None for mesh in meshes])[neighbours.mesh] / _LARGE
     loaded = np.array([_strain_per_utilisation(mesh) for mesh in meshes])[neighbours.mesh]
-    bent = 3.0 * heights(system) / neighbours.length
+    bent = 3.0 * shared(system, heights) / neighbours.length
     return np.stack([np.maximum(linear, loaded), np.maximum(np.fmax(bent, 1.0) * linear, bent * loaded)])
 
 

@@ -83,7 +83,7 @@ def weights(system: System) -> np.ndarray:
     reference, in sum. Others lock by about (l / h)^2 / 3 at most, however little they bend.
     """
     neighbours = shared(system, pairs)
-    ratio = neighbours.length / np.maximum(heights(system), _LEAST * neighbours.length)
+    ratio = neighbours.length / np.maximum(shared(system, heights), _LEAST * neighbours.length)
     result, unlocked = np.zeros((2, len(ratio))), _unlocked(system.model)
     for number, mesh in enumerate(system.model.meshes):
         own = neighbours.mesh == number

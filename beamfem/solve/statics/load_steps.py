@@ -165,6 +165,8 @@ def _merges(follower: PathFollower, done: StaticRecord, point: np.ndarray, beyon
     if not below or below[-1][1] != 0 or target <= load_factor:
         return False
     farthest = float(np.max(np.abs(below[-1][0] - point[:-1]) / follower.system.scale))
+    if farthest == 0.0:  # at rest until the load jumps: no movement before to compare with
+        return False
     result = rest_state(follower.system, np.append(point[:-1], target), beyond, follower.newton, farthest)
     done.iterations += result.iterations
     if result.ended.good:

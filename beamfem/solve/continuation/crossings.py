@@ -146,6 +146,19 @@ def _require_crossing(samples: Samples, x: float, mode: np.ndarray, rate: float)
         raise SegmentLostError("the step leads to another path")
 
 
+def require_no_limit(segment: Segment, found: Iterable[Crossing]) -> list[Crossing]:
+    """Return bifurcations beside limit points, after a check that none of them is a limit point of another path.
+
+    At a limit point the path is tangential to the mode. Raises SegmentLostError.
+    """
+    line, result = segment.line, list(found)
+    for crossing in result:
+        aside = crossing.tangent - line.dot(crossing.mode, crossing.tangent) * crossing.mode
+        if line.length(aside) < _ALONG * line.length(crossing.tangent):
+            raise SegmentLostError("the step leads to another path")
+    return result
+
+
 def turning_point(segment: Segment, x: float) -> Crossing:
     """Return the bifurcation at a fraction where the load factor has an extremum because another path crosses.
 

@@ -23,7 +23,7 @@ from beamfem.solve.continuation.crossings import (
 )
 
 _BESIDE = 1e-3  # of a segment: distance from a limit point at which signs of pivots and positions are reliable
-_SHARPEST = 2.0  # [rad] per segment: turn of the tangent beside a limit point; a whole step turns by 0.5 at most
+_SHARPEST = 1.0  # [rad] per segment: turn of the tangent beside a limit point; a whole step turns by 0.5 at most
 _WINDOW = 0.1  # of a segment: around a limit point that coincides with a bifurcation
 _JUMP = 1e-3  # of a segment: points further apart than this at nearly equal fractions lie on two paths
 _DISTANCE = 5e-3  # of the searched part of a segment: least distance of samples from a bifurcation

@@ -6,15 +6,24 @@ modes are interpolated between points at a distance on both sides.
 """
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.solve.continuation.condensed import Condensed, condensed
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError, interpolation_weights
-from beamfem.solve.continuation.crossings import Crossing, Samples, crossings, turning_point, without_limit
+from beamfem.solve.continuation.crossings import (
+    Crossing,
+    Samples,
+    crossings,
+    require_no_limit,
+    turning_point,
+    without_limit,
+)
 
 _BESIDE = 1e-3  # of a segment: distance from a limit point at which signs of pivots and positions are reliable
+_SHARPEST = 1.0  # [rad] per segment: turn of the tangent beside a limit point; a whole step turns by 0.5 at most
 _WINDOW = 0.1  # of a segment: around a limit point that coincides with a bifurcation
 _JUMP = 1e-3  # of a segment: points further apart than this at nearly equal fractions lie on two paths
 _DISTANCE = 5e-3  # of the searched part of a segment: least distance of samples from a bifurcation
@@ -38,6 +47,8 @@ def bifurcations(segment: Segment, limits: list[float]) -> list[Crossing]:
     start = 0.0
     for i, x in enumerate(extrema):
         low, high = max(x - _BESIDE, start), min(x + _BESIDE, 1.0)
+        if x in limits:
+            _require_no_corner(segment, [low, x, high] if x in segment.found else [low, high])
         if abs(segment.change(low, high)) != (x in limits):
             if x not in limits:
                 raise SegmentLostError("several paths cross where the load factor turns")
@@ -45,11 +56,23 @@ def bifurcations(segment: Segment, limits: list[float]) -> list[Crossing]:
             high = min(x + _WINDOW, 0.5 * (x + extrema[i + 1]) if i + 1 < len(extrema) else 1.0)
             result += without_limit(segment, x, list(_search(segment, low, high)))
         if start < low:
-            result += _search(segment, start, low)
+            result += require_no_limit(segment, _search(segment, start, low))
         start = high
     if start < 1.0:
-        result += _search(segment, start, 1.0)
+        result += require_no_limit(segment, _search(segment, start, 1.0))
     return sorted(result, key=lambda crossing: crossing.fraction)
+
+
+def _require_no_corner(segment: Segment, fractions: list[float]) -> None:
+    """Raise SegmentLostError if the path turns much more sharply beside a limit point than the segment as a whole.
+
+    Where modes become soft at nearly equal loads, the path is a hyperbola along them. A segment that is longer than the
+    vertex seems smooth though its ends lie on different sheets, but its limit point is at a vertex.
+    """
+    for start, end in pairwise(fractions):
+        turn = segment.line.length(segment.at(end).tangent - segment.at(start).tangent)
+        if turn > _SHARPEST * (end - start):
+            raise SegmentLostError("the step leads to another path")
 
 
 def _search(segment: Segment, start: float, end: float) -> Iterator[Crossing]:

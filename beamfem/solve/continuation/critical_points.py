@@ -189,7 +189,11 @@ class Segment:
                 return x, changed == 0
             if self.at(start).tangent[-1] * self.at(end).tangent[-1] >= 0.0:
                 raise SegmentLostError("the load factor has an extremum that was not located")
-        x = float(brentq(lambda x: self.at(x).tangent[-1], start, end, xtol=_SHARPNESS, rtol=1e-9))
+        try:
+            x = float(brentq(lambda x: self.at(x).tangent[-1], start, end, xtol=_SHARPNESS, rtol=1e-9))
+        except SegmentLostError:
+            # a pivot that vanishes to the last bit
+            return self._extremum_between(start, end)[0], False
         if abs(self.at(x).tangent[-1]) > _LEVEL * self.line.load_scale:
             raise SegmentLostError("the step leads to another path")
         return x, False

@@ -11,7 +11,7 @@ from scipy.linalg import LinAlgError
 from beamfem.assembly.equations import STATICS, linearise, residual
 from beamfem.once import cached_property
 from beamfem.solve.continuation.condensed import Condensed
-from beamfem.solve.continuation.continuation import Continuation
+from beamfem.solve.continuation.continuation import Continuation, PathPoint
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError, interpolation_weights
 
 _IMPERFECT = 1e-9  # deviation of a path that still counts as a bifurcation: lengths of the model, radians
@@ -146,6 +146,19 @@ def _require_crossing(samples: Samples, x: float, mode: np.ndarray, rate: float)
         raise SegmentLostError("the step leads to another path")
 
 
+def require_no_limit(segment: Segment, found: Iterable[Crossing]) -> list[Crossing]:
+    """Return bifurcations beside limit points, after a check that none of them is a limit point of another path.
+
+    At a limit point the path is tangential to the mode. Raises SegmentLostError.
+    """
+    line, result = segment.line, list(found)
+    for crossing in result:
+        aside = crossing.tangent - line.dot(crossing.mode, crossing.tangent) * crossing.mode
+        if line.length(aside) < _ALONG * line.length(crossing.tangent):
+            raise SegmentLostError("the step leads to another path")
+    return result
+
+
 def turning_point(segment: Segment, x: float) -> Crossing:
     """Return the bifurcation at a fraction where the load factor has an extremum because another path crosses.
 
@@ -154,6 +167,7 @@ def turning_point(segment: Segment, x: float) -> Crossing:
     line, fractions = segment.line, segment.beside(x, x, _BESIDE, 0.0, 1.0)
     weights = interpolation_weights(fractions, x)
     points = [segment.at(at) for at in fractions.tolist()]
+    _require_straight(segment, fractions - x, points)
     tangent = weights @ [point.tangent for point in points]
     tangent /= line.length(tangent)
     mode = np.append(tangent[:-1], 0.0)
@@ -164,6 +178,19 @@ def turning_point(segment: Segment, x: float) -> Crossing:
     with suppress(LinAlgError):
         y = segment.balanced(y, list(line.softest_modes(line.solve(y, None)[2], 2)))
     return Crossing(x, y, tangent, mode)
+
+
+def _require_straight(segment: Segment, fractions: np.ndarray, points: list[PathPoint]) -> None:
+    """Raise SegmentLostError if points (s,) around a turning point at fraction 0 are on a hyperbola that avoids it.
+
+    Unbalanced forces move the points as well.
+    """
+    line, scaled = segment.line, fractions / _BESIDE
+    basis = np.stack([np.ones_like(scaled), scaled, scaled**2, 1.0 / scaled], axis=1)
+    bend = np.linalg.lstsq(basis, np.array([point.y for point in points]))[0][-1]
+    moved = max(line.length(line.solve(point.y, None)[0]) for point in points)
+    if line.length(bend) > max(_IMPERFECT, _LEFT * moved):
+        raise SegmentLostError("the step leads to another path")
 
 
 def without_limit(segment: Segment, x: float, found: list[Crossing]) -> list[Crossing]:

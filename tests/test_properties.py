@@ -76,6 +76,8 @@ def test_buckling_does_not_know_where_and_how_a_model_is_drawn(recipe, view):
         assert found[0].kinds == found[1].kinds
 
 
+# coarse steps of random models may rightly gain energy; in every view alike
+@pytest.mark.filterwarnings("ignore::beamfem.EnergyWarning")
 @given(recipes(led=False, largest=SUDDEN, alike=True), views())
 def test_motion_does_not_know_where_and_how_a_model_is_drawn(recipe, view):
     ends = []

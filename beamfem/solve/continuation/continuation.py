@@ -206,26 +206,28 @@ class Continuation:
         """
         system, p, at = self.system, y[:-1], float(y[-1])
         zeros, free, prescribed = np.zeros(len(p)), system.free_dofs, system.prescribed_dofs
-        before, after = self._around(at)
+        before, after, width = self._around(at)
         unbalanced, tangent = linearise(system, p, zeros, zeros, at, STATICS, stresses)
         factors = tangent.factorised(system.rotated)
         balance, along = np.zeros(len(y)), np.zeros(len(y))
         balance[free], _ = factors.correction(unbalanced[free])
-        along[free] = factors.solve(-load_change(system, p, before, after)[free] / (after - before))
+        along[free] = factors.solve(-load_change(system, p, before, after)[free] / width)
         change = system.prescribed_values(after) - system.prescribed_values(before)
-        along[prescribed] = change / (after - before)
+        along[prescribed] = change / width
         along[-1] = 1.0
         if not (np.isfinite(balance).all() and np.isfinite(along).all()):
             raise LinAlgError("the tangent is singular")
         return balance, along, factors
 
-    def _around(self, at: float) -> tuple[float, float]:
-        """Return two load factors around one, inside of the piece if this one is, between which slopes are taken."""
+    def _around(self, at: float) -> tuple[float, float, float]:
+        """Return two load factors around one, inside of the piece if this one is, and their distance for slopes."""
         width, (low, high) = _SLOPE_WIDTH * self.load_scale, self.piece
-        if not low <= at <= high:
-            return at - width, at + width
+        if not low <= at <= high or not self.functions_of_time:
+            # not the difference of the two, which round-off of large load factors changes from point to point
+            return at - width, at + width, 2.0 * width
         width = min(width, 0.5 * (high - low))
-        return max(at - width, low), min(at + width, high)
+        before, after = max(at - width, low), min(at + width, high)
+        return before, after, after - before
 
 
 class _InPlane(SingleCorrections):

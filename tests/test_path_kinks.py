@@ -57,3 +57,15 @@ def test_a_path_downward_uses_the_other_side_of_a_kink_at_its_start():
     path = bf.trace_equilibrium(model, -1.0)
     plain = bf.Model([BAR], [CLAMP], [bf.PointForce(BAR.end, (0.0, -3000.0))])
     assert path.displacement(BAR.end)[-1] == pytest.approx(bf.solve_static(plain).displacement(BAR.end)[-1], rel=1e-8)
+
+
+@pytest.mark.parametrize("length", [0.11, 0.43, 2.0, 4.17, 13.7, 145.0, 330.0, 753.0])
+@pytest.mark.parametrize("share", [0.03, 0.09, 0.11, 0.27, 0.34, 0.43, 0.48])
+def test_a_kink_found_next_to_the_end_of_a_path_is_its_end(length, share):
+    """Samples find the end of the table at 1 or 1 - 1e-16; every fifth of such paths stopped in the latter."""
+    table = bf.Interpolated([(0.0, 0.0), (0.6, 0.8), (1.0, 1.4)])
+    bar = bf.Beam(bf.Line((0, 0), (length, 0)), 4, bf.CRBF(2), bf.Rectangle(length / 90, length / 90), BAR.material)
+    lift = bf.Prescribed(bar.end, uy=lambda f: share * length * table(f))
+    path = bf.trace_equilibrium(bf.Model([bar], [bf.Clamp(bar.start), lift]), 1.0)
+    assert path.load_factor[-1] == 1.0
+    assert path.displacement(bar.end)[-1, 1] == pytest.approx(1.4 * share * length, rel=1e-12)

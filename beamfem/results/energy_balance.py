@@ -12,9 +12,8 @@ from beamfem.kernels.motion_record import MotionLimits
 from beamfem.model.time_functions import kinks_of
 from beamfem.once import kept_with
 from beamfem.results.connected import kinetic_of_connectors, potential_of_connectors
-from beamfem.results.energy_drift import driven
+from beamfem.results.energy_drift import FIRST, driven, with_rows
 from beamfem.results.resolution import resolved
-from beamfem.results.turns import start_rotations
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -24,7 +23,6 @@ _LOST = 0.5  # of the exchanged energy; numerical damping removes less where ste
 _SMALL = 1e-3  # of the stored energy, a vibration of which is too small to matter
 _ROWS = 100  # spans of rows, in the fastest of which energies are evaluated, which cost more than many time steps
 _WORKED = 500  # such rows if work is to be summed over them
-_FIRST = 32  # rows besides: what a sudden start gives rise to may last for a few steps only
 _SHARES = np.array([0.21, 0.5, 0.79])  # of the time between rows, at which amplitudes are evaluated
 _BULGE = 0.1  # of an amplitude, by which it may differ from a straight line between rows
 
@@ -108,12 +106,7 @@ def _some_rows(solution: "Solution") -> "Solution":
         return solution
     speeds, bounds = np.einsum("sn,sn->s", solution.v, solution.v), np.linspace(0, len(solution), count + 1).astype(int)
     fastest = [a + int(np.argmax(speeds[a:b])) for a, b in zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True)]
-    return _rows(solution, np.unique([*range(_FIRST), *fastest, len(solution) - 1]))
-
-
-def _rows(solution: "Solution", rows: Any) -> "Solution":
-    at, p, v, a = (values[rows] for values in (solution.at, solution.p, solution.v, solution.a))
-    return replace(solution, at=at, p=p, v=v, a=a, stability=None, turned=start_rotations(solution)[rows])
+    return with_rows(solution, np.unique([*range(FIRST), *fastest, len(solution) - 1]))
 
 
 def _balance(solution: "Solution") -> _Balance:
@@ -176,7 +169,7 @@ def _doubt(solution: "Solution", forces: _Forces, work: np.ndarray) -> np.ndarra
     """Return by how much the work until each row (rows,) [J] differs if every second row is left out."""
     if not work.any():
         return np.zeros(len(solution))
-    half, _, given = _work(_rows(solution, slice(None, None, 2)), forces.of(slice(None, None, 2)))
+    half, _, given = _work(with_rows(solution, slice(None, None, 2)), forces.of(slice(None, None, 2)))
     coarse, fine = np.append(0.0, np.cumsum(half + given)), np.append(0.0, np.cumsum(work))
     largest = np.maximum.accumulate(np.abs(coarse - fine[::2]))
     return np.asarray(largest[np.minimum((np.arange(len(fine)) + 1) // 2, len(largest) - 1)])

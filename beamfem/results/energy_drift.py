@@ -1,7 +1,7 @@
 """Energy drift of a conservative motion: the error of its time integration."""
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
 _ROWS = 100  # rows at which the exchanged energy is evaluated
-_FIRST = 32  # rows at which it is evaluated besides: what a sudden start gives rise to may last for a few steps only
+FIRST = 32  # rows at which it is evaluated besides: what a sudden start gives rise to may last for a few steps only
 
 
 @dataclass(frozen=True)
@@ -57,12 +57,17 @@ def energy_drift(solution: "Solution") -> EnergyDrift | None:
 
 
 def _energy_of_rows(solution: "Solution") -> "Energy":
-    """Return the energies of at most `_ROWS` rows, of the first `_FIRST` ones, and of the fastest one."""
+    """Return the energies of at most `_ROWS` rows, of the first `FIRST` ones, and of the fastest one."""
     fastest = np.argmax(np.einsum("sn,sn->s", solution.v, solution.v))
-    spread, first = np.linspace(0, len(solution) - 1, _ROWS).astype(int), np.arange(min(_FIRST, len(solution)))
+    spread, first = np.linspace(0, len(solution) - 1, _ROWS).astype(int), np.arange(min(FIRST, len(solution)))
     rows = np.unique(np.concatenate([spread, first, [fastest]]))
+    return with_rows(solution, rows).energy()
+
+
+def with_rows(solution: "Solution", rows: Any) -> "Solution":
+    """Return the rows of a motion that an index of arrays selects."""
     at, p, v, a = (values[rows] for values in (solution.at, solution.p, solution.v, solution.a))
-    return replace(solution, at=at, p=p, v=v, a=a, stability=None, turned=start_rotations(solution)[rows]).energy()
+    return replace(solution, at=at, p=p, v=v, a=a, stability=None, turned=start_rotations(solution)[rows])
 
 
 def _exchanged(energy: "Energy") -> float:

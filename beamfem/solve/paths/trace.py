@@ -24,7 +24,7 @@ from beamfem.solve.paths.branches import leave
 from beamfem.solve.paths.path_record import PathRecord
 from beamfem.solve.start.functions_of_time import functions_of_time
 from beamfem.solve.start.interrupted import kept
-from beamfem.solve.start.kinks import kinks_between
+from beamfem.solve.start.kinks import SAME, kinks_between
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import refuse_memory, refuse_multipliers
 from beamfem.solve.start.system_to_solve import system_to_solve
@@ -145,13 +145,13 @@ def trace_equilibrium(
             record.add(np.append(start.p, start.at), stable=False, turned=start.turned)
             if points > 1:
                 point, size = _branch(line, start, direction, record, until)
-        landed = False
+        landed, end = False, until if isinstance(until, float) else None
         while not (landed or _met(until, record.last)):
             if len(record.rows) >= points:
                 record.end(f"the {points} points are used up")
                 break
-            line, kink = _piece(line, point, size)
-            taken, landing = _step(line, point, size, record, until if isinstance(until, float) else None, kink)
+            line, kink = _piece(line, point, size, end)
+            taken, landing = _step(line, point, size, record, end, kink)
             size = taken.next_size
             landed = landing is not None
             point = taken.segment.after if landing is None else landing
@@ -192,13 +192,18 @@ def _require_crossing(model: Model, start: Bifurcation | None) -> None:
         raise InputError("start is a bifurcation of another model; trace the path of this one first")
 
 
-def _piece(line: Continuation, point: PathPoint, size: float) -> tuple[Continuation, float | None]:
-    """Return the continuation up to the next kink of a function, and its load factor, if a step may reach it."""
+def _piece(line: Continuation, point: PathPoint, size: float, end: float | None) -> tuple[Continuation, float | None]:
+    """Return the continuation up to the next kink of a function, and its load factor, if a step may reach it.
+
+    A kink that is found from samples at the end of the path is that end: a step between the two would be round-off.
+    """
     if not line.functions_of_time:
         return line, None
     size = min(size, longest_step(line, point))
     ahead = point.load_factor + _AHEAD * size * float(point.tangent[-1])
     kink = next(iter(kinks_between(line.functions_of_time, point.load_factor, ahead, jumps=False)), None)
+    if kink is not None and end is not None and abs(kink - end) <= SAME * abs(ahead - point.load_factor):
+        kink = end
     low, high = line.piece
     if kink is not None and kink > point.load_factor:
         high = kink

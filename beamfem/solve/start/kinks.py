@@ -12,7 +12,7 @@ _PARTS = 9  # of the two intervals beside a kink, into which they are divided ag
 _REFINED = 12  # times: to 1e-9 of the range
 _SHARP = 0.5  # of a jump of the slope that is left at a kink when its surroundings shrink; it would vanish elsewhere
 _NOTABLE = 1e-3  # of the largest slope: a smaller jump is none
-_SAME = 1e-7  # of the range: kinks closer than this are one
+SAME = 1e-7  # of the range: kinks closer than this are one
 
 
 def kinks_between(functions: Sequence[FunctionOfTime], begin: float, end: float, jumps: bool = True) -> list[float]:
@@ -47,7 +47,7 @@ def _apart(found: list[float], begin: float, end: float) -> list[float]:
     """Return load factors from `begin` on, without those next to an earlier one or to an end."""
     result: list[float] = []
     for at in found:
-        if all(abs(at - other) > _SAME * abs(end - begin) for other in (*result, begin, end)):
+        if all(abs(at - other) > SAME * abs(end - begin) for other in (*result, begin, end)):
             result.append(at)
     return sorted(result, key=lambda at: abs(at - begin))
 

@@ -8,17 +8,10 @@ from typing import Any
 from beamfem.errors import InputError
 from beamfem.validation import nearest, text
 
-FORCES = ("N", "mN", "uN", "nN", "daN", "kN", "MN", "lbf", "kip", "kgf")
-LENGTHS = ("m", "mm", "um", "nm", "cm", "dm", "km", "in", "ft")
-TIMES = ("s", "ms", "us", "ns", "min")
-_POUND = 4.4482216152605  # force [N]
-_IN_SI = {
-    **dict(
-        zip(FORCES, (1.0, 1e-3, 1e-6, 1e-9, 10.0, 1e3, 1e6, 4.4482216152605, 4448.2216152605, 9.80665), strict=True)
-    ),
-    **dict(zip(LENGTHS, (1.0, 1e-3, 1e-6, 1e-9, 1e-2, 0.1, 1e3, 0.0254, 0.3048), strict=True)),
-    **dict(zip(TIMES, (1.0, 1e-3, 1e-6, 1e-9, 60.0), strict=True)),
-}
+FORCES = {"N": 1.0, "mN": 1e-3, "uN": 1e-6, "nN": 1e-9, "daN": 10.0, "kN": 1e3, "MN": 1e6}
+FORCES |= {"lbf": 4.4482216152605, "kip": 4448.2216152605, "kgf": 9.80665}
+LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "cm": 1e-2, "dm": 0.1, "km": 1e3, "in": 0.0254, "ft": 0.3048}
+TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}
 _STRESS = {("N", "m"): "Pa", ("N", "mm"): "MPa", ("kN", "m"): "kPa", ("MN", "m"): "MPa", ("kN", "mm"): "GPa"}
 _MASS = {("N", "m"): "kg", ("N", "mm"): "t", ("kN", "m"): "t", ("mN", "mm"): "kg", ("uN", "um"): "kg"}
 _STRESS |= {("lbf", "in"): "psi", ("kip", "in"): "ksi", ("uN", "um"): "MPa", ("mN", "mm"): "kPa"}
@@ -50,7 +43,7 @@ class Units:
 
     def in_si(self, force: int = 0, length: int = 0, time: int = 0) -> float:
         """Return the size in SI of the unit that is a product of powers of those of force, length and time."""
-        return _IN_SI[self.force] ** force * _IN_SI[self.length] ** length * _IN_SI[self.time] ** time
+        return FORCES[self.force] ** force * LENGTHS[self.length] ** length * TIMES[self.time] ** time
 
 
 def units_of(given: Any) -> Units:

@@ -1,5 +1,7 @@
 """Energy of motions in every row against work and damping."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -155,3 +157,30 @@ def test_a_resonance_that_its_steps_detune_is_warned_of(steps):
         built_up = 1.566 * size / (2.0 * ratio) * (1.0 - np.exp(-2.0 * np.pi * ratio * 80.0))
         assert np.abs(motion.displacement(post.end)[-120:, 1]).max() == pytest.approx(built_up, rel=0.05)
     assert lengthened_period(motion)[0] == pytest.approx(frequency, rel=0.02)
+
+
+@pytest.mark.parametrize(("steps", "periods", "tuned"), [(10, 60, 1.0), (20, 20, 1.0), (80, 20, 1.0), (10, 20, 1.5)])
+def test_a_resonance_without_damping_that_its_steps_detune_is_warned_of(steps, periods, tuned):
+    """The tip grows by pi x_st 0.9707 a period (the share of the first mode); 10 steps left 15 % of it, silently."""
+    post, size = straight(bf.Material(2e11, 0.3, 7800.0)), 0.1
+    frequency = bf.solve_modes(bf.Model([post], [bf.Clamp(post.start)]), 1).frequencies[0]
+    omega = 2.0 * np.pi * frequency
+    tip = bf.PointForce(post.end, (0.0, size), amplitude=lambda t: np.sin(tuned * omega * t))
+    model = bf.Model([post], [bf.Clamp(post.start)], [tip])
+    slope = (
+        np.pi
+        * 0.9707
+        * bf.solve_static(replace(model, loads=[replace(tip, amplitude=None)])).displacement(post.end)[-1, 1]
+    )
+    run = lambda: bf.simulate(model, periods / frequency, 1.0 / frequency / steps)  # noqa: E731
+    if tuned != 1.0:
+        assert not run().warnings
+    elif steps == 80:
+        motion = run()
+        assert not motion.warnings
+        # a step h slows the growth by (w h)^2 / 3 = 0.2 %
+        assert np.abs(motion.displacement(post.end)[:, 1]).max() == pytest.approx(slope * periods, rel=3e-3)
+    else:
+        with pytest.warns(TimeStepWarning, match="has no damping: they detune the resonance"):
+            motion = run()
+        assert np.abs(motion.displacement(post.end)[:, 1]).max() < 0.92 * slope * periods

@@ -62,32 +62,58 @@ def _main_frequency(solution: Solution) -> float:
 
 
 def detuned(solution: Solution, system: System, functions: list[FunctionOfTime]) -> tuple[str, ...]:
-    """Warn of a driven vibration near resonance whose period the steps change by more than half its damping ratio.
+    """Warn of a motion that is driven near resonance if the steps change its period by too much.
 
-    Return the sentence. Only Kelvin-Voigt damping counts, with the ratio w t / 2 of the smallest retardation time t.
+    That is more than half the damping ratio; without damping, more than a tenth of a period over the motion. Return the
+    sentence. Only Kelvin-Voigt damping counts, with the ratio w t / 2 of the smallest retardation time t.
     """
-    if not functions or not any(block.damping.any() for block in system.blocks):
+    if not functions:
         return ()
     frequency, error = lengthened_period(solution)
+    cycles = frequency * float(solution.at[-1])
+    if not error * cycles > _DETUNED:
+        return ()
     sections = [(beam.section, beam.material) for beam in solution.model.beams]
     times = [retardation_time(section, material) for section, material in sections if not callable(section)]
     damping = np.pi * frequency * min((time for time in times if time > 0.0), default=0.0)
-    cycles = frequency * float(solution.at[-1])
-    if not (damping > 0.0 and error > 0.5 * damping and error * cycles > _DETUNED):
+    if damping > 0.0:
+        resonant = error > 0.5 * damping and _resonates(solution, functions)
+        allowed, compared = 0.1 * damping, f"more than half the damping ratio there, {100 * damping:.2g} %"
+    else:
+        damped = not system.connectors.keep_energy or any(block.damping.any() for block in system.blocks)
+        # over some periods, those within 1 of as many resonate
+        drives = [] if damped else [_frequency_of(function, solution) for function in functions]
+        resonant = any(abs(drive / frequency - 1.0) < error + 1.0 / cycles for drive in drives)
+        allowed, compared = _DETUNED / cycles, f"{error * cycles:.2g} periods over the motion, which has no damping"
+    if not resonant:
         return ()
-    half = solution.at[len(solution.at) // 2 :].tolist()
-    if not any(np.ptp([function.at(time) for time in half]) > 0.0 for function in functions):
-        return ()
-    rows = solution[len(solution) // 2 :: max(len(half) // _ROWS, 1)]
-    energy = rows.energy()
-    ratio = np.sqrt(float(np.mean(energy.kinetic)) / max(float(np.mean(energy.strain)), np.finfo(float).tiny))
-    if abs(ratio - 1.0) > _NEAR:
-        return ()
-    unit = solution.model.unit
     sentence = (
-        f"the time steps lengthen the period at {frequency:.4g} {unit('Hz')}, where the motion is driven near "
-        f"resonance, by {100 * error:.2g} %, more than half the damping ratio there, {100 * damping:.2g} %: they "
-        f"detune the resonance. Use steps shorter by a factor of {np.sqrt(10.0 * error / damping):.2g}"
+        f"the time steps lengthen the period at {frequency:.4g} {solution.model.unit('Hz')}, where the motion is "
+        f"driven near resonance, by {100 * error:.2g} %, {compared}: they detune the resonance. Use steps shorter by a "
+        f"factor of {np.sqrt(error / allowed):.2g}"
     )
     warn(sentence, TimeStepWarning)
     return (sentence,)
+
+
+def _resonates(solution: Solution, functions: list[FunctionOfTime]) -> bool:
+    """Return whether functions of time vary in the second half of a motion, whose kinetic and strain energy balance."""
+    half = solution.at[len(solution.at) // 2 :].tolist()
+    if not any(np.ptp([function.at(time) for time in half]) > 0.0 for function in functions):
+        return False
+    energy = solution[len(solution) // 2 :: max(len(half) // _ROWS, 1)].energy()
+    ratio = np.sqrt(float(np.mean(energy.kinetic)) / max(float(np.mean(energy.strain)), np.finfo(float).tiny))
+    return bool(abs(ratio - 1.0) <= _NEAR)
+
+
+def _frequency_of(function: FunctionOfTime, solution: Solution) -> float:
+    """Return the frequency [Hz] of a function in the second half of a motion, from its second differences over steps.
+
+    Those of a sine of angular frequency w are -4 sin^2(w h / 2) times its values.
+    """
+    last, step = float(solution.at[-1]), solution.statistics.rule[TIME_STEP]
+    values = np.array([function.at(time) for time in np.arange(0.5 * last, last, step).tolist()])
+    values = values - values.mean()
+    square = float(values @ values)
+    share = -float(np.diff(values, 2) @ values[1:-1]) / (4.0 * square) if square > 0.0 else 0.0
+    return float(np.arcsin(np.sqrt(np.clip(share, 0.0, 1.0))) / (np.pi * step))

@@ -29,9 +29,8 @@ import beamfem as bf
 from beamfem.assembly.equations import MIXED, STATICS, linearise, linearise_after
 from beamfem.assembly.round_off import LOSES, lost_digits
 from beamfem.assembly.system import system_of
-from beamfem.kernels.band import KNOWN, band
-from beamfem.kernels.two_sided import SHORT, two_sided
-from beamfem.kernels.two_sided_parts import two_sided_parts
+from beamfem.kernels.band import band
+from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 
 ELEMENTS = (
     bf.ANCF(),
@@ -124,25 +123,10 @@ def in_statics(tangent, right):
 def in_motions(system, tangent, right):
     """Return the solutions with factors from both ends."""
     n, w, rows, solutions = len(right), tangent.rows.shape[1] // 2, tangent.rows.copy(), right.T.copy()
-    own = two_sided(w, n < SHORT)
+    own = bidirectional_lu(w, n < SHORT)
     assert own.factor(n, w, system.unknowns.reach, rows, np.empty(n)) > 0.0
     for x in solutions:
         own.solve(n, w, rows, x)
-    return solutions.T
-
-
-def in_halves(system, tangent, right):
-    """Return the solutions with factors of two halves, which motions of long chains compute side by side."""
-    n, w, rows, solutions = len(right), tangent.rows.shape[1] // 2, tangent.rows.copy(), right.T.copy()
-    own, m = two_sided_parts(w), (n - 2 * w) // 2
-    ends, middle, space = ((0, m), (1, n - 2 * w - m)), (2, 0), np.empty(n)
-    for part, count in (*ends, middle):
-        assert own.factor(part, 0, count, n, m, w, system.unknowns.reach, rows, space) > 0.0
-    for x in solutions:
-        for part, count in (*ends, middle):
-            own.lower(part, 0, count, n, m, w, rows, x)
-        for part, count in ends:
-            own.upper(part, 0, count, n, m, w, rows, x)
     return solutions.T
 
 
@@ -184,8 +168,6 @@ def compared(element, slenderness, elements, state):
 
     found, count = in_statics(tangent, right)
     solutions = {"statics": found, "motions": in_motions(system, tangent, right)}
-    if rows.shape[1] // 2 in KNOWN:
-        solutions["halves"] = in_halves(system, tangent, right)
     for name, x in solutions.items():
         assert relative_residual(rows, x, right, scale) < 16.0 * ROUND_OFF, name
     lapack = max(map(error, by_lapack(rows, right)))

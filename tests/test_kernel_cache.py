@@ -10,9 +10,8 @@ import pytest
 
 import beamfem
 from beamfem.kernels import cache, compiling, inertia
-from beamfem.kernels.band import KNOWN, band
-from beamfem.kernels.two_sided import two_sided
-from beamfem.kernels.two_sided_parts import two_sided_parts
+from beamfem.kernels.band import band
+from beamfem.kernels.bidirectional_lu import bidirectional_lu
 
 KERNELS = Path(beamfem.__file__).parent / "kernels"
 PLAIN = set(sys.stdlib_module_names) | {"numpy", "llvmlite", "platformdirs"}
@@ -231,10 +230,8 @@ def test_no_two_kernels_share_a_name():
     got the factors of another width."""
     found = {routine.name for half_width in range(20) for routine in band(half_width)}
     for half_width in range(20):
-        found |= {routine.name for short in (True, False) for routine in two_sided(half_width, short)}
+        found |= {routine.name for short in (True, False) for routine in bidirectional_lu(half_width, short)}
     assert len(found) == 3 * 7 + 2 * (7 + 6)
-    found |= {routine.name for half_width in KNOWN for routine in two_sided_parts(half_width)}
-    assert len(found) == 3 * 7 + 2 * (7 + 6) + 3 * 6
     for nodes in (2, 3):
         inertia.add_inertia.fixed(nodes=nodes, vectors=2, others=4)
     names = [routine.name for routine in compiling.Routine.made if routine.__module__.startswith("beamfem.kernels")]

@@ -7,9 +7,9 @@ import pytest
 
 from beamfem.kernels import field, inertia, linear_law, stiffness
 from beamfem.kernels.band import band
+from beamfem.kernels.bidirectional_lu import bidirectional_lu
 from beamfem.kernels.compiler.machine import assembly_code
 from beamfem.kernels.generated import elastic_line, green_lagrange, structural
-from beamfem.kernels.two_sided import two_sided
 
 PASSES = [
     *(stiffness.columns, stiffness.combine, stiffness.products, inertia.add_inertia, inertia.add_mass),
@@ -17,7 +17,7 @@ PASSES = [
     *(getattr(forces, name) for forces in (green_lagrange, structural) for name in ("strains", "forces", "rates")),
     *(forces.hessian for forces in (green_lagrange, structural)),
     *(band(half_width).factor for half_width in (5, 8, 11)),
-    *(two_sided(half_width, short=False).solve for half_width in (5, 8, 11)),
+    *(bidirectional_lu(half_width, short=False).solve for half_width in (5, 8, 11)),
 ]
 PACKED = {
     "x86_64": r"\bv?(?:{})(?:\d+)?pd\b",

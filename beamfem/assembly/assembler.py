@@ -1,8 +1,7 @@
 """Evaluation of all equations of a model: residual and tangent in a state, for given weights."""
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import prod
 from typing import Any
 
 import numpy as np
@@ -66,37 +65,26 @@ class Assembler:
     """Equations with a workspace: one for each solve and thread.
 
     stresses: resultants (ne, nq, ns) of each group for the geometric part of the tangent; lent: whether `work_in`
-    provides scratch memory before each solve; spaces: workspace number of each group, by which groups of one chain that
-    are processed in sequence share a workspace; numbers: size of the workspace in floats; scratch: the part of it in
+    provides scratch memory before each solve; numbers: size of the workspace in floats; scratch: the part of it in
     scratch memory.
     """
 
-    def __init__(
-        self,
-        equations: Equations,
-        stresses: Stresses | None = None,
-        lent: bool = False,
-        spaces: Sequence[int] | None = None,
-    ) -> None:
+    def __init__(self, equations: Equations, stresses: Stresses | None = None, lent: bool = False) -> None:
         self.equations, self.size, groups = equations, equations.size, equations.groups
         self._imposes = any(group.imposed is not None for group in groups)
         self._laws = tuple(group.law for group in groups if group.law is not None)
         count = len(groups)
-        which = [_space(group, number, spaces) for number, group in enumerate(groups)]
-        first = {space: number for number, space in reversed(list(enumerate(which)))}
         tables, lists = np.array([group.table for group in groups]), np.zeros((5, count), dtype=np.int64)
         addresses, self._values, self._filled = lists[0], lists[1], lists[2:].reshape(count, 3)
         size, at_tables, at_lists = lists.itemsize, address_of(tables), address_of(lists)
         shapes: dict[object, Sequence[int]] = {"factors": (record.FACTOR_COUNT,)}
-        self._spaces: dict[object, int] = {}
-        for number, (group, space) in enumerate(zip(groups, which, strict=True)):
-            shapes["chunks", space] = (max(prod(group.chunks), *shapes.get(("chunks", space), (0,))),)
-            self._spaces[space] = max(group.space, self._spaces.get(space, 0))
+        for number, group in enumerate(groups):
+            shapes["chunks", number] = group.chunks
             if stresses is None:
                 shapes["stress", number] = group.points
         room = Arena(shapes)
         self.works: list[Work] = []
-        for number, (group, space) in enumerate(zip(groups, which, strict=True)):
+        for number, group in enumerate(groups):
             table = tables[number]
             addresses[number] = at_tables + size * record.BLOCK_FIELDS * number
             if stresses is None:
@@ -104,15 +92,13 @@ class Assembler:
             else:
                 stress = np.ascontiguousarray(stresses[number], dtype=float)
                 stress_address = address_of(stress)
-            rows = room.arrays["chunks", space][: prod(group.chunks)].reshape(group.chunks)
+            rows = room.arrays["chunks", number]
             if group.constant is not None:
                 rows[:] = group.constant
-            table[record.CHUNKS], table[record.STRESS] = room.addresses["chunks", space], stress_address
-            table[record.SHARED] = int(spaces is not None)
-            table[record.FILLED] = at_lists + size * (2 * count + 3 * first[space])
+            table[record.CHUNKS], table[record.STRESS] = room.addresses["chunks", number], stress_address
+            table[record.FILLED] = at_lists + size * (2 * count + 3 * number)
             self.works.append(Work(group, table, int(addresses[number]), rows, stress))
-        self._which = which
-        self.scratch = sum(WIDTH + size for size in self._spaces.values())
+        self.scratch = sum(WIDTH + group.space for group in groups)
         self.numbers = self.scratch + sum(array.size for array in room.arrays.values())
         self._room, self._factors, self._acting = room, room.arrays["factors"], (np.empty(0),)
         self._natural: tuple[np.ndarray, ...] = ()
@@ -130,13 +116,11 @@ class Assembler:
         """Use scratch memory of at least `scratch` floats; its contents are overwritten."""
         if scratch.user is self and self._scratch is scratch.memory:
             return  # the element tables in it are still valid
-        self._scratch, address, addresses = scratch.memory, scratch.address, {}
-        for space, size in self._spaces.items():
+        self._scratch, address = scratch.memory, scratch.address
+        for work in self.works:
             address += -address % (8 * WIDTH)  # vectors of lanes must not straddle two cache lines
-            addresses[space] = address
-            address += 8 * size
-        for work, space in zip(self.works, self._which, strict=True):
-            work.table[record.SPACE] = addresses[space]
+            work.table[record.SPACE] = address
+            address += 8 * work.group.space
         self._filled[:] = 0
         scratch.user = self
 
@@ -302,13 +286,6 @@ class Assembler:
             node_passes.place_nodes(work.address, self.address, 0)
             smallest = min(smallest, model_passes.smallest_jacobian(work.address))
         return smallest
-
-
-def _space(group: ElementGroup, number: int, spaces: Sequence[int] | None) -> Hashable:
-    """Return the key of the workspace of a group, which is shared if its rows match and none of them is constant."""
-    if spaces is None or group.constant is not None:
-        return number
-    return spaces[number], int(group.table[record.CURVATURE]), int(group.table[record.TABLE_ROWS])
 
 
 def _imposed(group: ElementGroup, factors: np.ndarray) -> np.ndarray | None:

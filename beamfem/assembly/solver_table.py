@@ -6,21 +6,11 @@ from functools import cache
 import numpy as np
 
 from beamfem.assembly.layout import Unknowns
-from beamfem.kernels import (
-    model_passes,
-    motion_stages,
-    motion_steps,
-    newton,
-    record,
-    rollers,
-    tile_stages,
-    two_threads,
-)
+from beamfem.kernels import model_passes, motion_stages, motion_steps, newton, record, rollers
 from beamfem.kernels.band import Band, band
+from beamfem.kernels.bidirectional_lu import SHORT, BidirectionalLU, bidirectional_lu
 from beamfem.kernels.compiling import Routine
 from beamfem.kernels.pointers import address_of
-from beamfem.kernels.two_sided import SHORT, TwoSided, two_sided
-from beamfem.kernels.two_sided_parts import TwoSidedParts, two_sided_parts
 
 
 class SolverTable:
@@ -54,13 +44,13 @@ class SolverTable:
             table[field] = address
         return table
 
-    def routines(self, moving: bool, in_two: bool = False) -> np.ndarray:
-        """Return the addresses of the routines of the static or dynamic driver; in_two: for a chain in two halves."""
-        return _driver_routines(self.half_width, moving, int(self._table[record.UNKNOWN]) < SHORT, in_two)
+    def routines(self, moving: bool) -> np.ndarray:
+        """Return the addresses of the routines of the static or dynamic driver."""
+        return _driver_routines(self.half_width, moving, int(self._table[record.UNKNOWN]) < SHORT)
 
 
 @cache
-def _driver_routines(half_width: int, moving: bool, short: bool, in_two: bool) -> np.ndarray:
+def _driver_routines(half_width: int, moving: bool, short: bool) -> np.ndarray:
     """Return the addresses of the routines that the static or dynamic driver calls for a band of this half width."""
     routines = {
         record.BALANCE: model_passes.balance,
@@ -71,8 +61,7 @@ def _driver_routines(half_width: int, moving: bool, short: bool, in_two: bool) -
         record.ROTATE_BACK: rollers.rotate_back,
     }
     if moving:
-        routines |= _of_motions()
-        routines |= _of_parts(two_sided_parts(half_width)) if in_two else _of_all(two_sided(half_width, short))
+        routines |= _of_motions(bidirectional_lu(half_width, short))
     else:
         routines |= _of_statics(band(half_width))
     table = np.zeros(record.SOLVER_ROUTINES, dtype=np.int64)
@@ -89,7 +78,7 @@ def _of_statics(own: Band) -> dict[int, Routine]:
     }
 
 
-def _of_motions() -> dict[int, Routine]:
+def _of_motions(own: BidirectionalLU) -> dict[int, Routine]:
     return {
         record.KEEP_DIRECTIONS: motion_steps.keep_directions,
         record.ROTATIONS_SINCE: motion_steps.rotations_since,
@@ -97,30 +86,10 @@ def _of_motions() -> dict[int, Routine]:
         record.COUNT_ROTATIONS: motion_steps.count_rotations,
         record.PREDICT: motion_stages.predict,
         record.COMPLETE: motion_stages.complete,
-    }
-
-
-def _of_all(own: TwoSided) -> dict[int, Routine]:
-    return {
         record.FACTOR_BOTH: own.factor,
         record.SOLVE_BOTH: own.solve,
         record.ASSEMBLE: motion_stages.assemble,
         record.FACTORISE: motion_stages.factorise,
         record.SOLVE: motion_stages.solve,
         record.CORRECT: motion_stages.correct,
-    }
-
-
-def _of_parts(own: TwoSidedParts) -> dict[int, Routine]:
-    return {
-        record.FACTOR_PART: own.factor,
-        record.LOWER_PART: own.lower,
-        record.UPPER_PART: own.upper,
-        record.IN_TWO: two_threads.in_two,
-        record.ASSEMBLE: tile_stages.assemble,
-        record.FACTORISE: tile_stages.factorise,
-        record.SOLVE: tile_stages.solve,
-        record.CORRECT: tile_stages.correct,
-        record.LOWER_REST: tile_stages.lower_rest,
-        record.SUBSTITUTE: tile_stages.substitute,
     }

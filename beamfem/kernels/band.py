@@ -55,7 +55,7 @@ def _band(known: int) -> Band:
     @routine("iiiisrrr", "d", case, fastmath=FAST)
     def factor(n, count, half, eliminates, reach, ab, right, original):
         """Take the first `count` pivots, see `elimination`."""
-        return _eliminate(n, count, 0, count, half, eliminates, reach, ab, right, original)
+        return _eliminate(n, count, half, eliminates, reach, ab, right, original)
 
     return Band(factor, *(_solves(known, case) if known else (_solve_lower, _solve_upper)))
 

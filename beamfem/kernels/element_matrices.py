@@ -134,7 +134,7 @@ def add_matrices(group, system, first, count, k):
         b[r.COORDINATES],
         b[r.HALF_WIDTH],
     )
-    matrix = at(reals(s[r.MATRIX]), b[r.FIRST_OF_MATRIX])
+    matrix = reals(s[r.MATRIX])
     if half >= 0:
         number = at(wholes(b[r.NUMBER]), first)
         _add_to_band(
@@ -169,7 +169,7 @@ def reduce_and_add(group, system, first, count, x):
         b[r.CURVATURE],
     )
     size, coordinates, half = 2 * vectors, b[r.COORDINATES], b[r.HALF_WIDTH]
-    matrix = at(reals(s[r.MATRIX]), b[r.FIRST_OF_MATRIX])
+    matrix = reals(s[r.MATRIX])
     _, e, _, _, _, _, _, _, _, k, _ = rows_of(nodes, vectors, b[r.POINTS], gathered, b[r.TABLE_ROWS])
     transform, k = at(x, (e + b[r.TRANSFORM]) * ROW), at(x, k * ROW)
     if dependent != 0:

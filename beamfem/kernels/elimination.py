@@ -15,13 +15,12 @@ _IN_ORDER = {"contract", "nsz"}  # two multiplications with addition for a numbe
 def elimination(known: int, case: str, backwards: bool) -> Routine:
     """Return the factorisation for a half width, 0: any; backwards: from the last row to the first.
 
-    eliminate(n, count, start, stop, half, eliminates, reach, ab, right, original): the smallest ratio of a pivot to the
-    row's original diagonal entry. reach (n,): end of the rows that a row and those above are coupled to, which are the
+    eliminate(n, count, half, eliminates, reach, ab, right, original): the smallest ratio of a pivot to the row's
+    original diagonal entry. reach (n,): end of the rows that a row and those above are coupled to, which are the
     only ones that change. right (n,): eliminated on the way if `eliminates`, `solve_upper` does the rest. original
     (count,): filled with the original diagonal entries, with the signs of the pivots; so many pivots are taken in all,
-    and the rows below keep what is left of the matrix, their Schur complement. A call takes those from `start`, which
-    is even, to `stop`, and needs the rows before stop + w only. Backwards ab, right and reach are the last entries, and
-    rows the last ones first.
+    and the rows below keep what is left of the matrix, their Schur complement. Backwards ab, right and reach are the
+    last entries, and rows the last ones first.
     """
     return _in_lanes(known, case, -1 if backwards else 1) if known else _one_by_one(case, -1 if backwards else 1)
 
@@ -73,21 +72,20 @@ def _in_lanes(w: int, case: str, way: int) -> Routine:
         """Return lanes in which the one after the end of a row is zero."""
         return merged(lanes, zeros(), WIDTH - 1) if way > 0 else merged(zeros(), lanes, 1)
 
-    @routine("iiiiiisrrr", "d", case, fastmath=_IN_ORDER)
-    def eliminate(n, count, start, stop, half, eliminates, reach, ab, right, original):
+    @routine("iiiisrrr", "d", case, fastmath=_IN_ORDER)
+    def eliminate(n, count, half, eliminates, reach, ab, right, original):
         worst, ones = 1.0, zeros() + 1.0
-        if start == 0:
-            for i in range(min(count, w)):
-                original[i] = abs(ab[way * (i * width + w)])
+        for i in range(min(count, w)):
+            original[i] = abs(ab[way * (i * width + w)])
         # entries are multiplied in a unit near their size, as the square of 1e200 is too large for a number; a power of
         # two changes no digit
         size = 1.0
-        if start < stop:
+        if count > 0:
             size = power_of_two(original[0])
             if size == 0.0:
                 return 0.0
         unit = 1.0 / size
-        for k in range(start, stop, 2):
+        for k in range(0, count, 2):
             top = at(ab, way * k * width)
             if k + w < count:
                 original[k + w] = abs(ab[way * ((k + w) * width + w)])
@@ -98,7 +96,7 @@ def _in_lanes(w: int, case: str, way: int) -> Routine:
                 worst = abs(a) / original[k]
             original[k] = _signed(original[k], a)
             inverse = 1.0 / a
-            if k + 1 == stop:
+            if k + 1 == count:
                 _take_pivot(way, k, n, w, inverse, eliminates, ab, right)
                 break
             below = at(ab, way * (k + 1) * width)
@@ -161,13 +159,12 @@ def _in_lanes(w: int, case: str, way: int) -> Routine:
 
 
 def _one_by_one(case: str, way: int) -> Routine:
-    @routine("iiiiiisrrr", "d", case, fastmath=FAST)
-    def eliminate(n, count, start, stop, half, eliminates, reach, ab, right, original):
+    @routine("iiiisrrr", "d", case, fastmath=FAST)
+    def eliminate(n, count, half, eliminates, reach, ab, right, original):
         w, width, worst = half, 2 * half + 1, 1.0
-        if start == 0:
-            for i in range(min(count, w)):
-                original[i] = abs(ab[way * (i * width + w)])
-        for k in range(start, stop, 2):
+        for i in range(min(count, w)):
+            original[i] = abs(ab[way * (i * width + w)])
+        for k in range(0, count, 2):
             top = at(ab, way * k * width)
             if k + w < count:
                 original[k + w] = abs(ab[way * ((k + w) * width + w)])
@@ -176,7 +173,7 @@ def _one_by_one(case: str, way: int) -> Routine:
             worst = min(worst, abs(top[way * w]) / original[k])
             inverse = 1.0 / top[way * w]
             original[k] = _signed(original[k], inverse)
-            if k + 1 == stop:
+            if k + 1 == count:
                 _take_pivot(way, k, n, w, inverse, eliminates, ab, right)
                 break
             top[way * w] = inverse

@@ -17,13 +17,13 @@ def padded(n):
     return (n + WIDTH - 1) // WIDTH * WIDTH
 
 
-def difference_rows(n: int, parts: int = 1) -> int:
+def difference_rows(n: int) -> int:
     """Return the size of the array for the backward differences of n accelerations.
 
-    It contains the differences (MOST, padded(n)) and, for the choice of the order, sums (parts, MOST + 1, WIDTH) of the
+    It contains the differences (MOST, padded(n)) and, for the choice of the order, sums (MOST + 1, WIDTH) of the
     squared errors of the extrapolations of order 0 to MOST.
     """
-    return MOST * -(-n // WIDTH) * WIDTH + parts * (MOST + 1) * WIDTH
+    return MOST * -(-n // WIDTH) * WIDTH + (MOST + 1) * WIDTH
 
 
 @inlined
@@ -41,15 +41,23 @@ def alternates(difference, higher):
     return difference * (1.5 * difference - higher)
 
 
-@inlined
-def predict_part(first, end, n, prescribed, order, state, before, differences, dofs, values, rule):
-    """Do what `predict` does for the coordinates from `first` to `end`."""
+@routine("iidrrrnrr")
+def predict(n, prescribed, order, state, before, differences, dofs, values, rule):
+    """Store the state (4, n) in `before` and predict the end of the step; prescribed coordinates take their `values`.
+
+    The acceleration is extrapolated by a polynomial through the last steps: order 0 keeps it constant, order 1 is
+    linear, and so on; order -1 keeps p constant instead, which adds no strain if stiff parts oscillate within a step.
+    Where the second difference changed its sign in the last step, as that of parts does whose period is shorter than a
+    few steps, the error of orders 1 and 2 is expected to change its sign again.
+    values (3, prescribed): of p, p' and p''; differences: see `difference_rows`, at least `order` of them known, the
+    others zero; rule: see `motion_record`, without the order.
+    """
     h, alpha_m, alpha_f, gamma, beta = rule[TIME_STEP], rule[ALPHA_M], rule[ALPHA_F], rule[GAMMA], rule[BETA]
     kept, mean, fraction = 1.0 / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m), (1.0 - alpha_f) / (1.0 - alpha_m)
     length, lanes, now, then = padded(n), as_rows(differences), as_rows(state), as_rows(before)
-    whole = first + (end - first) // WIDTH * WIDTH
+    whole = n // WIDTH * WIDTH
     alternating, last = 1.0 <= order < MOST, length * int(order)
-    for i in range(first, whole, WIDTH):
+    for i in range(0, whole, WIDTH):
         p, v, a, mean_a = now[i], now[n + i], now[2 * n + i], now[3 * n + i]
         then[i], then[n + i], then[2 * n + i], then[3 * n + i] = p, v, a, mean_a
         ahead = zeros()
@@ -64,7 +72,7 @@ def predict_part(first, end, n, prescribed, order, state, before, differences, d
         now[i] = p + h * v + h * h * ((0.5 - beta) * mean_a + beta * new)
         now[n + i] = v + h * ((1.0 - gamma) * mean_a + gamma * new)
         now[2 * n + i] = a + ahead
-    for i in range(whole, end):
+    for i in range(whole, n):
         last_p, last_v, last_a, last_mean = state[i], state[n + i], state[2 * n + i], state[3 * n + i]
         for k in range(4):
             before[k * n + i] = state[k * n + i]
@@ -81,23 +89,8 @@ def predict_part(first, end, n, prescribed, order, state, before, differences, d
         state[n + i] = last_v + h * ((1.0 - gamma) * last_mean + gamma * next_a)
         state[2 * n + i] = last_a + change
     for i in range(prescribed):
-        if first <= dofs[i] and dofs[i] < end:
-            for k in range(3):
-                state[k * n + dofs[i]] = values[k * prescribed + i]
-
-
-@routine("iidrrrnrr")
-def predict(n, prescribed, order, state, before, differences, dofs, values, rule):
-    """Store the state (4, n) in `before` and predict the end of the step; prescribed coordinates take their `values`.
-
-    The acceleration is extrapolated by a polynomial through the last steps: order 0 keeps it constant, order 1 is
-    linear, and so on; order -1 keeps p constant instead, which adds no strain if stiff parts oscillate within a step.
-    Where the second difference changed its sign in the last step, as that of parts does whose period is shorter than a
-    few steps, the error of orders 1 and 2 is expected to change its sign again.
-    values (3, prescribed): of p, p' and p''; differences: see `difference_rows`, at least `order` of them known, the
-    others zero; rule: see `motion_record`, without the order.
-    """
-    predict_part(0, n, n, prescribed, order, state, before, differences, dofs, values, rule)
+        for k in range(3):
+            state[k * n + dofs[i]] = values[k * prescribed + i]
 
 
 @inlined
@@ -112,66 +105,14 @@ def errors_of_orders(second, third, second_before, third_before):
 
 
 @inlined
-def complete_part(part, first, end, n, prescribed, state, before, differences, inverse_scale, dofs, rule, statistics):
-    """Do what `complete` does, except for the choice of the order, for the coordinates from `first` to `end`.
-
-    The sums of squared errors are stored for `best_order`.
-    """
-    alpha_m, alpha_f = rule[ALPHA_M], rule[ALPHA_F]
-    new, old, mean = (1.0 - alpha_f) / (1.0 - alpha_m), alpha_f / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m)
-    # differences that are not known yet stay zero
-    known = statistics[KNOWN_DIFFERENCES]
-    has_second, has_third = 1.0 if known > 0.0 else 0.0, 1.0 if known > 1.0 else 0.0
-    length, rest, sum_0, sum_1, sum_2, sum_3 = padded(n), 0.0, zeros(), zeros(), zeros(), zeros()
-    lanes, weight, now, then = as_rows(differences), as_rows(inverse_scale), as_rows(state), as_rows(before)
-    errors, largest_change = MOST * length + part * (MOST + 1) * WIDTH, zeros()
-    whole = first + (end - first) // WIDTH * WIDTH
-    for i in range(first, whole, WIDTH):
-        a, last_a, factor = now[2 * n + i], then[2 * n + i], weight[i]
-        now[3 * n + i] = new * a + old * last_a - mean * then[3 * n + i]
-        change = a - last_a
-        largest_change = larger(largest_change, change * factor)
-        one, two, three = lanes[i], lanes[length + i], lanes[2 * length + i]
-        second, third = change - one, change - one - two
-        by_1, by_2, by_3 = errors_of_orders(second, third, two, three)
-        lanes[i], lanes[length + i], lanes[2 * length + i] = change, has_second * second, has_third * third
-        by_0, by_1, by_2, by_3 = factor * change, factor * by_1, factor * by_2, factor * by_3
-        sum_0, sum_1, sum_2, sum_3 = sum_0 + by_0 * by_0, sum_1 + by_1 * by_1, sum_2 + by_2 * by_2, sum_3 + by_3 * by_3
-    lanes[errors], lanes[errors + WIDTH], lanes[errors + 2 * WIDTH], lanes[errors + 3 * WIDTH] = (
-        sum_0,
-        sum_1,
-        sum_2,
-        sum_3,
-    )
-    for i in range(whole, end):
-        state[3 * n + i] = new * state[2 * n + i] + old * before[2 * n + i] - mean * before[3 * n + i]
-        difference = state[2 * n + i] - before[2 * n + i]
-        rest = larger_of(rest, abs(difference * inverse_scale[i]))
-        d_1, d_2, d_3 = differences[i], differences[length + i], differences[2 * length + i]
-        differences[i], differences[length + i] = difference, has_second * (difference - d_1)
-        differences[2 * length + i] = has_third * (difference - d_1 - d_2)
-        error_1, error_2, error_3 = errors_of_orders(difference - d_1, difference - d_1 - d_2, d_2, d_3)
-        own = at(differences, errors + i - whole)
-        own[0] += (inverse_scale[i] * difference) ** 2
-        own[WIDTH] += (inverse_scale[i] * error_1) ** 2
-        own[2 * WIDTH] += (inverse_scale[i] * error_2) ** 2
-        own[3 * WIDTH] += (inverse_scale[i] * error_3) ** 2
-    for i in range(prescribed):
-        if first <= dofs[i] and dofs[i] < end:
-            state[3 * n + dofs[i]] = state[2 * n + dofs[i]]
-    return larger_of(largest(largest_change), rest)
-
-
-@inlined
-def best_order(parts, n, state, before, differences, inverse_scale, rule, statistics):
+def _choose_order(n, state, before, differences, inverse_scale, rule, statistics):
     """Set the order of extrapolation that would have been best for this step, and the number of known differences."""
     top = min(int(statistics[KNOWN_DIFFERENCES]), int(statistics[BEST_ORDER]) + 1)
     order, least, errors = 0, math.inf, MOST * padded(n)
     for k in range(top + 1):
         error = 0.0
-        for part in range(parts):
-            for i in range(WIDTH):
-                error += differences[errors + (part * (MOST + 1) + k) * WIDTH + i]
+        for i in range(WIDTH):
+            error += differences[errors + k * WIDTH + i]
         if error < least:
             order, least = k, error
     # order -1 is better if p changed by less than half of the change that corresponds to that of the acceleration
@@ -194,6 +135,46 @@ def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rul
     `motion_record`, updated are the order of `predict` that would have been best, at most one more than the last one,
     and the number of known differences.
     """
-    change = complete_part(0, 0, n, n, prescribed, state, before, differences, inverse_scale, dofs, rule, statistics)
-    best_order(1, n, state, before, differences, inverse_scale, rule, statistics)
-    return change
+    alpha_m, alpha_f = rule[ALPHA_M], rule[ALPHA_F]
+    new, old, mean = (1.0 - alpha_f) / (1.0 - alpha_m), alpha_f / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m)
+    # differences that are not known yet stay zero
+    known = statistics[KNOWN_DIFFERENCES]
+    has_second, has_third = 1.0 if known > 0.0 else 0.0, 1.0 if known > 1.0 else 0.0
+    length, rest, sum_0, sum_1, sum_2, sum_3 = padded(n), 0.0, zeros(), zeros(), zeros(), zeros()
+    lanes, weight, now, then = as_rows(differences), as_rows(inverse_scale), as_rows(state), as_rows(before)
+    errors, largest_change = MOST * length, zeros()
+    whole = n // WIDTH * WIDTH
+    for i in range(0, whole, WIDTH):
+        a, last_a, factor = now[2 * n + i], then[2 * n + i], weight[i]
+        now[3 * n + i] = new * a + old * last_a - mean * then[3 * n + i]
+        change = a - last_a
+        largest_change = larger(largest_change, change * factor)
+        one, two, three = lanes[i], lanes[length + i], lanes[2 * length + i]
+        second, third = change - one, change - one - two
+        by_1, by_2, by_3 = errors_of_orders(second, third, two, three)
+        lanes[i], lanes[length + i], lanes[2 * length + i] = change, has_second * second, has_third * third
+        by_0, by_1, by_2, by_3 = factor * change, factor * by_1, factor * by_2, factor * by_3
+        sum_0, sum_1, sum_2, sum_3 = sum_0 + by_0 * by_0, sum_1 + by_1 * by_1, sum_2 + by_2 * by_2, sum_3 + by_3 * by_3
+    lanes[errors], lanes[errors + WIDTH], lanes[errors + 2 * WIDTH], lanes[errors + 3 * WIDTH] = (
+        sum_0,
+        sum_1,
+        sum_2,
+        sum_3,
+    )
+    for i in range(whole, n):
+        state[3 * n + i] = new * state[2 * n + i] + old * before[2 * n + i] - mean * before[3 * n + i]
+        difference = state[2 * n + i] - before[2 * n + i]
+        rest = larger_of(rest, abs(difference * inverse_scale[i]))
+        d_1, d_2, d_3 = differences[i], differences[length + i], differences[2 * length + i]
+        differences[i], differences[length + i] = difference, has_second * (difference - d_1)
+        differences[2 * length + i] = has_third * (difference - d_1 - d_2)
+        error_1, error_2, error_3 = errors_of_orders(difference - d_1, difference - d_1 - d_2, d_2, d_3)
+        own = at(differences, errors + i - whole)
+        own[0] += (inverse_scale[i] * difference) ** 2
+        own[WIDTH] += (inverse_scale[i] * error_1) ** 2
+        own[2 * WIDTH] += (inverse_scale[i] * error_2) ** 2
+        own[3 * WIDTH] += (inverse_scale[i] * error_3) ** 2
+    for i in range(prescribed):
+        state[3 * n + dofs[i]] = state[2 * n + dofs[i]]
+    _choose_order(n, state, before, differences, inverse_scale, rule, statistics)
+    return larger_of(largest(largest_change), rest)

@@ -8,16 +8,8 @@ from beamfem.kernels.motion_steps import RATIO
 from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 
 _constrain, _predict, _jacobian, _count = caller("iiirnr"), caller("iii"), caller("i", "d"), caller("inrrr")
-_stage, _in_two, _place = caller("iiii", "d"), caller("iiii", "d"), caller("iii")
+_stage = caller("iii", "d")
 _check_convergence = inlined(motion_steps.check_convergence)
-
-
-@inlined
-def _run(stage, system, solver, calls, b, call):
-    """Do a stage for the whole model; return the largest of its results."""
-    if b[r.PARTS] == 1:
-        return _stage(stage, 0, system, solver, calls)
-    return _in_two(call[r.IN_TWO], stage, system, solver, calls)
 
 
 @inlined
@@ -36,29 +28,12 @@ def _predict_resultants(s, b, call, system):
 
 
 @inlined
-def _is_inside_out(s, call, system):
+def _is_inside_out(s, call):
     """Return whether the last state has r0' x d <= 0 at a quadrature point: no motion leads there."""
     groups, smallest = wholes(s[r.GROUP_RECORDS]), 1.0
     for group in range(s[r.GROUPS]):
-        record = wholes(groups[group])
-        if record[r.SHARED] != 0:  # by now other nodes are in the chunks
-            _place(wholes(record[r.ROUTINES])[r.PLACE_NODES], groups[group], system, 0)
         smallest = min(smallest, _jacobian(call[r.SMALLEST_JACOBIAN], groups[group]))
     return not smallest > 0.0
-
-
-@routine("iii", "d")
-def solve_once(system, solver, calls):
-    """Solve the equations in a state with a tangent formed there; return the smallest pivot ratio.
-
-    `RIGHT`: the correction, which is not added to the state.
-    """
-    s, b, call = wholes(system), wholes(solver), wholes(calls)
-    s[r.TANGENT], s[r.PREDICTED], b[r.ROTATIONS_WANTED], b[r.STEP_WANTED] = 1, 0, 1, 1
-    pivots = _run(call[r.ASSEMBLE], system, solver, calls, b, call)
-    pivots = max(pivots, _run(call[r.FACTORISE], system, solver, calls, b, call))
-    _stage(call[r.SOLVE], 0, system, solver, calls)
-    return -pivots
 
 
 @routine("iii", "i")
@@ -110,7 +85,7 @@ def march(system, solver, calls):
         b[r.NOW] = step
         b[r.PRESCRIBED_NOW] = b[r.PRESCRIBED_VALUES] + 24 * fixed * step
         rule[m.ORDER] = statistics[m.BEST_ORDER]
-        _run(call[r.PREDICT], system, solver, calls, b, call)
+        _stage(call[r.PREDICT], system, solver, calls)
         size, first_size, iteration, far = 0.0, 0.0, 0, 0
         full, fresh, done = 0, statistics[m.RATE] < 0.0, 0
         rate = at(space, n)
@@ -119,19 +94,18 @@ def march(system, solver, calls):
             renew = full != 0 or fresh
             s[r.TANGENT], s[r.PREDICTED] = renew, full != 0 and iteration > 0
             b[r.ROTATIONS_WANTED] = iteration == 0 or renew
-            pivots = _run(call[r.ASSEMBLE], system, solver, calls, b, call)
+            _stage(call[r.ASSEMBLE], system, solver, calls)
             if renew:
                 if b[r.ROLLERS] > 0:
                     first_of, normal = wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL])
                     _constrain(call[r.CONSTRAIN_NORMALS], unknown, half, b[r.ROLLERS], rows, first_of, normal)
-                pivots = max(pivots, _run(call[r.FACTORISE], system, solver, calls, b, call))
-                statistics[m.PIVOT_RATIO] = min(statistics[m.PIVOT_RATIO], -pivots)
+                pivots = _stage(call[r.FACTORISE], system, solver, calls)
+                statistics[m.PIVOT_RATIO] = min(statistics[m.PIVOT_RATIO], pivots)
                 statistics[m.TANGENTS] += 1.0
-            b[r.STEP_WANTED] = full != 0
-            _stage(call[r.SOLVE], 0, system, solver, calls)
+            _stage(call[r.SOLVE], system, solver, calls)
             if full != 0:
                 _predict_resultants(s, b, call, system)
-            last, size = size, _run(call[r.CORRECT], system, solver, calls, b, call)
+            last, size = size, _stage(call[r.CORRECT], system, solver, calls)
             iteration += 1
             statistics[m.ITERATIONS] += 1.0
             statistics[m.CORRECTION] = size
@@ -154,7 +128,7 @@ def march(system, solver, calls):
             if (
                 done == motion_steps.CONVERGED
                 and (full != 0 or first_size > motion_steps.FAR)
-                and _is_inside_out(s, call, system)
+                and _is_inside_out(s, call)
             ):
                 done = motion_steps.DIVERGED
             fresh = done == motion_steps.RENEW
@@ -176,7 +150,7 @@ def march(system, solver, calls):
                 # of the first step nothing is known
                 stays = statistics[m.BEST_ORDER] < 0.0 or statistics[m.KNOWN_DIFFERENCES] == 0.0
                 rule[m.ORDER] = -1.0 if stays == (full == 0) else 0.0
-                _run(call[r.PREDICT], system, solver, calls, b, call)
+                _stage(call[r.PREDICT], system, solver, calls)
                 full, iteration = full + 1, 0
         statistics[m.MOST_ITERATIONS] = max(statistics[m.MOST_ITERATIONS], iteration)
         slow = iteration > limits[m.MANY_ITERATIONS] or (iteration > 1 and rate[RATIO] > limits[m.SLOW_RATE])
@@ -185,7 +159,7 @@ def march(system, solver, calls):
             for i in range(4 * n):
                 state[i] = before[i]
             return step
-        statistics[m.CHANGE] = _run(call[r.COMPLETE], system, solver, calls, b, call) / factors[r.WEIGHT_A]
+        statistics[m.CHANGE] = _stage(call[r.COMPLETE], system, solver, calls) / factors[r.WEIGHT_A]
         _count(call[r.COUNT_ROTATIONS], b[r.ROTATION_COUNT], wholes(b[r.ROTATION_TABLE]), before, state, rotated_by)
         if (b[r.FIRST_STEP] + step) % every == 0:
             row = (b[r.FIRST_STEP] + step) // every

@@ -13,13 +13,13 @@ _node_rates, _release = caller("iiiiiinrrr"), caller("iiiiirr")
 
 
 @inlined
-def clear(s, first, end, first_entry, end_entry):
-    """Set a range of the residual and, if the tangent is needed, a range of the entries of the matrix to zero."""
+def clear(s):
+    """Set the residual and, if the tangent is needed, the entries of the matrix to zero."""
     residual, matrix = reals(s[r.RESIDUAL]), reals(s[r.MATRIX])
-    for i in range(first, end):
+    for i in range(s[r.SIZE]):
         residual[i] = 0.0
     if s[r.TANGENT] != 0:
-        for i in range(first_entry, end_entry):
+        for i in range(s[r.ENTRIES]):
             matrix[i] = 0.0
 
 
@@ -37,8 +37,8 @@ def add_group(s, system, number):
 
 
 @inlined
-def add_springs(s, first, end):
-    """Add the forces of some springs to the ground to the residual and, if needed, their stiffness to the matrix."""
+def add_springs(s):
+    """Add the forces of springs to the ground to the residual and, if needed, their stiffness to the matrix."""
     p, dof, factor = reals(s[r.COORDINATES_P]), wholes(s[r.SPRING_DOF]), reals(s[r.FACTORS])[r.WEIGHT_P]
     residual, matrix, stiffness, rest, place = (
         reals(s[r.RESIDUAL]),
@@ -47,7 +47,7 @@ def add_springs(s, first, end):
         reals(s[r.SPRING_REST]),
         wholes(s[r.SPRING_PLACE]),
     )
-    for i in range(first, end):
+    for i in range(s[r.SPRINGS]):
         residual[dof[i]] += stiffness[i] * (p[dof[i]] - rest[i])
         if s[r.TANGENT] != 0 and place[i] >= 0:
             matrix[place[i]] += factor * stiffness[i]
@@ -58,10 +58,10 @@ def balance(system):
     """Fill the residual (n,) and, if the tangent is needed, the matrix of a model."""
     small_code()
     s = wholes(system)
-    clear(s, 0, s[r.SIZE], 0, s[r.ENTRIES])
+    clear(s)
     for group in range(s[r.GROUPS]):
         add_group(s, system, group)
-    add_springs(s, 0, s[r.SPRINGS])
+    add_springs(s)
 
 
 @routine("iiiiiinrrr", fastmath={"contract", "reassoc", "nsz"})
@@ -104,7 +104,7 @@ def rate_nodes(group, system, row):
             b[r.PARAMETERS],
             b[r.NODES],
             wholes(b[r.DOF]),
-            at(reals(s[r.COORDINATES_V]), b[r.FIRST_OF_STATE]),
+            reals(s[r.COORDINATES_V]),
             at(chunk, b[r.TRANSFORM] * ROW),
             at(chunk, row * ROW),
         )
@@ -133,7 +133,7 @@ def predict_resultants(group, system, placed):
     damped = b[r.DAMPED] != 0 and s[r.RATED] != 0
     cv = reals(s[r.FACTORS])[r.WEIGHT_V] if damped else 0.0
     rows = b[r.CURVATURE] if damped else 2 * size
-    if placed == 0 or b[r.SHARED] != 0:
+    if placed == 0:
         _three(call[r.PLACE_NODES], group, system, 0)
     _three(call[r.RATE_NODES], group, system, b[r.ACCELERATION])
     if damped:

@@ -1,4 +1,4 @@
-"""Stages of a time step: each does a part of a model, whose bounds stand in a table; see `record` for its fields."""
+"""Stages of a time step; see `record` for the fields of the tables."""
 
 from beamfem.kernels import extrapolation, model_passes, motion_steps, rollers
 from beamfem.kernels import motion_record as m
@@ -10,24 +10,17 @@ from beamfem.kernels.pointers import at, caller, reals, slots, small_code, whole
 
 _factor, _solve, _roll = caller("iisrr", "d"), caller("iirr"), caller("inrr")
 _rotate_pairs, _keep, _rotations = caller("idnirr"), caller("iiir"), caller("iiirr")
-_stay_on_planes = inlined(rollers.stay_on_planes)
+_predict, _complete = inlined(extrapolation.predict), inlined(extrapolation.complete)
+_correct, _stay_on_planes = inlined(motion_steps.correct), inlined(rollers.stay_on_planes)
 
 
-@inlined
-def bounds_of(b, part):
-    """Return the bounds of a part."""
-    return at(wholes(b[r.BOUNDS]), part * r.BOUND_FIELDS)
-
-
-@routine("iiii", "d")
-def predict(part, system, solver, calls):
-    """Start a step; the order of the extrapolation stands behind the rule."""
+@routine("iii", "d")
+def predict(system, solver, calls):
+    """Start a step; the order of the extrapolation is the last entry of the rule."""
     small_code()
     s, b = wholes(system), wholes(solver)
-    bounds, rule = bounds_of(b, part), reals(b[r.RULE])
-    extrapolation.predict_part(
-        bounds[r.FIRST_COORDINATE],
-        bounds[r.END_COORDINATE],
+    rule = reals(b[r.RULE])
+    _predict(
         s[r.SIZE],
         b[r.PRESCRIBED],
         rule[m.ORDER],
@@ -44,9 +37,9 @@ def predict(part, system, solver, calls):
     return 0.0
 
 
-@routine("iiii", "d")
-def assemble(part, system, solver, calls):
-    """Fill the residual and, if needed, the matrix; return -1, as nothing is factorised yet.
+@routine("iii", "d")
+def assemble(system, solver, calls):
+    """Fill the residual and, if needed, the matrix.
 
     With `ROTATIONS_WANTED`, also fill the rotations of sections since the last tangent; a new tangent stores their
     directions first.
@@ -54,7 +47,7 @@ def assemble(part, system, solver, calls):
     small_code()
     s, b, call = wholes(system), wholes(solver), wholes(calls)
     groups, kept, rotations, node = wholes(s[r.GROUP_RECORDS]), reals(b[r.KEPT]), reals(b[r.ROTATIONS]), 0
-    model_passes.clear(s, 0, s[r.SIZE], 0, s[r.ENTRIES])
+    model_passes.clear(s)
     for group in range(s[r.GROUPS]):
         model_passes.add_group(s, system, group)
         if b[r.ROTATIONS_WANTED] != 0:
@@ -62,13 +55,13 @@ def assemble(part, system, solver, calls):
                 _keep(call[r.KEEP_DIRECTIONS], groups[group], node, b[r.NODE_STRIDE], kept)
             _rotations(call[r.ROTATIONS_SINCE], groups[group], node, b[r.NODE_STRIDE], kept, rotations)
         node += wholes(groups[group])[r.NODES]
-    model_passes.add_springs(s, 0, s[r.SPRINGS])
-    return -1.0
+    model_passes.add_springs(s)
+    return 0.0
 
 
-@routine("iiii", "d")
-def factorise(part, system, solver, calls):
-    """Factor the tangent; return the smallest ratio of a pivot to the row's original diagonal entry, negative."""
+@routine("iii", "d")
+def factorise(system, solver, calls):
+    """Factor the tangent; return the smallest ratio of a pivot to the row's original diagonal entry."""
     b, call = wholes(solver), wholes(calls)
     unknown, half, reach, rows, space = (
         b[r.UNKNOWN],
@@ -77,7 +70,7 @@ def factorise(part, system, solver, calls):
         reals(b[r.ROWS]),
         reals(b[r.STEP]),
     )
-    return -_factor(call[r.FACTOR_BOTH], unknown, half, reach, rows, space)
+    return _factor(call[r.FACTOR_BOTH], unknown, half, reach, rows, space)
 
 
 @inlined
@@ -87,30 +80,30 @@ def _rotate_vectors(b, call, sense):
 
 
 @inlined
-def fill_right(s, b, first, end):
+def _fill_right(s, b):
     """Fill the right-hand side with the residual of unknown coordinates, negative."""
-    residual, right = reals(s[r.RESIDUAL]), reals(b[r.RIGHT])
+    residual, right, unknown = reals(s[r.RESIDUAL]), reals(b[r.RIGHT]), b[r.UNKNOWN]
     if b[r.FIRST_FREE] >= 0:
         lanes, source = as_rows(right), as_rows(at(residual, b[r.FIRST_FREE]))
-        whole = first + (end - first) // WIDTH * WIDTH
-        for i in range(first, whole, WIDTH):
+        whole = unknown // WIDTH * WIDTH
+        for i in range(0, whole, WIDTH):
             lanes[i] = -source[i]
-        for i in range(whole, end):
+        for i in range(whole, unknown):
             right[i] = -residual[b[r.FIRST_FREE] + i]
     else:
         free = wholes(b[r.FREE_DOFS])
-        for i in range(first, end):
+        for i in range(unknown):
             right[i] = -residual[free[i]]
 
 
-@routine("iiii", "d")
-def solve(part, system, solver, calls):
+@routine("iii", "d")
+def solve(system, solver, calls):
     """Solve for the correction with the kept tangent, rotated with the sections; it replaces the right-hand side."""
     small_code()
     s, b, call = wholes(system), wholes(solver), wholes(calls)
     unknown, rollers, right = b[r.UNKNOWN], b[r.ROLLERS], reals(b[r.RIGHT])
     first_of, normal = wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL])
-    fill_right(s, b, 0, unknown)
+    _fill_right(s, b)
     if rollers > 0:
         _roll(call[r.ROTATE_IN], rollers, first_of, normal, right)
     _rotate_vectors(b, call, -1.0)
@@ -121,15 +114,13 @@ def solve(part, system, solver, calls):
     return 0.0
 
 
-@inlined
-def correct_range(s, b, own):
-    """Add corrections to the state; own (4,): the range of coordinates, and that of the unknowns among them."""
-    return motion_steps.correct_part(
-        own[r.FIRST_COORDINATE],
-        own[r.END_COORDINATE],
-        own[r.FIRST_UNKNOWN],
-        own[r.END_UNKNOWN],
+@routine("iii", "d", fastmath=FAST)
+def correct(system, solver, calls):
+    """Add corrections to the state; return the largest, relative to its scale."""
+    s, b = wholes(system), wholes(solver)
+    return _correct(
         s[r.SIZE],
+        b[r.UNKNOWN],
         b[r.FIRST_FREE],
         reals(b[r.STATE]),
         reals(b[r.RIGHT]),
@@ -140,38 +131,18 @@ def correct_range(s, b, own):
     )
 
 
-@routine("iiii", "d", fastmath=FAST)
-def correct(part, system, solver, calls):
-    """Add corrections to the state; return the largest, relative to its scale."""
+@routine("iii", "d", fastmath=FAST)
+def complete(system, solver, calls):
+    """End a step and choose the order of the next one; return the largest change of p'', relative to its scale."""
     s, b = wholes(system), wholes(solver)
-    return correct_range(s, b, at(bounds_of(b, part), r.FIRST_COORDINATE))
-
-
-@routine("iiii", "d", fastmath=FAST)
-def complete(part, system, solver, calls):
-    """End a step; return the largest change of p'', relative to its scale. The last part chooses the order."""
-    s, b = wholes(system), wholes(solver)
-    bounds, n, rule, statistics = bounds_of(b, part), s[r.SIZE], reals(b[r.RULE]), reals(b[r.STATISTICS])
-    state, before, differences, scale = (
+    return _complete(
+        s[r.SIZE],
+        b[r.PRESCRIBED],
         reals(b[r.STATE]),
         reals(b[r.BEFORE]),
         reals(b[r.DIFFERENCES]),
         reals(b[r.INVERSE_SCALE]),
-    )
-    change = extrapolation.complete_part(
-        part,
-        bounds[r.FIRST_COORDINATE],
-        bounds[r.END_COORDINATE],
-        n,
-        b[r.PRESCRIBED],
-        state,
-        before,
-        differences,
-        scale,
         wholes(b[r.PRESCRIBED_DOFS]),
-        rule,
-        statistics,
+        reals(b[r.RULE]),
+        reals(b[r.STATISTICS]),
     )
-    if part == b[r.PARTS] - 1:
-        extrapolation.best_order(b[r.PARTS], n, state, before, differences, scale, rule, statistics)
-    return change

@@ -2,7 +2,7 @@
 
 import math
 
-from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.compiling import routine
 from beamfem.kernels.extrapolation import FAST, larger_of
 from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, zeros
 from beamfem.kernels.pointers import at, reals, small_code, wholes
@@ -40,29 +40,21 @@ RATIO, RATIO_BEFORE = range(2)  # of successive corrections
 _GROWTH = 2.0  # largest ratio of successive corrections of Newton's method from the second on; above, it diverges
 
 
-@inlined
-def correct_part(
-    first,
-    end,
-    first_unknown,
-    end_unknown,
-    n,
-    first_free,
-    state,
-    right,
-    free,
-    inverse_scale,
-    coefficients,
-    change,
-):
-    """Do what `correct` does for the coordinates from `first` to `end` and the unknowns among them."""
+@routine("iiirrnrrr", "d", fastmath=FAST)
+def correct(n, unknown, first_free, state, right, free, inverse_scale, coefficients, change):
+    """Add corrections (unknown,) to p, and their multiples to p' and p''; return the largest, relative to its scale.
+
+    first_free: number of the first unknown coordinate if all have consecutive numbers, else -1, and then `free`
+    (unknown,) has their numbers and the corrections are copied to change (padded(n),), which is zero elsewhere;
+    coefficients (3,): those of p, p' and p''.
+    """
     to_velocity, to_acceleration, size, rest = coefficients[WEIGHT_V], coefficients[WEIGHT_A], zeros(), 0.0
-    begin, source, offset = first, change, 0
+    begin, end, source, offset = 0, n, change, 0
     if first_free >= 0:
-        begin, end = first_unknown + first_free, end_unknown + first_free
+        begin, end = first_free, first_free + unknown
         source, offset = right, first_free
     else:
-        for i in range(first_unknown, end_unknown):
+        for i in range(unknown):
             change[free[i]] = right[i]
     lanes, weight, rows = as_rows(source), as_rows(inverse_scale), as_rows(state)
     whole = begin + (end - begin) // WIDTH * WIDTH
@@ -79,17 +71,6 @@ def correct_part(
         state[n + i] += to_velocity * value
         state[2 * n + i] += to_acceleration * value
     return larger_of(largest(size), rest)
-
-
-@routine("iiirrnrrr", "d", fastmath=FAST)
-def correct(n, unknown, first_free, state, right, free, inverse_scale, coefficients, change):
-    """Add corrections (unknown,) to p, and their multiples to p' and p''; return the largest, relative to its scale.
-
-    first_free: number of the first unknown coordinate if all have consecutive numbers, else -1, and then `free`
-    (unknown,) has their numbers and the corrections are copied to change (padded(n),), which is zero elsewhere;
-    coefficients (3,): those of p, p' and p''.
-    """
-    return correct_part(0, n, 0, unknown, n, first_free, state, right, free, inverse_scale, coefficients, change)
 
 
 @routine("iiiiddddrr", "i")

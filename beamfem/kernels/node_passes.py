@@ -50,9 +50,9 @@ def place_nodes(group, system, moving):
         reals(b[r.SPACE]),
     )
     p, v, a = (
-        at(reals(s[r.COORDINATES_P]), b[r.FIRST_OF_STATE]),
-        at(reals(s[r.COORDINATES_V]), b[r.FIRST_OF_STATE]),
-        at(reals(s[r.COORDINATES_A]), b[r.FIRST_OF_STATE]),
+        reals(s[r.COORDINATES_P]),
+        reals(s[r.COORDINATES_V]),
+        reals(s[r.COORDINATES_A]),
     )
     dependent, parameters, factors = b[r.DEPENDENT], b[r.PARAMETERS], reals(s[r.FACTORS])
     _clear_forces(b, chunks)
@@ -135,8 +135,8 @@ def finish_nodes(group, system):
         reals(b[r.SPACE]),
     )
     p, residual, dependent, parameters = (
-        at(reals(s[r.COORDINATES_P]), b[r.FIRST_OF_STATE]),
-        at(reals(s[r.RESIDUAL]), b[r.FIRST_OF_STATE]),
+        reals(s[r.COORDINATES_P]),
+        reals(s[r.RESIDUAL]),
         b[r.DEPENDENT],
         b[r.PARAMETERS],
     )
@@ -209,7 +209,7 @@ def finish_nodes(group, system):
                 b[r.HALF_WIDTH],
                 slots(b[r.SLOT]),
                 chunk,
-                at(reals(s[r.MATRIX]), b[r.FIRST_OF_MATRIX]),
+                reals(s[r.MATRIX]),
                 factor,
             )
             first += count

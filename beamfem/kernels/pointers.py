@@ -16,7 +16,6 @@ from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import RESULTS, operation
 from beamfem.kernels.compiler.kinds import KINDS, REALS, SLOTS, WHOLES, Kind, Value
 
-_FETCH = "llvm.prefetch.p0i8"
 _PLACE = c_char * 0  # an array may be empty
 
 
@@ -24,16 +23,6 @@ _PLACE = c_char * 0  # an array may be empty
 def at(build: Build, pointer: Value, count: Value) -> Value:
     """Return the pointer advanced by `count` entries."""
     return Value(pointer.kind, build.builder.gep(pointer.llvm, [count.llvm], inbounds=True))
-
-
-@operation
-def fetch(build: Build, pointer: Value, count: Value) -> None:
-    """Ask for the memory `count` entries ahead, so that it is in the cache when needed; any address is allowed."""
-    address = build.builder.gep(pointer.llvm, [count.llvm])
-    byte, number = ir.IntType(8).as_pointer(), ir.IntType(32)
-    callee = build.declared(_FETCH, ir.FunctionType(ir.VoidType(), [byte, number, number, number]))
-    constants = [ir.Constant(number, value) for value in (0, 3, 1)]  # to read, keep in all caches, data
-    build.builder.call(callee, [build.builder.bitcast(address, byte), *constants])
 
 
 @operation

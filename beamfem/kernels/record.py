@@ -71,19 +71,16 @@ LOAD_NUMBER = 53  # (nodes * coordinates, loads)
 FILLED = 54  # address (3,): tables, class or elements that are in the workspace, and the number of elements
 ROUTINES = 55  # address of a table of compiled functions
 COUNTED = 56  # address (elements,): 0, 1, 2, ...
-SHARED = 57  # whether other groups use the same chunks and workspace
-DAMPED = 58  # whether resultants depend on strain rates
-DAMPING = 59  # rows of a class: (1,) retardation time [s]
-VELOCITY = 60  # rows of a node: e', if resultants depend on it
-APART = 61  # whether the mass does not couple d with r0
-NATURAL = 62  # address (elements, points, measures): strains imposed by loads; 0 if there are none
-ORDERED = 63  # whether each node of an element has a greater number than the same node of the element before
-SOURCE = 64  # address (coordinates of a node, nodes), padded: as DOF with 0 for -1, so that lanes can be read blindly
-HISTORY = 65  # address (elements, points of the law, k): coordinates that are history variables of a law
-VARIABLES = 66  # k
-FIRST_OF_STATE = 67  # number of the coordinate from which those of the group are counted
-FIRST_OF_MATRIX = 68  # number of the entry of a band from which its entries are counted
-BLOCK_FIELDS = 69
+DAMPED = 57  # whether resultants depend on strain rates
+DAMPING = 58  # rows of a class: (1,) retardation time [s]
+VELOCITY = 59  # rows of a node: e', if resultants depend on it
+APART = 60  # whether the mass does not couple d with r0
+NATURAL = 61  # address (elements, points, measures): strains imposed by loads; 0 if there are none
+ORDERED = 62  # whether each node of an element has a greater number than the same node of the element before
+SOURCE = 63  # address (coordinates of a node, nodes), padded: as DOF with 0 for -1, so that lanes can be read blindly
+HISTORY = 64  # address (elements, points of the law, k): coordinates that are history variables of a law
+VARIABLES = 65  # k
+BLOCK_FIELDS = 66
 
 RUN_KIND, RUN_FIRST, RUN_LENGTH = range(3)
 RUN_FIELDS = 3
@@ -206,23 +203,12 @@ NATURALS = 40  # address of addresses, for each group (steps or 1, elements, poi
 NATURALS_VARY = 41
 CHANGE = 42  # address (padded(n),): corrections, zero for prescribed coordinates
 FIRST_FREE = 43  # number of the first unknown coordinate if all have consecutive numbers, else -1
-
-# ------------------------------------------------------------------ parts of a chain that stages of a step process
-PARTS = 44  # 1, or 3: two halves and the part between them
-BOUNDS = 45  # address (1 or 3, bounds): of each part
-PRESCRIBED_NOW = 46  # address (3, prescribed): in this step
-ROTATIONS_WANTED = 47  # whether it is asked how far sections have rotated since the last tangent
-REACH = 48  # address (2, unknown) of 32 bits: see `band.elimination`, downwards and backwards
-TILES = 49  # address (tiles, tile fields)
-ROWS_DOWN = 50  # rows eliminated downwards from the top, see `two_sided_parts`
-STEP_WANTED = 51  # whether corrections are needed before they are added to the state
-NODE_STRIDE = 52
-NOW = 53  # number of the step that is taken, of those of this call
-SOLVER_FIELDS = 54
-
-FIRST_COORDINATE, END_COORDINATE, FIRST_UNKNOWN, END_UNKNOWN = range(4)
-FIRST_TILE, END_TILE = range(4, 6)  # in the order in which the part processes them
-BOUND_FIELDS = 6
+PRESCRIBED_NOW = 44  # address (3, prescribed): in this step
+ROTATIONS_WANTED = 45  # whether the stage computes how far sections have rotated since the last tangent
+REACH = 46  # address (2, unknown) of 32 bits: see `band.elimination`, downwards and backwards
+NODE_STRIDE = 47
+NOW = 48  # number of the step that is taken, of those of this call
+SOLVER_FIELDS = 49
 
 # ------------------------------------------------------------------ runs of vectors that rotate with their section
 PAIR_X, PAIR_Y = range(2)  # equation numbers of the first
@@ -231,35 +217,11 @@ PAIR_STEP = 3  # from one equation number to the next
 PAIR_COUNT = 4
 PAIR_FIELDS = 5
 
-# ------------------------------------------------------------------ a tile: a group of a long chain
-TILE_GROUP = 0
-TILE_NODE = 1  # number of its first node in the storage order of the chain
-# what no tile before has
-NEW_COORDINATE, END_NEW_COORDINATE, NEW_UNKNOWN, END_NEW_UNKNOWN = range(2, 6)
-# what no later tile has, so that it is complete with this one
-DONE_COORDINATE, END_DONE_COORDINATE, DONE_UNKNOWN, END_DONE_UNKNOWN, DONE_SPRING, END_DONE_SPRING = range(6, 12)
-# of its unknowns: as `RUNS_OF_PAIRS`, but counted from DONE_UNKNOWN and TILE_NODE
-TILE_RUNS_OF_PAIRS, TILE_PAIR_TABLE = range(12, 14)
-# rows, from the end of the part, that can be eliminated before this tile and with it: `two_sided_parts.whole_blocks`
-ROWS_BEFORE, ROWS_WITH = range(14, 16)
-TILE_FIELDS = 16
-
-# ------------------------------------------------------------------ the job of the second of two threads
-JOB_STATE = 0  # alone in its cache line, which both threads poll
-JOB_STAGE = 8
-JOB_SYSTEM = 9
-JOB_SOLVER = 10
-JOB_CALLS = 11
-JOB_RESULT = 12
-JOB_SERVED = 13  # whether there is a second thread
-JOB_YIELD = 14  # address of the system's function that yields the core to other threads, 0 if there is none
-JOB_FIELDS = 16
-
 (
     BALANCE,
     FACTOR,
     SOLVE_UPPER,
-    FACTOR_BOTH,  # from both ends, see `two_sided`
+    FACTOR_BOTH,  # from both ends, see `bidirectional_lu`
     SOLVE_BOTH,
     PREDICT_RESULTANTS,
     SMALLEST_JACOBIAN,
@@ -278,13 +240,5 @@ JOB_FIELDS = 16
     SOLVE,
     CORRECT,
     COMPLETE,
-    # long chains
-    IN_TWO,
-    JOB,  # address of the job of the second thread
-    LOWER_REST,
-    SUBSTITUTE,
-    FACTOR_PART,
-    LOWER_PART,
-    UPPER_PART,
-) = range(28)
-SOLVER_ROUTINES = 28
+) = range(21)
+SOLVER_ROUTINES = 21

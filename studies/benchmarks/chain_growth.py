@@ -1,13 +1,12 @@
 """How time and memory grow with one chain of 1000 to 1,000,000 elements; each size in a process of its own.
 
 The cantilever under P L^2 / E I = 5 for statics, the pendulum of the paper for motion. Reported: CPU time of a ready
-model an element and iteration with one thread, of motions the time on the clock with two threads as well; iterations,
-error of the tip, largest memory of the process, and bytes a coordinate of it beyond that of a small model. Memory
-counts model, solver and what is kept of the motion: its first and last state.
+model an element and iteration with one thread, iterations, error of the tip, largest memory of the process, and bytes a
+coordinate of it beyond that of a small model. Memory counts model, solver and what is kept of the motion: its first and
+last state.
 """
 
 import multiprocessing
-import os
 import resource
 import sys
 import time
@@ -41,22 +40,20 @@ HEADER = (
 )
 
 
-def measure(analysis: str, name: str, elements: int, threads: int = 1) -> tuple[object, ...]:
+def measure(analysis: str, name: str, elements: int) -> tuple[object, ...]:
     """Return what a row holds behind the number of elements, without the ratio to the smallest."""
-    os.environ["OMP_NUM_THREADS"] = str(threads)  # chains this long would take two threads
-    clock = time.process_time if threads == 1 else time.perf_counter
     with threadpool_limits(1):
         _solve(analysis, _model(analysis, name, 4))
         before = _peak()
         model = _model(analysis, name, elements)
         seconds, remark = [], ""
         for _ in range(max(2, min(5, 100_000 // elements))):
-            begun = clock()
+            begun = time.process_time()
             try:
                 solution = _solve(analysis, model)
             except bf.ConvergenceError as error:
                 solution, remark = error.solution, str(error).partition(",")[0]
-            seconds.append(clock() - begun)
+            seconds.append(time.process_time() - begun)
             if remark:
                 break
     steps, iterations = solution.statistics.steps, solution.statistics.iterations
@@ -95,16 +92,17 @@ def main(sizes: tuple[int, ...] = SIZES, folder: Path = OUT) -> list[tuple[objec
     rows: list[tuple[object, ...]] = []
     fresh = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(1, mp_context=fresh, max_tasks_per_child=1) as pool:
-        for analysis, threads in (("statics", 1), ("motion", 1), ("motion", 2)):
+        for analysis in ("statics", "motion"):
             for name in ELEMENTS:
                 first = np.nan
                 for elements in sizes:
-                    found = pool.submit(measure, analysis, name, elements, threads).result()
+                    found = pool.submit(measure, analysis, name, elements).result()
                     steps, iterations, each, *rest = found
                     first = each if np.isnan(first) else first
-                    what = analysis if threads == 1 else f"{analysis}, two threads"
-                    rows.append((what, name, elements, steps, iterations, each, each / first, *rest))
-                    print(f"{what}, {name}, {elements} elements: {each:.0f} ns an element and iteration", flush=True)
+                    rows.append((analysis, name, elements, steps, iterations, each, each / first, *rest))
+                    print(
+                        f"{analysis}, {name}, {elements} elements: {each:.0f} ns an element and iteration", flush=True
+                    )
     print(as_text(HEADER, rows, "growth of one chain"))
     write_csv(folder / "growth.csv", HEADER, rows)
     return rows

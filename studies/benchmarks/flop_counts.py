@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 from beamfem.kernels.model_passes import balance
-from beamfem.kernels.two_sided import SHORT, two_sided
 from studies.benchmarks.roofline_cases import FACTOR, FORMS, KERNELS, RESIDUAL, SOLVE, TANGENT, case, place
 from studies.benchmarks.uncompiled import Memory, uncompiled
 
@@ -99,7 +99,7 @@ def _count_chain(form: str, elements: int) -> dict[str, tuple[int, int]]:
     _, one = case(form, elements)
     half, n = one.half_width, len(one.right)
     # of a known half width, rows are changed in whole lanes, also beside the band
-    own, needed = two_sided(half, n < SHORT), two_sided(0, True)
+    own, needed = bidirectional_lu(half, n < SHORT), bidirectional_lu(0, True)
     equations, space = one.equations, np.empty(n)
     arrays = [*equations.memory, one.state, one.residual, one.band, one.right, one.reach, space]
     addresses = [each.ctypes.data for each in (one.band, one.right, one.reach, space)]

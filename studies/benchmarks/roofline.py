@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
+from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 from beamfem.kernels.model_passes import balance
-from beamfem.kernels.two_sided import SHORT, two_sided
 from beamfem.tabulate import as_text, write_csv
 from studies.benchmarks.ceilings import Ceilings, least_seconds, measure
 from studies.benchmarks.flop_counts import count_all
@@ -52,7 +52,7 @@ def seconds(form: str, elements: int) -> dict[str, float]:
     one = case(form, elements)[1]
     times = max(1, 100_000 // elements)
     half, n = one.half_width, len(one.right)
-    own = two_sided(half, n < SHORT)
+    own = bidirectional_lu(half, n < SHORT)
     copy, right, space = np.empty_like(one.band), np.empty_like(one.right), np.empty_like(one.right)
 
     def balanced() -> None:

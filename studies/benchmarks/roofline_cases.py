@@ -20,7 +20,7 @@ _STEP = 1e-3  # [s]; weighs the inertia in the tangent
 class Case(NamedTuple):
     """What the kernels work on: equations of the pendulum, its state p, p', p'' (3, n), and space.
 
-    band (unknown, width); right: a right-hand side (unknown,); reach (2, unknown): see `kernels.two_sided`.
+    band (unknown, width); right: a right-hand side (unknown,); reach (2, unknown): see `kernels.bidirectional_lu`.
     """
 
     equations: Assembler

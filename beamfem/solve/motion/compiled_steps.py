@@ -6,16 +6,12 @@ from beamfem.assembly.callbacks import Deferred
 from beamfem.assembly.motion_workspace import MotionWorkspace
 from beamfem.assembly.system import System
 from beamfem.kernels import record
-from beamfem.kernels.march import march, solve_once
+from beamfem.kernels.march import march
 from beamfem.kernels.motion_record import TIME_STEP
 from beamfem.kernels.pointers import address_of
-from beamfem.linalg.tangent import SMALLEST_PIVOT
 from beamfem.solve.motion.coupled_stages import CoupledStages
 from beamfem.solve.motion.limits import BAND, BORDERED, SPARSE, not_converged
 from beamfem.solve.motion.saving import Saving
-from beamfem.solve.motion.second_thread import routines
-
-_INERTIA = 0.0, 0.0, 1.0  # weights of p, p', p'' in the tangent
 
 
 class CompiledSteps:
@@ -66,8 +62,6 @@ class CompiledSteps:
         """Do what `advance` does in one compiled call."""
         space = self._space
         body, values, imposing = _sample_loads(self._system, times)
-        if space.loads is not None:
-            values = tuple(values[0][:, indices] for indices in space.loads)
         varying = len(body) > 1
         assembler, solver = space.assembler, space.solver
         places = assembler.load(body, values)
@@ -100,13 +94,12 @@ class CompiledSteps:
         }
         for field, value in (numbers | {field: address_of(array) for field, array in arrays.items()}).items():
             solver[field] = value
+        calls = self._system.solver_table.routines(moving=True)
         if self._coupled is None and not assembler.calls_python:
-            with routines(self._system, space.in_two) as calls:
-                return int(march(assembler.address, solver, calls))
+            return int(march(assembler.address, solver, calls))
         with Deferred() as self._deferred:
             if self._coupled is None:
-                with routines(self._system, space.in_two) as calls:
-                    completed = int(march(assembler.address, solver, calls))
+                completed = int(march(assembler.address, solver, calls))
             else:
                 completed = self._coupled.march(assembler.address, solver, state, times, self._deferred)
         errors = () if self._coupled is None else (self._coupled.take_error(),)
@@ -119,24 +112,6 @@ class CompiledSteps:
             self._deferred.deliver()
         if self._error is not None:
             raise self._error
-
-
-def acceleration(system: System, space: MotionWorkspace, motion: np.ndarray, time: float) -> np.ndarray | None:
-    """Return p'' (nu,) of the unknowns of a long chain in a state, None if a pivot is tiny.
-
-    motion (3, n): p, p', and p'' of the prescribed coordinates, zero for the others. Tangent and solution take the
-    place of those of the motion, which would otherwise need as much memory again.
-    """
-    assembler, solver, loads = space.assembler, space.solver, system.loads_at(time)
-    assembler.load(loads.body, [loads.points[0][indices] for indices in space.loads or ()], loads.imposing)
-    assembler.weigh(_INERTIA)
-    assembler.require("tangent")
-    address, row = address_of(motion), 8 * motion.shape[1]
-    states = address, address + row, address + 2 * row
-    assembler.place_at(states, space.residual, space.rows, space.arrays[record.ROWS].size)
-    with routines(system, space.in_two) as calls:
-        ratio = assembler.call(solve_once, assembler.address, solver, calls)
-    return np.array(space.arrays[record.RIGHT]) if ratio > SMALLEST_PIVOT else None
 
 
 def _sample_loads(system: System, times: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...], np.ndarray]:

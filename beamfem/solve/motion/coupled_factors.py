@@ -7,8 +7,8 @@ from scipy.sparse import csc_array
 
 from beamfem.assembly.equations import tangent_of
 from beamfem.assembly.system import System
+from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 from beamfem.kernels.pointers import address_of
-from beamfem.kernels.two_sided import SHORT, two_sided
 from beamfem.linalg.bordered import BorderedFactors, border_of
 from beamfem.linalg.saddle import SaddleTangent
 from beamfem.linalg.tangent import UNROTATED, Factorised, SparseTangent
@@ -62,7 +62,7 @@ class BandFactorisation:
         self._system, self._matrix, self._kept = system, matrix, np.empty_like(matrix)
         self._size, self._half = system.unknowns.banded, system.layouts[0].half_width
         self._rows, self._reach = address_of(matrix), address_of(system.unknowns.reach)
-        self._routines = two_sided(self._half, self._size < SHORT)
+        self._routines = bidirectional_lu(self._half, self._size < SHORT)
 
     def __call__(self, coupled: list[np.ndarray], space: int) -> CoupledFactors:
         """Return the factors; coupled: tangent (k, k) of each connector; space: address of numbers (n,).

@@ -14,7 +14,7 @@ from beamfem.kernels.march import march
 from beamfem.linalg.lapack import LinAlgError
 from beamfem.solve.motion.coupled_factors import BandFactorisation, CoupledFactors, SparseFactorisation
 
-_Stage = CFUNCTYPE(c_double, *(c_int64,) * 4)
+_Stage = CFUNCTYPE(c_double, *(c_int64,) * 3)
 _Factor = CFUNCTYPE(c_double, *(c_int64,) * 2, *(c_void_p,) * 3)
 _Solve = CFUNCTYPE(None, *(c_int64,) * 2, *(c_void_p,) * 2)
 
@@ -72,9 +72,9 @@ class CoupledStages:
 
         return guarded
 
-    def _assemble(self, part: int, system: int, solver: int, calls: int) -> float:
+    def _assemble(self, system: int, solver: int, calls: int) -> float:
         """See `motion_stages.assemble`."""
-        motion_stages.assemble.compiled(part, system, solver, calls)
+        motion_stages.assemble.compiled(system, solver, calls)
         connectors, (p, v, a, _) = self.system.connectors, self._state
         if connectors.items:
             time = float(self._times[self._solver[record.NOW]])
@@ -82,7 +82,7 @@ class CoupledStages:
             if self._table[record.TANGENT]:
                 self._coupled = None  # if the tangents cannot be formed
                 self._coupled = connectors.tangents((p, v, a), time, self._weights)
-        return -1.0
+        return 0.0
 
     def _factor(self, unknown: int, half: int, reach: int, rows: int, space: int) -> float:
         """Factorise the tangent; return 1, or 0 if it is singular."""
@@ -100,8 +100,8 @@ class CoupledStages:
             raise LinAlgError("the tangent is singular")
         self._factors.solve_in_place(self._right)
 
-    def _correct(self, part: int, system: int, solver: int, calls: int) -> float:
+    def _correct(self, system: int, solver: int, calls: int) -> float:
         """See `motion_stages.correct`."""
-        size = motion_stages.correct.compiled(part, system, solver, calls)
+        size = motion_stages.correct.compiled(system, solver, calls)
         self._state[1:3, self.system.connectors.multipliers] = 0.0  # multipliers have no rates
         return float(size)

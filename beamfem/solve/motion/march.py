@@ -13,12 +13,11 @@ from beamfem.assembly.connector import Motion
 from beamfem.assembly.equations import INERTIA, linearise, residual
 from beamfem.assembly.motion_workspace import motion_workspace
 from beamfem.assembly.system import System
-from beamfem.assembly.tiles import is_long
 from beamfem.assembly.viscosity import viscous_tangent
 from beamfem.kernels.motion_record import ALPHA_M, GAMMA, ITERATIONS, OF_EQUAL_STEPS, TIME_STEP, MotionStatistics
 from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.progress import progress
-from beamfem.solve.motion.compiled_steps import CompiledSteps, acceleration
+from beamfem.solve.motion.compiled_steps import CompiledSteps
 from beamfem.solve.motion.conditions import constrained_acceleration
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.integrators import Scheme, is_scheme
@@ -194,12 +193,6 @@ def initial_acceleration(system: System, state: np.ndarray, time: float, step: f
     free = system.free_dofs
     multipliers = system.connectors.multipliers
     a[free] = p[multipliers] = v[multipliers] = 0.0
-    if is_long(system) and not step > 0.0:
-        with motion_workspace(system) as space:
-            found = acceleration(system, space, motion, time) if space.in_two else None
-        if found is not None:
-            a[free] = found
-            return a
     unbalanced, mass = residual(system, p, v, a, time), _mass(system, (p, v, a), time, step)
     if len(multipliers):
         a[free] = constrained_acceleration(system, (p, v, a), unbalanced, mass, time)

@@ -1,7 +1,6 @@
 """Newton's method for an equilibrium at a fixed load factor."""
 
 import math
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
@@ -9,12 +8,10 @@ from beamfem.assembly.equations import MIXED
 from beamfem.assembly.round_off import ENOUGH, digits_of, loses_digits, remainder
 from beamfem.assembly.system import System
 from beamfem.solve.newton.banded import BandProblem
-from beamfem.solve.newton.cut_chain import worth_cutting
 from beamfem.solve.newton.equilibrium import find_equilibrium
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 from beamfem.solve.newton.pivoted import PivotedProblem
 from beamfem.solve.newton.prescribed_step import PrescribedStep
-from beamfem.solve.newton.substructured import SubstructuredProblem
 
 
 def solve_equilibrium(
@@ -53,15 +50,9 @@ def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton
     step = PrescribedStep(system, start, load_factor)
     result = None
     if system.unknowns.pattern is None and MIXED not in system.proven:
-        if worth_cutting(system):
-            with ThreadPoolExecutor(1) as pool:
-                result = find_equilibrium(
-                    SubstructuredProblem(system, start, load_factor, newton, step, pool), newton, keep
-                )
-        else:
-            problem = BandProblem(system, start, load_factor, newton, step, keep)
-            result = find_equilibrium(problem, newton, keep)
-            problem.give_back()
+        problem = BandProblem(system, start, load_factor, newton, step, keep)
+        result = find_equilibrium(problem, newton, keep)
+        problem.give_back()
     if result is None or result.ended is Termination.SINGULAR:
         result = find_equilibrium(PivotedProblem(system, start, load_factor, newton, step), newton, keep)
     return result

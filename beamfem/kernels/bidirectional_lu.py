@@ -15,7 +15,7 @@ from beamfem.kernels.pairs import as_pairs, first_of, paired, second_of
 from beamfem.kernels.pointers import at, room
 
 
-class TwoSided(NamedTuple):
+class BidirectionalLU(NamedTuple):
     """Compiled functions for a half width.
 
     factor(n, w, reach, ab, original): smallest ratio of a pivot to the row's original diagonal entry; reach (2, n): see
@@ -30,15 +30,15 @@ SHORT = 50  # unknowns: fewer are solved for as fast from one end
 
 
 @cache
-def two_sided(half_width: int, short: bool) -> TwoSided:
+def bidirectional_lu(half_width: int, short: bool) -> BidirectionalLU:
     """Return the compiled functions for a half width; they work from one end if `short` or if it is not in `KNOWN`."""
     if half_width not in KNOWN:
-        return _one_sided(0)
-    return _one_sided(half_width) if short else _two_sided(half_width)
+        return _from_one_end(0)
+    return _from_one_end(half_width) if short else _from_both_ends(half_width)
 
 
 @cache
-def _two_sided(w: int) -> TwoSided:
+def _from_both_ends(w: int) -> BidirectionalLU:
     case, width, both = f"half_width_{w}", 2 * w + 1, 2 * w
     _down = inlined(elimination(w, f"{case}_down", backwards=False))
     _up = inlined(elimination(w, f"{case}_up", backwards=True))
@@ -67,8 +67,8 @@ def _two_sided(w: int) -> TwoSided:
         end = n - m
         for i in range(m, end):
             original[i] = abs(ab[i * width + w])
-        worst = _down(end, m, 0, m, w, 0, reach, ab, ab, original)
-        worst = min(worst, _up(end, m, 0, m, w, 0, at(reach, 2 * n - 1), at(ab, n * width - 1), ab, at(original, end)))
+        worst = _down(end, m, w, 0, reach, ab, ab, original)
+        worst = min(worst, _up(end, m, w, 0, at(reach, 2 * n - 1), at(ab, n * width - 1), ab, at(original, end)))
         for k in range(m, end):
             pivot = at(ab, k * width + w - k)
             if pivot[k] == 0.0 or original[k] == 0.0:
@@ -125,12 +125,12 @@ def _two_sided(w: int) -> TwoSided:
             push(window, w, total)
             x[i], x[n - 1 - i] = first_of(total), second_of(total)
 
-    return TwoSided(factor, solve)
+    return BidirectionalLU(factor, solve)
 
 
 @cache
-def _one_sided(known: int) -> TwoSided:
-    case = f"one_sided_half_width_{known or 'any'}"
+def _from_one_end(known: int) -> BidirectionalLU:
+    case = f"from_one_end_half_width_{known or 'any'}"
     _factor, _solve_lower, _solve_upper = (inlined(function) for function in band(known))
 
     @routine("iisrr", "d", case, fastmath=FAST)
@@ -140,8 +140,8 @@ def _one_sided(known: int) -> TwoSided:
 
     @routine("iirr", case=case, fastmath={"contract"})
     def solve(n, half, lu, x):
-        """Do the same as `solve` of `_two_sided`, from one end."""
+        """Do the same as `solve` of `_from_both_ends`, from one end."""
         _solve_lower(n, n, half, lu, x)
         _solve_upper(n, n, half, lu, x)
 
-    return TwoSided(factor, solve)
+    return BidirectionalLU(factor, solve)

@@ -1,19 +1,15 @@
-"""Two threads find what one finds: equilibria, iterations, how they end, negative pivots, of chains cut in two."""
-
-from concurrent.futures import ThreadPoolExecutor
+"""Newton's method on a band finds what it finds with pivoting: equilibria, iterations, endings, negative pivots."""
 
 import numpy as np
 import pytest
 
 import beamfem as bf
 from beamfem.assembly.system import system_of
-from beamfem.solve.newton import cut_chain, newton
 from beamfem.solve.newton.banded import BandProblem
 from beamfem.solve.newton.equilibrium import find_equilibrium
 from beamfem.solve.newton.iteration import Newton, Termination
 from beamfem.solve.newton.pivoted import PivotedProblem
 from beamfem.solve.newton.prescribed_step import PrescribedStep
-from beamfem.solve.newton.substructured import SubstructuredProblem
 
 SECTION, MATERIAL = bf.Rectangle(0.05, 0.05), bf.Material(1e9, 0.3, 1000.0)
 EI = MATERIAL.youngs_modulus * 0.05**4 / 12.0
@@ -28,13 +24,12 @@ def cantilever(beam):
 
 
 def between_pin_and_roller(beam):
-    """Its middle, where it is cut, is loaded; the last element as well, between its nodes."""
+    """Its middle is loaded, and the last element as well, between its nodes."""
     loads = bf.PointForce(beam.at(0.5), (0.0, -EI)), bf.PointMoment(beam.at(0.97), 0.5 * EI)
     return bf.Model([beam], [bf.Pin(beam.start), bf.Roller(beam.end)], loads)
 
 
 def on_springs(beam):
-    """One of them stands where it is cut."""
     springs = [bf.Spring(beam.at(share), (200.0 * EI, 50.0 * EI), EI) for share in (0.0, 0.5, 1.0)]
     foundation = bf.Foundation(beam, (EI, 10.0 * EI))
     loads = bf.PointForce(beam.at(0.25), (0.0, EI)), bf.PointForce(beam.end, (EI, EI))
@@ -42,12 +37,12 @@ def on_springs(beam):
 
 
 def moved(beam):
-    """Both ends are, and its middle is held where it is cut."""
+    """Both ends are moved, and the middle is held."""
     ends = bf.Prescribed(beam.start, 0.0, 0.0, 0.3), bf.Prescribed(beam.end, ux=-0.01, rotation=-0.2)
     return bf.Model([beam], [*ends, bf.Prescribed(beam.at(0.5), uy=0.02)])
 
 
-def clamped_where_cut(beam):
+def clamped_in_the_middle(beam):
     return bf.Model([beam], [bf.Clamp(beam.at(0.5))], [bf.PointForce(beam.end, (0.0, EI))])
 
 
@@ -57,12 +52,11 @@ def followed(beam):
 
 
 def curled(beam):
-    """Its curvature varies, so that its halves have strains of their own."""
     muscle = bf.Actuation(beam, curvature=lambda s: 2.0 * s - 0.5, stretch=0.02)
     return bf.Model([beam], [bf.Clamp(beam.start)], [muscle, bf.PointForce(beam.end, (0.0, EI))])
 
 
-CASES = (cantilever, between_pin_and_roller, on_springs, moved, clamped_where_cut, followed, curled)
+CASES = (cantilever, between_pin_and_roller, on_springs, moved, clamped_in_the_middle, followed, curled)
 
 
 def beam_of(element, elements=9, curve=LINE):
@@ -70,14 +64,10 @@ def beam_of(element, elements=9, curve=LINE):
 
 
 def both(model, settings=None):
-    """What one thread finds, and two."""
-    system = system_of(model, static=True)
-    used = settings or Newton()
+    """Return the results on a band and with pivoting."""
+    system, used = system_of(model, static=True), settings or Newton()
     given = system, system.reference, 1.0, used, PrescribedStep(system, system.reference, 1.0)
-    with ThreadPoolExecutor(1) as pool:
-        return find_equilibrium(BandProblem(*given, None), used), find_equilibrium(
-            SubstructuredProblem(*given, pool), used
-        )
+    return find_equilibrium(BandProblem(*given, None), used), find_equilibrium(PivotedProblem(*given), used)
 
 
 def assert_alike(model, settings=None):
@@ -90,7 +80,7 @@ def assert_alike(model, settings=None):
 
 @pytest.mark.parametrize("element", ELEMENTS, ids=NAMES)
 @pytest.mark.parametrize("case", CASES)
-def test_two_threads_find_what_one_finds(case, element):
+def test_pivots_change_no_equilibrium(case, element):
     model = case(beam_of(element))
     one, _ = assert_alike(model)
     assert one.ended.good
@@ -100,25 +90,6 @@ def test_two_threads_find_what_one_finds(case, element):
 @pytest.mark.parametrize("elements", [2, 3, 8])
 def test_odd_and_even_numbers_of_pivots(elements):
     assert_alike(cantilever(beam_of(bf.CRBF(2), elements)))
-
-
-def test_the_cut_is_in_the_middle():
-    """With a support there nothing is left to solve between the halves, else what the node has unknown."""
-    for case, shared in ((cantilever, 3), (moved, 2), (clamped_where_cut, 0)):
-        system = system_of(case(beam_of(bf.CRBF(2), 10)), static=True)
-        first, second = cut_chain.substructures_of(system, system.reference, 1.0)
-        assert [len(half.free) - half.inner for half in (first, second)] == [shared, shared]
-        assert abs(first.inner - second.inner) <= 3
-        assert len(first.p) + len(second.p) == len(system.reference) + 3
-
-
-def test_a_corner_in_the_middle_is_not_cut():
-    """Two nodes stand there, whose r_x differ."""
-    bent = bf.Polyline([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)])
-    assert_alike(cantilever(beam_of(bf.CRBF(2), 8, bent)))
-    system = system_of(cantilever(beam_of(bf.ANCF(), 8, bent)), static=True)
-    first, second = cut_chain.substructures_of(system, system.reference, 1.0)
-    assert len(first.p) + len(second.p) == len(system.reference) + 6
 
 
 @pytest.mark.parametrize(("load", "negative"), [(0.9, 0), (1.1, 1), (8.9, 1), (9.1, 2), (25.1, 3)])
@@ -141,52 +112,20 @@ def test_iterations_that_run_out_or_lead_nowhere_end_alike():
     assert one.ended is Termination.DIVERGED
 
 
-def test_the_first_step_follows_what_is_held_beside_the_cut():
-    one, _ = assert_alike(moved(beam_of(bf.CRBF(2), 2)), Newton(iterations=1))
-    assert one.ended is Termination.EXHAUSTED
-
-
-def test_a_singular_tangent_is_left_to_pivots():
+def test_a_mechanism_is_singular_on_a_band():
     beam = beam_of(bf.CRBF(2))
     loose = bf.Model([beam], [bf.Roller(beam.start), bf.Roller(beam.end)], [bf.PointForce(beam.end, (1.0, 0.0))])
-    assert [result.ended for result in both(loose)] == 2 * [Termination.SINGULAR]
+    on_band, _ = both(loose)
+    assert on_band.ended is Termination.SINGULAR
 
 
-def test_only_long_single_chains_are_cut(monkeypatch):
-    beam = beam_of(bf.CRBF(2))
-    plain, other = cantilever(beam), beam_of(bf.CRBF(2), curve=bf.Line((1.0, 0.0), (2.0, 0.0)))
-    inclined = bf.Model([beam], [bf.Pin(beam.start), bf.Roller(beam.end, (1.0, 1.0))])
-    jointed = bf.Model([beam, other], [bf.Clamp(beam.start)], joints=[bf.Rigid(beam.end, other.start)])
-
-    def worth(model, elements):
-        return cut_chain.worth_cutting(system_of(model, static=True), elements)
-
-    monkeypatch.setattr(cut_chain, "usable_cores", lambda: 2)
-    elements = plain.meshes[0].elements
-    assert worth(plain, elements)
-    assert not worth(plain, elements + 1)
-    assert not worth(inclined, 9)
-    assert not worth(jointed, 9)
-    monkeypatch.setattr(cut_chain, "usable_cores", lambda: 1)
-    assert not worth(plain, 9)
-
-
-def test_workers_with_one_thread_each_keep_to_it(monkeypatch):
-    monkeypatch.setenv("OMP_NUM_THREADS", "1")
-    assert cut_chain.usable_cores() == 1
-
-
-def test_a_chain_of_20_000_elements_takes_both_threads_and_is_right(monkeypatch):
+def test_a_chain_of_20_000_elements_bends_as_the_elastica():
     """P L^2 / EI = 5, L / h = 100, structural forces: tip of the Reissner beam, k_s = 5 / 6."""
-    monkeypatch.setattr(cut_chain, "usable_cores", lambda: 2)
-    calls = []
-    problem = newton.SubstructuredProblem
-    monkeypatch.setattr(newton, "SubstructuredProblem", lambda *given: calls.append(1) or problem(*given))
     beam = bf.Beam(LINE, 20_000, bf.CRBF(2), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
     force = 5.0 * 2e11 * 0.01**4 / 12.0
     solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, force))]))
     assert solution.position(beam.end)[-1] == pytest.approx((1.0 - 0.38764432832607, 0.71385896416489), abs=1e-10)
-    assert len(calls) == solution.statistics.steps == 1
+    assert solution.statistics.steps == 1
 
 
 def test_pivots_cost_no_iteration(monkeypatch):
@@ -202,14 +141,3 @@ def test_pivots_cost_no_iteration(monkeypatch):
         )
         assert general.first == pytest.approx(compiled.first, rel=1e-6)
         assert general.iterations == compiled.iterations
-
-
-def test_a_chain_with_a_corner_at_every_node_is_not_cut(monkeypatch):
-    """Nothing is shared there; a digitised curve of 20,000 pieces raised IndexError where there were two cores."""
-    monkeypatch.setattr(cut_chain, "usable_cores", lambda: 2)
-    angles = np.linspace(0.0, 1.5, 9)
-    curve = bf.Polyline(list(zip(np.sin(angles), np.cos(angles), strict=True)))
-    for pieces, cut in ((8, False), (16, True)):
-        beam = bf.Beam(curve, pieces, bf.CRBF(1), bf.Rectangle(0.05, 0.05), bf.Material(2e9, 0.3, 1000.0))
-        model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -100.0))])
-        assert cut_chain.worth_cutting(system_of(model, static=True), elements=4) == cut

@@ -1,7 +1,5 @@
 """Factors of a band from both ends: solutions, pivots and refusals as those from one end, against NumPy."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 
@@ -9,8 +7,7 @@ import beamfem as bf
 from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import system_of
 from beamfem.kernels.band import KNOWN, band
-from beamfem.kernels.two_sided import two_sided
-from beamfem.kernels.two_sided_parts import BLOCK, two_sided_parts, whole_blocks
+from beamfem.kernels.bidirectional_lu import bidirectional_lu
 
 
 def matrix(n, w, rng, sign=1.0):
@@ -37,7 +34,7 @@ def whole_band(n, w):
 @pytest.mark.parametrize("short", [False, True])
 def test_solutions_are_those_of_dense_matrices(w, short, rng):
     """Whatever is left between both ends: w or w + 1 rows, or all where there are fewer."""
-    own = two_sided(w, short)
+    own = bidirectional_lu(w, short)
     for n in (1, 2, w, w + 1, w + 2, w + 3, 2 * w + 1, 3 * w, 3 * w + 1, 4 * w + 7, 101):
         whole, rows = matrix(n, w, rng)
         right = rng.standard_normal(n)
@@ -54,10 +51,10 @@ def test_a_pivot_that_is_zero_is_seen_wherever_it_is(w, rng):
     for where in (2, n // 2, n - 3):
         _, rows = matrix(n, w, rng)
         pieces = [band(w).factor(n, n, w, 0, whole_band(n, w)[0].copy(), rows.copy(), np.empty(n), np.empty(n))]
-        pieces.append(two_sided(w, False).factor(n, w, whole_band(n, w), rows.copy(), np.empty(n)))
+        pieces.append(bidirectional_lu(w, False).factor(n, w, whole_band(n, w), rows.copy(), np.empty(n)))
         assert min(pieces) > 0.2
         rows[where] = 0.0
-        assert two_sided(w, False).factor(n, w, whole_band(n, w), rows, np.empty(n)) == 0.0
+        assert bidirectional_lu(w, False).factor(n, w, whole_band(n, w), rows, np.empty(n)) == 0.0
 
 
 @pytest.mark.parametrize("w", KNOWN)
@@ -68,56 +65,9 @@ def test_negative_definite_and_mixed_matrices_are_solved_too(w, rng):
         whole, rows = signs[:, None] * whole, signs[:, None] * rows
         right = rng.standard_normal(n)
         x = right.copy()
-        assert two_sided(w, False).factor(n, w, whole_band(n, w), rows, np.empty(n)) > 0.1
-        two_sided(w, False).solve(n, w, rows, x)
+        assert bidirectional_lu(w, False).factor(n, w, whole_band(n, w), rows, np.empty(n)) > 0.1
+        bidirectional_lu(w, False).solve(n, w, rows, x)
         np.testing.assert_allclose(x, np.linalg.solve(whole, right), rtol=1e-11, atol=1e-13)
-
-
-def factor_parts(w, n, m, reach, rows, chunk=BLOCK):
-    """Factor in place, both ends by some blocks of rows in each call, then the middle; return the smallest ratio."""
-    own, space, ratios = two_sided_parts(w), np.empty(n), []
-    for part, count in ((0, m), (1, n - 2 * w - m)):
-        ratios += [own.factor(part, *each, n, m, w, reach, rows, space) for each in calls(count, w, chunk)]
-    return min(*ratios, own.factor(2, 0, 0, n, m, w, reach, rows, space))
-
-
-def calls(count, w, chunk):
-    """Return start and stop of the calls that eliminate so many rows of an end."""
-    limits = [*range(0, whole_blocks(count, count, w) + 1, chunk), count]
-    return list(pairwise(limits))
-
-
-@pytest.mark.parametrize("w", KNOWN)
-def test_halves_of_a_long_band_are_solved_by_blocks_or_at_once(w, rng):
-    """With a few rows, and with so many that factors are stored in blocks; the middle may be anywhere."""
-    own = two_sided_parts(w)
-    for n, m in ((2 * w, 0), (2 * w + 1, 1), (4 * w + 3, w), (1100, 540), (1301, 700), (1300, 0), (1301, 257)):
-        whole, rows = matrix(n, w, rng)
-        right, found = rng.standard_normal(n), []
-        for chunk in (BLOCK, 2 * BLOCK, 10 * BLOCK):
-            lu, x = rows.copy(), right.copy()
-            assert factor_parts(w, n, m, whole_band(n, w), lu, chunk) > 0.2
-            ends = ((0, m), (1, n - 2 * w - m))
-            for part, count in ends:
-                for start, stop in calls(count, w, chunk):
-                    own.lower(part, start, stop, n, m, w, lu, x)
-            own.lower(2, 0, 0, n, m, w, lu, x)
-            for part, count in ends:
-                for start, stop in reversed(calls(count, w, chunk)):
-                    own.upper(part, start, stop, n, m, w, lu, x)
-            found.append(x)
-        np.testing.assert_allclose(found[0], np.linalg.solve(whole, right), rtol=1e-11, atol=1e-14)
-        for other in found[1:]:
-            np.testing.assert_array_equal(other, found[0])
-
-
-@pytest.mark.parametrize("w", KNOWN)
-def test_a_pivot_of_parts_that_is_zero_is_seen_wherever_it_is(w, rng):
-    n = 5 * w + 4
-    for where in (2, n // 2, n - 3):
-        _, rows = matrix(n, w, rng)
-        rows[where] = 0.0
-        assert factor_parts(w, n, (n - 2 * w) // 2, whole_band(n, w), rows) == 0.0
 
 
 CHAINS = [
@@ -144,9 +94,7 @@ def test_rows_that_a_chain_does_not_couple_stay_as_they_are(element, extra, rng)
     n, w, reach = len(rows), rows.shape[1] // 2, system.unknowns.reach
     assert reach[0].sum() < whole_band(n, w)[0].sum()
     routines = [lambda lu, own: band(w).factor(n, n, w, 0, own[0].copy(), lu, np.empty(n), np.empty(n))]
-    routines.append(lambda lu, own: two_sided(w, False).factor(n, w, own, lu, np.empty(n)))
-    if w in KNOWN:
-        routines.append(lambda lu, own: factor_parts(w, n, (n - 2 * w) // 2, own, lu))
+    routines.append(lambda lu, own: bidirectional_lu(w, False).factor(n, w, own, lu, np.empty(n)))
     for factored in routines:
         within, whole = rows.copy(), rows.copy()
         assert factored(within, reach) == factored(whole, whole_band(n, w))
@@ -158,7 +106,7 @@ def from_one_end(w, n, rows):
 
 
 def from_both_ends(w, n, rows):
-    return two_sided(w, False).factor(n, w, whole_band(n, w), rows, np.empty(n))
+    return bidirectional_lu(w, False).factor(n, w, whole_band(n, w), rows, np.empty(n))
 
 
 def inverse_pivots(factor, w, n):
@@ -170,12 +118,8 @@ def inverse_pivots(factor, w, n):
     return np.arange(n), columns
 
 
-def from_both_ends_in_parts(w, n, rows):
-    return factor_parts(w, n, (n - 2 * w) // 2, whole_band(n, w), rows)
-
-
 @pytest.mark.parametrize("unit", [1e-280, 1e-160, 1e160, 1e280])
-@pytest.mark.parametrize("factor", [from_one_end, from_both_ends, from_both_ends_in_parts])
+@pytest.mark.parametrize("factor", [from_one_end, from_both_ends])
 @pytest.mark.parametrize("w", KNOWN)
 def test_a_matrix_has_the_same_factors_in_any_unit(w, factor, unit, rng):
     """Pivots were found by products of two entries: beyond 1e154 or below 1e-162 these were no numbers, or zero."""
@@ -190,7 +134,7 @@ def test_a_matrix_has_the_same_factors_in_any_unit(w, factor, unit, rng):
     np.testing.assert_allclose(scaled, rows, rtol=1e-9, atol=1e-12)
 
 
-@pytest.mark.parametrize("factor", [from_one_end, from_both_ends, from_both_ends_in_parts])
+@pytest.mark.parametrize("factor", [from_one_end, from_both_ends])
 @pytest.mark.parametrize("w", KNOWN)
 def test_entries_too_large_for_the_unit_of_the_others_are_refused(w, factor, rng):
     """The inverse of a determinant that was infinite was zero, and the unknown too, whatever its right-hand side."""

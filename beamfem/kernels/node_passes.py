@@ -15,18 +15,6 @@ _add_curvature = caller("iiiiiiiinnnisrrd")
 
 
 @inlined
-def _clear_forces(b, chunks):
-    last = (b[r.NODES] - 1) // LANES
-    for chunk in range(last + 1):
-        count = LANES if chunk < last else b[r.NODES] - last * LANES
-        rows = b[r.PREDICTED_FORCE] + 2 * b[r.VECTORS] - b[r.FORCE]
-        forces = as_rows(at(chunks, (chunk * b[r.NODE_ROWS] + b[r.FORCE]) * ROW))
-        for i in range(0, count, WIDTH):
-            for row in range(i, i + rows * ROW, ROW):
-                forces[row] = 0.0
-
-
-@inlined
 def _of_run(runs, run):
     """Return the kind of the nodes of a run, the first node and the end."""
     own = at(runs, r.RUN_FIELDS * run)
@@ -55,7 +43,7 @@ def place_nodes(group, system, moving):
         reals(s[r.COORDINATES_A]),
     )
     dependent, parameters, factors = b[r.DEPENDENT], b[r.PARAMETERS], reals(s[r.FACTORS])
-    _clear_forces(b, chunks)
+    force_rows = 2 * b[r.VECTORS] if s[r.PREDICTED] == 0 else b[r.PREDICTED_FORCE] + 2 * b[r.VECTORS] - b[r.FORCE]
     for run in range(b[r.RUN_COUNT]):
         kind, first, end = _of_run(runs, run)
         linear = size
@@ -69,6 +57,10 @@ def place_nodes(group, system, moving):
             count = min(LANES - lane, end - first)
             last = lane + count == LANES or first + count == stride
             chunk = at(chunks, first // LANES * b[r.NODE_ROWS] * ROW + lane)
+            forces = as_rows(at(chunk, b[r.FORCE] * ROW))
+            for i in range(0, count, WIDTH):
+                for row in range(i, i + force_rows * ROW, ROW):
+                    forces[row] = 0.0
             take(first, count, linear, stride, source, p, last, chunk)
             if moving != 0:
                 take(first, count, linear, stride, source, a, last, at(chunk, b[r.ACCELERATION] * ROW))

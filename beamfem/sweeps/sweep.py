@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.keywords import keywords_checked
 from beamfem.progress import progress
 from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, name_of, split
 from beamfem.sweeps.result import Sweep
@@ -19,7 +18,6 @@ from beamfem.validation import flag
 _NOT_REACHED = "NotComputed: the sweep was interrupted before"
 
 
-@keywords_checked
 def sweep(
     function: Callable[..., Any],
     /,

@@ -3,7 +3,6 @@
 import os
 import signal
 import sys
-from importlib import import_module
 from types import FrameType
 
 _TOLD_AT_ONCE = {"--version", "--help", "-h"}
@@ -14,10 +13,12 @@ def main() -> None:
     usual = signal.default_int_handler
     if signal.getsignal(signal.SIGINT) is usual:  # it may be ignored, as under nohup
         signal.signal(signal.SIGINT, _end)
+    import beamfem
     from beamfem.cli.app import main as run
 
     if not set(sys.argv[1:]) <= _TOLD_AT_ONCE:
-        import_module("beamfem.public")
+        for name in beamfem.__all__:
+            getattr(beamfem, name)  # imports it
     if signal.getsignal(signal.SIGINT) is _end:
         signal.signal(signal.SIGINT, usual)
     run()

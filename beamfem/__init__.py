@@ -18,81 +18,37 @@ The examples of all docstrings continue this one, a steel cantilever with a forc
 -0.0305
 
 Contents; see help(bf.Beam), for example, for details.
+
+    Model             Model Beam Point Material graded
+    Axes              Line Arc Polyline Chain BSpline Parametric Curve
+                      elliptic_arc spline_through_hermite without_removable_knots
+    Sections          Rectangle Circle Tube Section Layered Layer SectionLaw
+    Elements          ANCF CRBF ANCFCRBF BilinearANCF BilinearCRBF ShearRigid Element
+    Element parts     Cubic Lagrange Gradients Rotation ShearFree
+                      ContinuumMechanics SplitContinuum ElasticLine Structural
+    Supports          Clamp Pin Roller Spring Foundation Prescribed
+    Joints            Rigid Hinge
+    Loads             PointForce PointMoment DistributedLoad Pressure Gravity Actuation Temperature
+    Time functions    Interpolated Piecewise
+    From files        read_mesh LineMesh Frame read_dxf load
+    Solvers           solve_static trace_equilibrium solve_buckling solve_modes simulate
+    Solver settings   Newton GeneralizedAlpha RigidVelocity
+    Results           Solution State Path PathState Bifurcation Modes Buckling Status
+    Along beams       SectionForces BeamStress Fields FieldOnBasis field_on_basis
+    Studies           sweep converge
+    User-defined      PointLoad LineLoad BodyLoad ImposedStrain PointSupport LineSupport Joint
+                      Contribution At Remembering RememberingLaw Scheme Integrator EquationsOfMotion
+    Errors            BeamfemError InputError UnknownPointError FreeMotionError ConvergenceError
+                      LimitPointError FileError MissingPackageError
+    Warnings          UnstableWarning RoundOffWarning LockingWarning LargeStrainWarning EnergyWarning TimeStepWarning
+                      UnitsWarning SeveralTurnsWarning UnknownStressWarning
+                      NotJoinedWarning NotReadWarning NotStoredWarning ChangedCodeWarning
 """
 
-import sys
-from typing import TYPE_CHECKING, Any
+from importlib.metadata import version as _version
 
-from beamfem.whole import imports_all, whole_package
+import lazy_loader as _lazy_loader
 
-if TYPE_CHECKING:
-    from beamfem.public import *
-
-    __version__: str
-
-# what is public, by theme; where it is: in `beamfem.public`
-_CONTENTS = {
-    "Model": "Model Beam Point Material graded",
-    "Axes": (
-        "Line Arc Polyline Chain BSpline Parametric Curve\nelliptic_arc spline_through_hermite without_removable_knots"
-    ),
-    "Sections": "Rectangle Circle Tube Section Layered Layer SectionLaw",
-    "Elements": "ANCF CRBF ANCFCRBF BilinearANCF BilinearCRBF ShearRigid Element",
-    "Element parts": (
-        "Cubic Lagrange Gradients Rotation ShearFree\nContinuumMechanics SplitContinuum ElasticLine Structural"
-    ),
-    "Supports": "Clamp Pin Roller Spring Foundation Prescribed",
-    "Joints": "Rigid Hinge",
-    "Loads": "PointForce PointMoment DistributedLoad Pressure Gravity Actuation Temperature",
-    "Time functions": "Interpolated Piecewise",
-    "From files": "read_mesh LineMesh Frame read_dxf load",
-    "Solvers": "solve_static trace_equilibrium solve_buckling solve_modes simulate",
-    "Solver settings": "Newton GeneralizedAlpha RigidVelocity",
-    "Results": "Solution State Path PathState Bifurcation Modes Buckling Status",
-    "Along beams": "SectionForces BeamStress Fields FieldOnBasis field_on_basis",
-    "Studies": "sweep converge",
-    "User-defined": (
-        "PointLoad LineLoad BodyLoad ImposedStrain PointSupport LineSupport Joint\n"
-        "Contribution At Remembering RememberingLaw Scheme Integrator EquationsOfMotion"
-    ),
-    "Errors": (
-        "BeamfemError InputError UnknownPointError FreeMotionError ConvergenceError\n"
-        "LimitPointError FileError MissingPackageError"
-    ),
-    "Warnings": (
-        "UnstableWarning RoundOffWarning LockingWarning LargeStrainWarning EnergyWarning TimeStepWarning\n"
-        "UnitsWarning SeveralTurnsWarning UnknownStressWarning\n"
-        "NotJoinedWarning NotReadWarning NotStoredWarning ChangedCodeWarning"
-    ),
-}
-__all__ = [name for names in _CONTENTS.values() for name in names.split()]
-__doc__ = f"{__doc__ or ''}\n" + "".join(
-    f"    {theme if number == 0 else '':<18}{line}\n"
-    for theme, names in _CONTENTS.items()
-    for number, line in enumerate(names.split("\n"))
-)
-
-imports_all("beamfem.public")
-
-
-def __getattr__(name: str) -> Any:
-    """Return what is public, imported at the first call: a second or so, which no import of the package pays."""
-    if name == "__version__":
-        from importlib.metadata import version
-
-        return version("beamfem")
-    if name not in __all__:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}", name=name, obj=sys.modules[__name__])
-    public = whole_package()
-    globals().update({key: getattr(public, key) for key in __all__})
-    return globals()[name]
-
-
-def __dir__() -> list[str]:
-    """Return what is public; nothing to help(), which has it by theme above, and would add 6000 lines on all of it."""
-    frame = sys._getframe(1) if "pydoc" in sys.modules else None
-    while frame is not None:
-        if frame.f_globals.get("__name__") == "pydoc":
-            return []
-        frame = frame.f_back
-    return [*__all__]
+# the public names are those of the stub `__init__.pyi`; each is imported at its first use
+__getattr__, __dir__, __all__ = _lazy_loader.attach_stub(__name__, __file__)
+__version__ = _version("beamfem")

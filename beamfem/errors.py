@@ -13,10 +13,6 @@ class InputError(BeamfemError, ValueError):
     """A value that cannot describe a beam: wrong shape, not finite, negative where it must be positive."""
 
 
-class UnknownKeywordError(InputError, TypeError):
-    """A keyword that a function, a class or a method does not have, or more arguments than it takes by position."""
-
-
 class UnknownPointError(InputError):
     """A support or load at a point of a beam that is not in the model."""
 

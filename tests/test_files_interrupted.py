@@ -12,7 +12,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.io import hdf5
-from beamfem.sweeps.store import Store
+from beamfem.sweeps.result_cache import ResultCache
 from beamfem.sweeps.workers import Outcome
 
 
@@ -130,16 +130,15 @@ def test_sixty_interrupts_of_a_writer_lose_nothing(name, raising, tmp_path):
 def test_an_interrupted_store_has_all_results_so_far(times, raising, tmp_path):
     result, random, stored = motion(401, 0.0), np.random.default_rng(5), []
     for count in range(times):
-        with Store(tmp_path / "store") as store:
+        with ResultCache(tmp_path / "store", max, [{"x": count}]) as store:
 
             def write(count=count, store=store):
-                store.add(f"key{count}", {"code": "1"}, {}, Outcome({"tip": float(count), "motion": result}, 0.1))
+                store.add(0, "", Outcome({"tip": float(count), "motion": result}, 0.1))
 
             if not interrupted(write, *raising, 0.02 * random.random()):
                 stored.append(count)
-    with Store(tmp_path / "store") as store:
-        for count in range(times):
-            outcome = store.find(f"key{count}", {"code": "1"})
+    with ResultCache(tmp_path / "store", max, [{"x": count} for count in range(times)]) as store:
+        for count, outcome in enumerate(store.found(keep_stale=False)):
             assert outcome is not None or count not in stored
             if outcome is not None:
                 assert outcome.value["tip"] == count

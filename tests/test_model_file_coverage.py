@@ -3,13 +3,11 @@
 import inspect
 import typing
 from collections.abc import Callable
-from importlib import import_module
 
 import pytest
 from model_file_pairs import ARM
 
 import beamfem as bf
-from beamfem import registry
 from beamfem.cli.modelfile import (
     actions,
     analyses,
@@ -191,10 +189,7 @@ def public() -> dict[str, object]:
 
 
 def parameters(item: object) -> dict[str, inspect.Parameter]:
-    """Return what a public function or method takes, that of an upper room where it does the work."""
-    if (declared := inspect.unwrap(item)) in registry._FUNCTIONS:
-        module, name = registry._FUNCTIONS[declared].split(":")
-        return dict(list(inspect.signature(getattr(import_module(module), name)).parameters.items())[1:])
+    """Return what a public function or method takes."""
     return dict(inspect.signature(item).parameters)
 
 

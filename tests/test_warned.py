@@ -159,3 +159,12 @@ def test_a_section_law_may_strain_as_far_as_it_describes():
             solution = bf.solve_static(model)
         assert solution.displacement(beam.end)[-1, 0] == pytest.approx(0.25, rel=1e-6)
         assert [warning.category for warning in caught] == categories
+
+
+def test_warnings_name_the_line_that_called_the_package():
+    """However deep inside the package they arise."""
+    column = bf.Beam(bf.Line((0, 0), (0, 1)), 4, bf.CRBF(3), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    loads = [bf.PointForce(column.end, (0, -1000.0))]
+    with pytest.warns(bf.UnstableWarning) as caught:
+        bf.solve_static(bf.Model([column], supports=[bf.Clamp(column.start)], loads=loads), steps=3)
+    assert {warning.filename for warning in caught} == {__file__}

@@ -11,7 +11,6 @@ from beamfem.convergence.curve import Curve, judge
 from beamfem.convergence.expected import highest_order
 from beamfem.convergence.result import Convergence
 from beamfem.errors import InputError
-from beamfem.keywords import keywords_checked
 from beamfem.progress import progress
 from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, name_of, split
 from beamfem.sweeps.tasks import Failure, TaskRunner
@@ -32,7 +31,6 @@ class _Line:
     ended: str = ""
 
 
-@keywords_checked
 def converge(
     function: Callable[..., Any],
     /,

@@ -7,13 +7,11 @@ import numpy as np
 from beamfem.curves.bspline import BSpline
 from beamfem.curves.curve import points, warn_of_turns
 from beamfem.errors import InputError
-from beamfem.keywords import keywords_checked
 from beamfem.validation import finite, vector
 
 _MOST_TURNS = 1000
 
 
-@keywords_checked
 def elliptic_arc(
     center: Sequence[float], first: Sequence[float], second: Sequence[float], start: float, end: float
 ) -> BSpline:

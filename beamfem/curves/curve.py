@@ -1,6 +1,7 @@
 """The protocol of curves, and functions that the kinds of curve share."""
 
 from collections.abc import Callable, Sequence
+from functools import wraps
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -96,6 +97,7 @@ class Curve(Protocol):
 def along(method: Callable[[Any, np.ndarray], np.ndarray]) -> Callable[[Any, np.ndarray | float], np.ndarray]:
     """Return a method of a curve that takes one arc length as well, and refuses those beyond the ends."""
 
+    @wraps(method)
     def evaluate(self: Any, arc_length: np.ndarray | float) -> np.ndarray:
         s = np.asarray(arc_length)
         if s.dtype.kind not in "iuf" or s.ndim > 1:
@@ -106,9 +108,6 @@ def along(method: Callable[[Any, np.ndarray], np.ndarray]) -> Callable[[Any, np.
             raise InputError(f"arc lengths along this {kind} go from 0 to {length:g}, got {shown(arc_length)}")
         return method(self, s[None])[0] if s.ndim == 0 else method(self, s)
 
-    # without __wrapped__, so that `keywords` checks it as the others
-    for name in ("__name__", "__qualname__", "__doc__", "__module__", "__annotations__"):
-        setattr(evaluate, name, getattr(method, name))
     return evaluate
 
 

@@ -7,7 +7,6 @@ import numpy as np
 from beamfem.curves.bspline import BSpline
 from beamfem.curves.curve import numbers, points
 from beamfem.errors import InputError
-from beamfem.keywords import keywords_checked
 from beamfem.validation import shown
 
 # Two splines are the same up to this distance, as a fraction of their largest coordinate (times the ratio of
@@ -15,7 +14,6 @@ from beamfem.validation import shown
 _SAME = 1e-13
 
 
-@keywords_checked
 def spline_through_hermite(
     u: Sequence[float] | np.ndarray,
     r: Sequence[Sequence[float]] | np.ndarray,
@@ -60,7 +58,6 @@ def spline_through_hermite(
     return _spline(knots, _bezier(knots, position, rate), np.full(len(knots) - 2, 2))
 
 
-@keywords_checked
 def without_removable_knots(spline: BSpline) -> BSpline:
     """Return the same cubic with one knot in place of two wherever its second derivative does not jump.
 

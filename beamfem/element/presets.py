@@ -4,11 +4,9 @@ from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.element import Element, Integration
 from beamfem.element.fields import Cubic, Lagrange
 from beamfem.element.forces import ContinuumMechanics, Forces, SplitContinuum, Structural
-from beamfem.keywords import keywords_checked
 from beamfem.validation import flag
 
 
-@keywords_checked
 def ANCF(forces: Forces | None = None, integration: Integration | None = None) -> Element:
     """Return the ANCF element: cubic field with gradients as coordinates, 6 coordinates per node.
 
@@ -37,7 +35,6 @@ def ANCF(forces: Forces | None = None, integration: Integration | None = None) -
     return Element(Cubic(), Gradients(), _chosen(forces, ContinuumMechanics()), integration, "ANCF")
 
 
-@keywords_checked
 def ANCFCRBF(forces: Forces | None = None, integration: Integration | None = None) -> Element:
     """Return the ANCF-CRBF element: cubic field with rotations as coordinates, 5 coordinates per node.
 
@@ -66,7 +63,6 @@ def ANCFCRBF(forces: Forces | None = None, integration: Integration | None = Non
     return Element(Cubic(), Rotation(), _chosen(forces, ContinuumMechanics()), integration, "ANCF-CRBF")
 
 
-@keywords_checked
 def BilinearANCF(forces: Forces | None = None, integration: Integration = "full") -> Element:
     """Return the bilinear ANCF element: bilinear field with gradients as coordinates, 4 coordinates per node.
 
@@ -95,7 +91,6 @@ def BilinearANCF(forces: Forces | None = None, integration: Integration = "full"
     return Element(Lagrange(1), Gradients(), _chosen(forces, ContinuumMechanics()), integration, "bilinear-ANCF")
 
 
-@keywords_checked
 def BilinearCRBF(forces: Forces | None = None, integration: Integration = "full") -> Element:
     """Return the bilinear CRBF element: bilinear field with rotations as coordinates, 3 coordinates per node.
 
@@ -124,7 +119,6 @@ def BilinearCRBF(forces: Forces | None = None, integration: Integration = "full"
     return Element(Lagrange(1), Rotation(), _chosen(forces, ContinuumMechanics()), integration, "bilinear-CRBF")
 
 
-@keywords_checked
 def CRBF(order: int, forces: Forces | None = None, integration: Integration = "reduced") -> Element:
     """Return the CRBF element: field of any order in r and r_y with rotations as coordinates, 3 coordinates per node.
 
@@ -160,7 +154,6 @@ def CRBF(order: int, forces: Forces | None = None, integration: Integration = "r
     return Element(Lagrange(order), Rotation(), _chosen(forces, Structural()), integration, f"CRBF-{order}")
 
 
-@keywords_checked
 def ShearRigid(
     stretchable: bool = True, forces: Forces | None = None, integration: Integration | None = None
 ) -> Element:

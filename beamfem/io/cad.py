@@ -13,7 +13,6 @@ from beamfem.curves import Arc, BSpline, Chain, Curve, Line, Polyline, elliptic_
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
 from beamfem.files import readable
-from beamfem.keywords import keywords_checked
 from beamfem.validation import nearest, optional, text
 
 # distance from the plane z = 0, tilt and length of a piece that count as zero, as a fraction of the coordinates
@@ -26,7 +25,6 @@ _FRAME = 16
 _ANNOTATION = ("TEXT", "MTEXT", "ATTDEF", "DIMENSION", "ARC_DIMENSION", "LEADER", "MULTILEADER", "TOLERANCE", "HATCH")
 
 
-@keywords_checked
 def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve, ...]:
     """Return the curves in the modelspace of a DXF file, in the units and order of the drawing.
 

@@ -16,7 +16,6 @@ from beamfem.io.abaqus import read_abaqus
 from beamfem.io.frame import Frame, Members, build_frame
 from beamfem.io.mesh_file import MeshFile, read_through_meshio
 from beamfem.io.touching import divided, merged, parts_of, warn_of_gaps
-from beamfem.keywords import keywords_checked
 from beamfem.material import Material
 from beamfem.validation import LARGEST, flag, holds_truth_values, items, number_table, shown, text
 
@@ -130,7 +129,6 @@ class LineMesh:
         return build_frame(self, elements, element, section, material, members, hinges)
 
 
-@keywords_checked
 def read_mesh(path: str | PathLike[str], *, merge: bool = False) -> LineMesh:
     """Return the lines of a mesh file, in its units.
 

@@ -25,7 +25,6 @@ from beamfem.io.hdf5 import (
     write_hdf5,
     write_label,
 )
-from beamfem.keywords import keywords_checked
 from beamfem.results.path import Path as EquilibriumPath
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics, Status
@@ -77,7 +76,6 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
     write_hdf5(path, fill)
 
 
-@keywords_checked
 def load(path: str | PathLike[str]) -> Solution:
     """Return the solution stored in a file.
 

@@ -11,13 +11,10 @@ from uuid import uuid4
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-from vtkmodules.vtkCommonCore import vtkDataArray, vtkPoints, vtkStringArray
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
-from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
 from beamfem.assembly.callbacks import uninterrupted
 from beamfem.errors import FileError, InputError
+from beamfem.extras import needed_for
 from beamfem.files import make_folder, path_of, whole
 from beamfem.io.boundary import Boundary
 from beamfem.io.cells import LINE, Cells, Content, Geometry, Grid, times
@@ -26,6 +23,12 @@ from beamfem.validation import items
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
+
+with needed_for("to_vtk"):
+    from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+    from vtkmodules.vtkCommonCore import vtkDataArray, vtkPoints, vtkStringArray
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
 VALUES_IN_MEMORY = 100_000
 _STEPS_BETWEEN_PUBLISHING = 50

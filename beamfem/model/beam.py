@@ -17,7 +17,6 @@ from beamfem.model.jumps import find_jumps
 from beamfem.model.law_fits import require_law_fits
 from beamfem.model.magnitudes import require_magnitudes
 from beamfem.once import cached_property
-from beamfem.registry import offered
 from beamfem.section.law import ConstitutiveLaw, law_of
 from beamfem.section.protocol import CrossSection
 from beamfem.section.thermal import expansion
@@ -109,7 +108,9 @@ class Beam:
         return f"Beam({called}{curve}, {count} x {self.element.name})"
 
     def _repr_html_(self) -> str:
-        return offered(Beam._repr_html_)(self)
+        from beamfem.view.result_tables import beam_table
+
+        return beam_table(self)
 
     @cached_property
     def prismatic(self) -> bool:

@@ -3,14 +3,12 @@
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.keywords import keywords_checked
 from beamfem.memory import USABLE_FRACTION, in_gib, installed_memory
 from beamfem.validation import count, positive
 
 _ELEMENT = 64  # bytes per element: its fraction as a float in a tuple, and in intermediate arrays
 
 
-@keywords_checked
 def graded(elements: int, ratio: float) -> tuple[float, ...]:
     """Return the ends of elements whose lengths grow geometrically, for `Beam(elements=...)`.
 

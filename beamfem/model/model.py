@@ -2,6 +2,7 @@
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, is_dataclass
+from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -22,14 +23,12 @@ from beamfem.model.made_of import MadeOf, made_of
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.meshes import NumberedMeshes, numbered_meshes
 from beamfem.model.misplaced import beam_like, listed, refused, touching
-from beamfem.model.model_outputs import ModelOutputs
-from beamfem.model.model_parts import ModelParts
 from beamfem.model.named import require_different_names
 from beamfem.model.plausible import warn_of_units
 from beamfem.model.point_load import PointLoad
 from beamfem.model.support import LineSupport, PointSupport, Support
+from beamfem.model.supports_along import SupportsAlong
 from beamfem.once import cached_property, shared_property
-from beamfem.registry import offered
 from beamfem.units import Units, units_of
 from beamfem.validation import shown
 
@@ -44,7 +43,7 @@ _KINDS: dict[str, tuple[type, ...]] = {
 
 
 @dataclass(frozen=True, eq=False)
-class Model(ModelParts, ModelOutputs):
+class Model:
     """Beams with supports, loads and joints, meshed and numbered.
 
     Supports, joints, point loads, connectors and kinks of loads along beams place a mesh node at their point.
@@ -318,8 +317,99 @@ class Model(ModelParts, ModelOutputs):
         """The loads that impose strains, each with the number of its beam."""
         return tuple((self._numbers[id(load.beam)], load) for load in self.loads if isinstance(load, ImposedStrain))
 
+    @cached_property
+    def gravity(self) -> tuple[BodyLoad, ...]:
+        """The loads that are accelerations of all mass."""
+        return tuple(load for load in self.loads if isinstance(load, BodyLoad))
+
+    @cached_property
+    def line_loads(self) -> tuple[LineLoad, ...]:
+        """The loads that are forces along beams."""
+        return tuple(load for load in self.loads if isinstance(load, LineLoad))
+
+    @cached_property
+    def point_loads(self) -> tuple[PointLoad, ...]:
+        """The loads that are forces and moments at points."""
+        return tuple(load for load in self.loads if isinstance(load, PointLoad))
+
+    @cached_property
+    def point_supports(self) -> tuple[PointSupport, ...]:
+        """The supports at points."""
+        return tuple(support for support in self.supports if isinstance(support, PointSupport))
+
+    @cached_property
+    def supports_along(self) -> SupportsAlong:
+        """The supports at points in the order of their beams' fractions."""
+        return SupportsAlong(self.point_supports)
+
+    @cached_property
+    def line_supports(self) -> tuple[LineSupport, ...]:
+        """The supports along beams."""
+        return tuple(support for support in self.supports if isinstance(support, LineSupport))
+
+    def with_imperfection(self, modes: Any, size: float, mode: int = 0) -> "Model":
+        """Return the model with its axes displaced by a mode and stress-free in the new shape.
+
+        Parameters
+        ----------
+        modes : Buckling, Modes or array
+            Result of `solve_buckling` or `solve_modes`, or an increment (n,) of all coordinates.
+        size : float, [m]
+            Largest displacement.
+        mode : int, default 0
+            Index of the mode.
+
+        Returns
+        -------
+        Model
+            The model with the imperfection.
+
+        Raises
+        ------
+        InputError
+            If the modes do not fit the model or move no axis.
+
+        Examples
+        --------
+        >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e3, 0.0))])
+        >>> crooked = column.with_imperfection(bf.solve_buckling(column), size=0.002)
+        """
+        from beamfem.results.imperfection import with_imperfection
+
+        return with_imperfection(self, modes, size, mode)
+
+    def plot(self, path: str | PathLike[str] | None = None) -> Any:
+        """Draw the undeformed model with its supports and loads.
+
+        Nothing is solved, so mechanisms and overloaded models can be drawn too.
+
+        Parameters
+        ----------
+        path : path, optional
+            File to write (PNG, SVG, PDF).
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure.
+
+        Raises
+        ------
+        MissingPackageError
+            Without matplotlib.
+
+        Examples
+        --------
+        >>> figure = model.plot("model.png")
+        """
+        from beamfem.view.model_drawing import plot_model
+
+        return plot_model(self, path)
+
     def _repr_html_(self) -> str:
-        return offered(Model._repr_html_)(self)
+        from beamfem.view.summary import model_table
+
+        return model_table(self)
 
 
 def block_key(beam: Beam) -> tuple[Element, Hashable]:

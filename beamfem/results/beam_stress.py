@@ -9,7 +9,6 @@ import numpy as np
 from beamfem.model.beam import Beam
 from beamfem.model.distributions import distributions
 from beamfem.model.mesh import BeamMesh
-from beamfem.registry import offered
 from beamfem.results.extremes import Measure, estimate, extreme_of_beams
 from beamfem.results.free_bodies import Cuts
 from beamfem.results.neighbours import of_beam
@@ -93,7 +92,9 @@ class BeamStress:
         return f"BeamStress({rows} rows, {stations} stations of {self.beam!r}; peaks: {peaks})"
 
     def _repr_html_(self) -> str:
-        return offered(BeamStress._repr_html_)(self)
+        from beamfem.view.result_tables import stress_table
+
+        return stress_table(self)
 
     def peak(self, part: Part = "von_mises") -> Peak:
         """Return the peak along the beam, at and between its stations, and over the rows.

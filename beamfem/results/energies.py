@@ -11,7 +11,6 @@ from beamfem.brief import brief
 from beamfem.model.beam import Point
 from beamfem.model.load import Load, factor
 from beamfem.model.model import Model
-from beamfem.registry import offered
 from beamfem.results.connected import potential_of_connectors
 from beamfem.results.displacements import Displacements
 from beamfem.results.loading import loading
@@ -52,7 +51,9 @@ class Energy:
         return self.unit
 
     def _repr_html_(self) -> str:
-        return offered(Energy._repr_html_)(self)
+        from beamfem.view.result_tables import energy_table
+
+        return energy_table(self)
 
     @property
     def total(self) -> np.ndarray:

@@ -9,7 +9,6 @@ from skfem.element import DiscreteField
 from beamfem.brief import brief
 from beamfem.errors import InputError
 from beamfem.forms import axis_basis, beam_basis
-from beamfem.keywords import keywords_checked
 from beamfem.model.beam import Beam
 from beamfem.results.postprocess import nodal_vectors
 from beamfem.results.solution import Solution
@@ -63,7 +62,6 @@ class FieldOnBasis:
         return self.basis.interpolate(self.values[row])
 
 
-@keywords_checked
 def field_on_basis(solution: Solution, beam: Beam, body: bool = True, piece: int | None = None) -> FieldOnBasis:
     """Return the field of a beam in all states of a solution on a scikit-fem basis.
 

@@ -10,7 +10,6 @@ import numpy as np
 from beamfem.brief import brief
 from beamfem.model.beam import Beam
 from beamfem.model.mesh import BeamMesh
-from beamfem.registry import offered
 from beamfem.results.acting import Rows, rows_of
 from beamfem.results.extremes import Measure, extreme
 from beamfem.results.free_bodies import Cuts, Parted, cut_free, parted
@@ -102,7 +101,9 @@ class SectionForces:
         return self.units.of({"arc_length": "m", "moment": "N m"}.get(name, "N"))
 
     def _repr_html_(self) -> str:
-        return offered(SectionForces._repr_html_)(self)
+        from beamfem.view.result_tables import section_forces_table
+
+        return section_forces_table(self)
 
 
 def section_forces(solution: "Solution", beam: Beam) -> SectionForces:

@@ -1,23 +1,37 @@
 """A solution: states of a model over load factor or time, and the results derived from them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import SupportsIndex, overload
+from os import PathLike
+from pathlib import Path
+from typing import Any, Literal, SupportsIndex, overload
 
 import numpy as np
 
 from beamfem.brief import brief
+from beamfem.curves import BSpline, spline_through_hermite, without_removable_knots
 from beamfem.errors import InputError
+from beamfem.model.beam import Beam, Point
+from beamfem.model.contribution import Contribution
 from beamfem.model.model import Model
 from beamfem.once import cached_property
-from beamfem.registry import offered
+from beamfem.results import postprocess
+from beamfem.results.beam_stress import BeamStress, Part, Peak, beam_stress, peak_stress
 from beamfem.results.checks import findings
-from beamfem.results.exports import Exports
+from beamfem.results.connected import connector_force, kinetic_of_connectors, momenta_of_connectors, multipliers
+from beamfem.results.energies import Energy, dissipated, potential
+from beamfem.results.energy_drift import EnergyDrift, energy_drift
 from beamfem.results.fitting import made_read_only, require_rows, require_state
-from beamfem.results.pictures import Pictures
-from beamfem.results.quantities import Quantities
+from beamfem.results.imposed import imposed_measures
+from beamfem.results.last_digits import remainders
+from beamfem.results.nodal import rate_at
+from beamfem.results.postprocess import Fields
+from beamfem.results.reactions import reaction, support_forces
+from beamfem.results.section_forces import Cuts, SectionForces, at_points, section_forces
+from beamfem.results.self_stress import self_stress
 from beamfem.results.status import Statistics, Status, counted
-from beamfem.results.turns import start_rotations
-from beamfem.validation import shown, whole
+from beamfem.results.turns import rotations, start_rotations, turned_of
+from beamfem.validation import number_below, shown, whole
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,11 +76,13 @@ class State:
         require_state(self)
 
     def _repr_html_(self) -> str:
-        return offered(State._repr_html_)(self)
+        from beamfem.view.result_tables import state_table
+
+        return state_table(self)
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(Quantities, Pictures, Exports):
+class Solution:
     """States of a model: row 0 is the start, the last row the end.
 
     Parameters
@@ -181,11 +197,13 @@ class Solution(Quantities, Pictures, Exports):
         Without follower loads: the tangent stiffness has no negative eigenvalue (Lagrange-Dirichlet theorem). With
         them: no mode of vibration diverges or flutters. Raises InputError for a motion.
         """
+        from beamfem.solve.stability.stability import stable_rows
+
         if not self.static:
             raise InputError("stable is defined for static solutions only; this one is a motion")
         if self.stability is not None:
             return self.stability
-        return self._stable_rows()
+        return stable_rows(self)
 
     @property
     def time(self) -> np.ndarray:
@@ -206,8 +224,862 @@ class Solution(Quantities, Pictures, Exports):
         """Total number of Newton iterations."""
         return self.statistics.iterations
 
-    def _repr_html_(self) -> str:
-        return offered(Solution._repr_html_)(self)
+    def fields(self, point: Point) -> Fields:
+        """Return position, gradients, rotation, shear angle, strain and stress at a point.
 
-    def _stable_rows(self) -> np.ndarray:
-        return offered(Solution._stable_rows)(self)
+        Where two elements meet or a load acts, strain and stress are those on the side towards the beam's end.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam, such as `beam.end` or `beam.at(0.5)`.
+
+        Returns
+        -------
+        Fields
+            The fields over the steps.
+
+        Examples
+        --------
+        >>> fields = solution.fields(beam.at(0.5))
+        >>> fields.position[-1].round(4)
+        array([ 0.9999, -0.0096])
+        """
+        mesh = self.model.mesh_of(point)
+        element, xi = (np.array([value]) for value in mesh.locate(point.fraction))
+        forces = at_points(self, mesh, Cuts(element, xi))
+        eigenstress = self_stress(self, mesh, element, xi, None, np.zeros((1, 1)))
+        result = postprocess.fields(mesh, self.p, element, xi, forces, eigenstress, turned_of(self, mesh))
+        return Fields(*(postprocess.at_single_point(getattr(result, name)) for name in Fields.__dataclass_fields__))
+
+    def position(self, point: Point) -> np.ndarray:
+        """Return the position of a point.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam.
+
+        Returns
+        -------
+        array, [m], (steps, 2)
+            Position (x, y).
+
+        Examples
+        --------
+        >>> solution.position(beam.end)[-1].round(4)
+        array([ 1.9997, -0.0305])
+        """
+        return postprocess.position(self.model.mesh_of(point), self.p, point.fraction)
+
+    def displacement(self, point: Point) -> np.ndarray:
+        """Return the displacement of a point from the reference configuration.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam.
+
+        Returns
+        -------
+        array, [m], (steps, 2)
+            Displacement (ux, uy).
+
+        Examples
+        --------
+        >>> solution.displacement(beam.end)[-1].round(4)
+        array([-0.0003, -0.0305])
+        """
+        mesh = self.model.mesh_of(point)
+        return self.position(point) - postprocess.start(mesh, point.fraction)
+
+    def velocity(self, point: Point) -> np.ndarray:
+        """Return the velocity of a point.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam.
+
+        Returns
+        -------
+        array, [m/s], (steps, 2)
+            Velocity (vx, vy).
+
+        Examples
+        --------
+        >>> motion = bf.simulate(model, duration=0.02, step=0.001)
+        >>> motion.velocity(beam.end)[-1].round(2)
+        array([-0.09, -2.44])
+        """
+        mesh = self.model.mesh_of(point)
+        element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
+        return rate_at(mesh, self.p, self.v, element, xi).r[:, 0]
+
+    def rotation(self, point: Point) -> np.ndarray:
+        """Return the rotation of the section, counter-clockwise positive, full turns included.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam.
+
+        Returns
+        -------
+        array, [rad], (steps,)
+            Rotation from the reference.
+
+        Examples
+        --------
+        >>> round(float(solution.rotation(beam.end)[-1]), 4)
+        -0.0229
+        """
+        self.model.mesh_of(point)  # refuses what is no point of this model
+        return rotations(self, [point])[:, 0]
+
+    def reaction(self, point: Point) -> np.ndarray:
+        """Return the reaction of supports and springs on the beam at a point.
+
+        Supports at joined points of other beams are not included.
+
+        Parameters
+        ----------
+        point : Point
+            A supported point.
+
+        Returns
+        -------
+        array, (steps, 3)
+            fx, fy [N], m [N m].
+
+        Raises
+        ------
+        InputError
+            If the point has no support.
+
+        Examples
+        --------
+        >>> solution.reaction(beam.start)[-1, 1:].round()  # fy, m
+        array([10000., 19997.])
+        """
+        return reaction(self, point)
+
+    def connector_force(self, connector: Contribution) -> np.ndarray:
+        """Return the forces of a connector on its points.
+
+        Parameters
+        ----------
+        connector : Contribution
+            One of `model.connectors`.
+
+        Returns
+        -------
+        array, (steps, m, 3)
+            fx, fy [N], m [N m] at each of its m points.
+
+        Raises
+        ------
+        InputError
+            For a connector that is not in the model.
+
+        Examples
+        --------
+        >>> forces = solution.connector_force(model.connectors[0])  # doctest: +SKIP
+        """
+        return connector_force(self, connector)
+
+    def multipliers(self, connector: Contribution) -> np.ndarray:
+        """Return the additional unknowns of a connector, such as multipliers.
+
+        Parameters
+        ----------
+        connector : Contribution
+            One of `model.connectors`.
+
+        Returns
+        -------
+        array, (steps, k)
+            Its unknowns.
+
+        Raises
+        ------
+        InputError
+            For a connector that is not in the model.
+
+        Examples
+        --------
+        >>> tension = solution.multipliers(model.connectors[0])[:, 0]  # doctest: +SKIP
+        """
+        return multipliers(self, connector)
+
+    @cached_property
+    def support_forces(self) -> np.ndarray:
+        """Generalized forces of all supports and springs (steps, n) [N, N m]."""
+        return support_forces(self)
+
+    @cached_property
+    def remainders(self) -> np.ndarray:
+        """Corrections (steps, n) of the coordinates of a static solution that are smaller than their last digit.
+
+        In a stiff part of a model they may change the forces noticeably; zero where they do not, and for a motion.
+        """
+        return remainders(self)
+
+    def section_forces(self, beam: Beam) -> SectionForces:
+        """Return normal force, shear force and moment along a beam.
+
+        Parameters
+        ----------
+        beam : Beam
+            A beam of the model.
+
+        Returns
+        -------
+        SectionForces
+            The forces, (steps, stations).
+
+        Raises
+        ------
+        InputError
+            For a beam of another model.
+
+        Examples
+        --------
+        >>> forces = solution.section_forces(beam)
+        >>> round(float(forces.moment[-1, 0]), -1)  # at the clamp
+        -20000.0
+        """
+        self.model.number_of(beam)  # rejects beams of other models
+        return section_forces(self, beam)
+
+    def stresses(self, beam: Beam) -> BeamStress:
+        """Return the extreme stresses of the sections along a beam.
+
+        Parameters
+        ----------
+        beam : Beam
+            A beam of the model.
+
+        Returns
+        -------
+        BeamStress
+            The stresses, (steps, stations).
+
+        Raises
+        ------
+        InputError
+            For a beam of another model.
+
+        Examples
+        --------
+        >>> stress = solution.stresses(beam)
+        >>> round(stress.peak("von_mises").value / 1e6)  # MPa
+        240
+        """
+        self.model.number_of(beam)
+        return beam_stress(self, beam)
+
+    def peak_stress(self, part: Part = "von_mises") -> Peak:
+        """Return the peak of a stress over all beams and rows.
+
+        Parameters
+        ----------
+        part : str, default "von_mises"
+            See `BeamStress.peak`.
+
+        Returns
+        -------
+        Peak
+            The peak, with its beam; nan if no value is known.
+
+        Warns
+        -----
+        UnknownStressWarning
+            If sections of some beams define no stress, such as moments without a height.
+
+        Examples
+        --------
+        >>> peak = solution.peak_stress()
+        >>> round(peak.value / 1e6), peak.beam is beam  # MPa
+        (240, True)
+        """
+        return peak_stress(self, part)
+
+    @cached_property
+    def _momenta(self) -> tuple[postprocess.Momenta, ...]:
+        return tuple(postprocess.momenta(mesh, self.p, self.v) for mesh in self.model.meshes)
+
+    def energy(self) -> Energy:
+        """Return kinetic, strain, potential, total and dissipated energy, see `Energy`.
+
+        The potential is zero in the reference configuration.
+
+        Returns
+        -------
+        Energy
+            Energies [J], (steps,).
+
+        Examples
+        --------
+        >>> energy = solution.energy()
+        >>> energy.strain.round(1)
+        array([  0. , 152.6])
+        """
+        kinetic = sum((m.kinetic for m in self._momenta), kinetic_of_connectors(self))
+        imposed = ((mesh, imposed_measures(self, mesh)) for mesh in self.model.meshes)
+        parts = (postprocess.strain_energies(mesh, self.p, measures) for mesh, measures in imposed)
+        strain, lost = sum(parts, np.zeros((len(self), 2))).T
+        acting = potential(self, [m.first_moment for m in self._momenta])
+        return Energy(kinetic, strain, acting, dissipated(self, lost), self.model.unit("J"))
+
+    @cached_property
+    def energy_drift(self) -> EnergyDrift | None:
+        """Change of the total energy [J] over a motion on which no work is done: an error of the time steps.
+
+        None for a static solution, and for a motion on which work is done.
+        """
+        return energy_drift(self) if len(self) else None
+
+    def linear_momentum(self) -> np.ndarray:
+        """Return the linear momentum.
+
+        Returns
+        -------
+        array, [kg m/s], (steps, 2)
+            Momentum in x and y.
+
+        Examples
+        --------
+        >>> motion = bf.simulate(model, duration=0.02, step=0.001)
+        >>> motion.linear_momentum()[-1].round(1)
+        array([ -1.5, -58.4])
+        """
+        return np.asarray(sum(m.linear for m in self._momenta) + momenta_of_connectors(self)[:, :2])
+
+    def angular_momentum(self) -> np.ndarray:
+        """Return the angular momentum about the origin.
+
+        Returns
+        -------
+        array, [kg m^2/s], (steps,)
+            Angular momentum.
+
+        Examples
+        --------
+        >>> motion = bf.simulate(model, duration=0.02, step=0.001)
+        >>> round(float(motion.angular_momentum()[-1]), 1)
+        -86.1
+        """
+        return np.asarray(sum(m.angular for m in self._momenta) + momenta_of_connectors(self)[:, 2])
+
+    def spline(self, beam: Beam, row: int = -1) -> BSpline:
+        """Return the exact deformed axis of a beam of cubic elements as a cubic B-spline.
+
+        Its knots are those of the beam's own spline, or arc lengths.
+
+        Parameters
+        ----------
+        beam : Beam
+            A beam of cubic elements.
+        row : int, default -1
+            Row of the solution.
+
+        Returns
+        -------
+        BSpline
+            The deformed axis.
+
+        Raises
+        ------
+        InputError
+            For other elements.
+
+        Examples
+        --------
+        >>> cubic = bf.Beam(bf.Line((0, 0), (2, 0)), 4, bf.ShearRigid(), bf.Rectangle(0.05, 0.1), steel)
+        >>> bent = bf.solve_static(bf.Model([cubic], [bf.Clamp(cubic.start)], [bf.PointForce(cubic.end, (0.0, -1e4))]))
+        >>> bent.spline(cubic).degree
+        3
+        """
+        mesh = self.model.meshes[self.model.number_of(beam)]
+        if "r_x" not in mesh.vectors or mesh.nodes != len(mesh.parameter):
+            raise InputError(
+                f"the axis of {beam.element.name} elements is no cubic spline; use cubic elements such as ANCF"
+            )
+        number = number_below("row", row, len(self), -len(self))
+        e = postprocess.nodal_vectors(mesh, self.p[number][None])[0]
+        return without_removable_knots(spline_through_hermite(mesh.parameter, e[:, 0], mesh.rate * e[:, 1]))
+
+    def to_html(self, path: str | PathLike[str], *, title: str | None = None, frames: int = 60) -> Path:
+        """Write an HTML page with a slider over the steps: a single file that works offline.
+
+        The body moves with its supports, optionally coloured by a section force [N, N m], rotation [rad], displacement
+        [m] or speed [m/s]; a curve of the largest displacement and the statistics are shown beside it. The file is
+        smaller than 1 MB: for large models only the axes and fewer steps are drawn.
+
+        Parameters
+        ----------
+        path : path
+            File to write, .html.
+        title : str, optional
+            Heading of the page.
+        frames : int, default 60
+            Largest number of steps.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        InputError
+            For another suffix.
+
+        Examples
+        --------
+        >>> page = solution.to_html("cantilever.html", title="Cantilever")
+        """
+        from beamfem.view.player import write_player
+
+        return write_player(self, path, title=title, frames=frames)
+
+    def plot(
+        self,
+        path: str | PathLike[str] | None = None,
+        *,
+        colour: str | None = None,
+        shapes: int | None = None,
+        undeformed: bool = True,
+        supports: bool = True,
+        loads: bool = True,
+    ) -> Any:
+        """Draw the deformed body, at several steps later ones darker.
+
+        Parameters
+        ----------
+        path : path, optional
+            File to write (PNG, SVG, PDF); folders are created.
+        colour : str, optional
+            By default the time or load factor; or a field along the beams, whose extreme value is marked: "moment"
+            [N m], "normal", "shear" [N], "rotation" [rad], "displacement" [m], "speed" [m/s], "axial_strain" [-]
+            (Green strain xx of the axis), "shear_angle" [rad]; of the stress [Pa] "stress" or "von_mises" (von Mises
+            stress over the height), of each section "upper", "lower" (faces), "outer" (the larger of both),
+            "tension", "compression", "shear_stress" (extremes); or "utilisation" [-] of the strength, over the height.
+        shapes : int, optional
+            Number of steps, one of them the last; by default the last alone, of motions and paths 9.
+        undeformed : bool, default True
+            Whether to draw the reference axes dashed.
+        supports, loads : bool, default True
+            Whether to draw their symbols, each load on the shape at which it is largest.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure.
+
+        Raises
+        ------
+        InputError
+            For an unknown option or value.
+        MissingPackageError
+            Without matplotlib.
+
+        Examples
+        --------
+        >>> figure = solution.plot("cantilever.png", colour="moment", loads=False)
+        """
+        from beamfem.view.drawing import plot_shapes
+
+        return plot_shapes(
+            self, path, colour=colour, shapes=shapes, undeformed=undeformed, supports=supports, loads=loads
+        )
+
+    def plot_history(
+        self,
+        point: Point | Sequence[Point] | None = None,
+        quantity: str = "displacement",
+        path: str | PathLike[str] | None = None,
+    ) -> Any:
+        """Plot a quantity at one or several points against time or load factor.
+
+        Parameters
+        ----------
+        point : Point or sequence of Point, optional
+            Where to evaluate the quantity.
+        quantity : str, default "displacement"
+            "displacement", "ux", "uy", "position" [m], "velocity" [m/s], "rotation" [rad]; at supports "force" [N] and
+            "reaction_moment" [N m]; without a point "energy" [J].
+        path : path, optional
+            File to write (PNG, SVG, PDF).
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure.
+
+        Raises
+        ------
+        InputError
+            For an unknown quantity, or one that needs a point.
+        MissingPackageError
+            Without matplotlib.
+
+        Examples
+        --------
+        >>> figure = solution.plot_history(beam.end, "uy", "tip.png")
+        """
+        from beamfem.view.history import plot_history
+
+        return plot_history(self, point, quantity, path)
+
+    def plot_curve(self, x: Any, y: Any, path: str | PathLike[str] | None = None) -> Any:
+        """Plot one quantity against another, one point per row.
+
+        A quantity is a pair of a name and a point, such as ("uy", beam.end), with the names "ux", "uy", "x", "y" [m],
+        "rotation" [rad], "vx", "vy" [m/s], "normal", "shear" [N], "moment" [N m], those of stresses in `plot` [Pa] and,
+        at supports, "fx", "fy" [N] and "m" [N m]; or "load_factor" or "time" [s]; or "kinetic", "strain", "potential"
+        or "total" energy [J]; or a pair of a label and numbers (steps,); or numbers. Where two elements meet or a load
+        acts, a section is that on the side towards the beam's end.
+
+        Parameters
+        ----------
+        x, y : tuple, str or array
+            Quantities along the horizontal and the vertical axis.
+        path : path, optional
+            File to write (PNG, SVG, PDF).
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure.
+
+        Raises
+        ------
+        InputError
+            For an unknown quantity.
+        MissingPackageError
+            Without matplotlib.
+
+        Examples
+        --------
+        >>> figure = solution.plot_curve(("uy", beam.end), ("fy", beam.start), "curve.png")
+        """
+        from beamfem.view.curve import plot_curve
+
+        return plot_curve(self, x, y, path)
+
+    def plot_load_displacement(
+        self, point: Point, quantity: str = "uy", path: str | PathLike[str] | None = None
+    ) -> Any:
+        """Plot the load factor against a displacement or rotation of a point.
+
+        Limit points (circles) and bifurcations (diamonds) of a `Path` are marked, each with its load factor.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam.
+        quantity : str, default "uy"
+            "ux", "uy" [m] or "rotation" [rad].
+        path : path, optional
+            File to write (PNG, SVG, PDF).
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure.
+
+        Raises
+        ------
+        InputError
+            For another quantity, or a motion.
+        MissingPackageError
+            Without matplotlib.
+
+        Examples
+        --------
+        >>> figure = solution.plot_load_displacement(beam.end, "uy", "path.png")
+        """
+        from beamfem.view.history import plot_load_displacement
+
+        return plot_load_displacement(self, point, quantity, path)
+
+    def animate(
+        self,
+        path: str | PathLike[str],
+        *,
+        fps: float = 15.0,
+        seconds: float = 4.0,
+        colour: str | None = None,
+        undeformed: bool = True,
+        supports: bool = True,
+        loads: bool = True,
+        dpi: int = 100,
+    ) -> Path:
+        """Write an animation as GIF or MP4, according to the suffix of `path`.
+
+        About fps * seconds rows are shown, equally spaced in time (in statics by row); with fewer rows each is shown
+        longer. Loads are drawn in each frame with their current amplitude.
+
+        Parameters
+        ----------
+        path : path
+            File to write, .gif or .mp4; folders are created.
+        fps : float, default 15.0
+            Frames per second.
+        seconds : float, [s], default 4.0
+            Duration.
+        colour : str, optional
+            A field along the beams, see `plot`.
+        undeformed : bool, default True
+            Whether to draw the reference axes dashed.
+        supports, loads : bool, default True
+            Whether to draw their symbols.
+        dpi : int, default 100
+            Pixels per inch, of a frame 4 to 8 inches wide.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        InputError
+            For another suffix.
+        MissingPackageError
+            Without matplotlib; for .mp4 without imageio-ffmpeg.
+
+        Examples
+        --------
+        >>> film = solution.animate("cantilever.gif", seconds=1.0, colour="moment")
+        """
+        from beamfem.view.animation import animate
+
+        return animate(
+            self,
+            path,
+            fps=fps,
+            seconds=seconds,
+            colour=colour,
+            undeformed=undeformed,
+            supports=supports,
+            loads=loads,
+            dpi=dpi,
+        )
+
+    def show(self, *, colour: str | None = None, size: tuple[int, int] = (1400, 900)) -> Any:
+        """Open a window with the solid body and a slider over the steps, and wait until it is closed.
+
+        Without a display, or if VTK cannot render, a warning is given and a matplotlib figure is returned instead.
+
+        Parameters
+        ----------
+        colour : str, optional
+            A field along the beams, see `plot`.
+        size : (int, int), default (1400, 900)
+            Width and height in pixels.
+
+        Returns
+        -------
+        pyvista.Plotter or matplotlib.figure.Figure
+            What was shown.
+
+        Raises
+        ------
+        InputError
+            For an invalid option.
+
+        Examples
+        --------
+        >>> window = solution.show(colour="moment")  # doctest: +SKIP
+        """
+        from beamfem.view.body import show
+
+        return show(self, colour=colour, size=size)
+
+    def picture(
+        self,
+        path: str | PathLike[str],
+        *,
+        colour: str | None = None,
+        size: tuple[int, int] = (1400, 900),
+        row: int = -1,
+    ) -> Path:
+        """Write a picture of the solid body in a row, without opening a window.
+
+        Rendering is tried in a child process first; if VTK cannot render, matplotlib draws the same row in the plane
+        and a warning is given.
+
+        Parameters
+        ----------
+        path : path
+            File to write, .png; folders are created.
+        colour : str, optional
+            A field along the beams, see `plot`.
+        size : (int, int), default (1400, 900)
+            Width and height in pixels.
+        row : int, default -1
+            Row of the solution, the last by default.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        InputError
+            For another suffix or an invalid option.
+
+        Examples
+        --------
+        >>> picture = solution.picture("body.png", row=-1, colour="stress")  # doctest: +SKIP
+        """
+        from beamfem.view.body import picture
+
+        return picture(self, path, colour=colour, size=size, row=row)
+
+    def to_vtk(
+        self,
+        path: str | PathLike[str],
+        *,
+        geometry: Literal["deformed", "reference"] = "deformed",
+        fields: Sequence[str] | None = None,
+        single: bool = False,
+    ) -> None:
+        """Write solids, centrelines, supports and loads for ParaView.
+
+        The body is written into `path`; centrelines, and supports and loads, into <stem>_centreline and <stem>_boundary
+        beside it. Names and units of the fields are listed in docs/paraview.md.
+
+        Parameters
+        ----------
+        path : path
+            .vtkhdf (the default suffix): all steps in one file, for ParaView 5.12 or newer; .pvd: a collection of .vtu
+            files, one per step, in the folder <stem>.
+        geometry : {"deformed", "reference"}, default "deformed"
+            "reference" writes the reference positions of the points, to be warped by `displacement`.
+        fields : sequence of str, optional
+            Names of the fields to write, by default all but the stress tensors of bodies: VTK draws curved cells with
+            at most 18 numbers at a point and drops what is more.
+        single : bool, default False
+            Whether to write numbers of four bytes: half the size, seven digits.
+
+        Raises
+        ------
+        InputError
+            For another suffix and for unknown fields.
+        BeamfemError
+            For .vtkhdf without h5py.
+
+        Warns
+        -----
+        UnknownStressWarning
+            If the shape of a section, and so its stress, is not known.
+
+        Examples
+        --------
+        >>> solution.to_vtk("cantilever.pvd", fields=["displacement"])
+        """
+        from beamfem.io.vtk import write_vtk
+
+        write_vtk(self, path, geometry=geometry, fields=fields, single=single)
+
+    def to_xarray(self, beam: Beam | None = None) -> Any:
+        """Return the results along a beam, or along all beams, over the steps as a labelled dataset.
+
+        Parameters
+        ----------
+        beam : Beam, optional
+            A beam of the model, by default all beams in succession.
+
+        Returns
+        -------
+        xarray.Dataset
+            Positions, rotations, section forces, stresses if sections have them, and energies; the statistics are its
+            attributes. Of one beam the arc length is a dimension: at an end that two elements share, the station before
+            it stands one last digit lower, so that both sides are kept.
+
+        Raises
+        ------
+        InputError
+            For a beam of another model.
+        MissingPackageError
+            Without xarray.
+
+        Examples
+        --------
+        >>> data = solution.to_xarray(beam)
+        >>> data["uy"].dims
+        ('load_factor', 'arc_length')
+        """
+        from beamfem.io.table import to_xarray
+
+        return to_xarray(self, beam)
+
+    def to_pandas(self, beam: Beam | None = None) -> Any:
+        """Return the results along a beam, or along all beams, over the steps as a table.
+
+        Parameters
+        ----------
+        beam : Beam, optional
+            A beam of the model, by default all beams.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row for each step and station, with time [s] or load_factor, number of the beam and arc_length [m] as
+            index. Both sides of an end that two elements share have a row: the arc length of the one before it, like
+            the load factor of the row before a jump, is smaller by one last digit, so that no row of the index is
+            there twice.
+
+        Raises
+        ------
+        InputError
+            For a beam of another model.
+        MissingPackageError
+            Without pandas.
+
+        Examples
+        --------
+        >>> table = solution.to_pandas(beam)
+        >>> list(table.index.names)
+        ['load_factor', 'beam', 'arc_length']
+        """
+        from beamfem.io.table import to_pandas
+
+        return to_pandas(self, beam)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write model and states to one HDF5 file with checksums.
+
+        Folders in the path are created. An earlier file is replaced when the new one is complete.
+
+        Parameters
+        ----------
+        path : path
+            File to write; `load` reads it.
+
+        Raises
+        ------
+        InputError
+            For a model with parts that cannot be saved.
+        FileError
+            If the system refuses to write.
+        MissingPackageError
+            Without h5py.
+
+        Examples
+        --------
+        >>> solution.save("cantilever.h5")
+        """
+        from beamfem.io.results import save
+
+        save(self, path)
+
+    def _repr_html_(self) -> str:
+        from beamfem.view.summary import solution_table
+
+        return solution_table(self)

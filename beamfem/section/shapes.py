@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.keywords import keywords_checked
 from beamfem.material import Material
 from beamfem.section.moments import Section, required
 from beamfem.section.outline import Part, RectangleOutline, TubeOutline
@@ -26,7 +25,6 @@ class ShapedSection(Section):
         return (Part(required(material).youngs_modulus, self.outline),)
 
 
-@keywords_checked
 def Rectangle(width: float, height: float, shear_factor: float = 5 / 6) -> Section:
     """Return a rectangular section.
 
@@ -63,7 +61,6 @@ def Rectangle(width: float, height: float, shear_factor: float = 5 / 6) -> Secti
     return ShapedSection(area, second, shear_factor, height=height, outline=outline)
 
 
-@keywords_checked
 def Circle(diameter: float, shear_factor: float = 0.9) -> Section:
     """Return a full circular section.
 
@@ -97,7 +94,6 @@ def Circle(diameter: float, shear_factor: float = 0.9) -> Section:
     return Tube(diameter, 0.5 * diameter, shear_factor)
 
 
-@keywords_checked
 def Tube(diameter: float, thickness: float, shear_factor: float = 0.5) -> Section:
     """Return a circular tube.
 

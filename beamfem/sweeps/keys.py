@@ -1,47 +1,28 @@
-"""Keys by which results are found again: equal function and equal parameters give equal keys, in any process."""
+"""Keys by which results are found again: equal function and equal parameters give equal keys, in any process.
+
+The content of the modules that functions and classes come from is no part of a key: see `code_digest`.
+"""
 
 import hashlib
-import inspect
 import json
-from collections.abc import Callable, Mapping
+import sys
+from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from functools import partial
-from pathlib import PurePath
-from types import BuiltinFunctionType, FunctionType
+from pathlib import Path, PurePath
+from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
 
 from beamfem.errors import InputError
 
-_MOVED = {
-    "beamfem.assembly.rigid_velocity": "beamfem.analysis.initial",
-    "beamfem.solve.motion.integrators": "beamfem.analysis.integrators",
-    "beamfem.solve.motion.dynamics": "beamfem.analysis.dynamics",
-    "beamfem.solve.newton.iteration": "beamfem.analysis.iteration",
-    "beamfem.solve.modes.modes": "beamfem.analysis.modes",
-    "beamfem.solve.paths.trace": "beamfem.analysis.trace",
-    "beamfem.solve.stability.buckling": "beamfem.analysis.buckling",
-    "beamfem.solve.statics.statics": "beamfem.analysis.statics",
-    "beamfem.results.path": "beamfem.path",
-    "beamfem.results.solution": "beamfem.solution",
-    "beamfem.results.status": "beamfem.status",
-}
 
-
-def point_key(function_form: Any, point: Mapping[str, Any]) -> str:
+def point_key(function: Any, point: Mapping[str, Any]) -> str:
     """Return the key of a call (64 hexadecimal digits). Raises InputError for what cannot be keyed."""
     forms = {name: canonical(value, name) for name, value in sorted(point.items())}
-    return _digest(json.dumps([function_form, forms]))
-
-
-def function_form(function: Callable[..., Any]) -> Any:
-    """Return what a function is known by: module, qualified name and what it closes over; its content is `Sources`.
-
-    Raises InputError for lambdas, methods and functions without a source file: another one may look the same.
-    """
-    return canonical(function, "the function")
+    return hashlib.sha256(json.dumps([canonical(function, "the function"), forms]).encode()).hexdigest()
 
 
 def canonical(value: Any, where: str) -> Any:
@@ -49,7 +30,7 @@ def canonical(value: Any, where: str) -> Any:
     if value is None or isinstance(value, bool | np.bool_):
         return str(value)
     if isinstance(value, Enum):
-        return ["enum", _name(type(value)), value.name]
+        return ["enum", _class(type(value), where), value.name]
     if isinstance(value, str):
         return ["text", value]
     if isinstance(value, PurePath):
@@ -70,9 +51,12 @@ def canonical(value: Any, where: str) -> Any:
         parts = {"of": value.func, "with": value.args, "and": value.keywords}
         return ["partial", canonical(parts, where)]
     if is_dataclass(value) and not isinstance(value, type):
-        members = {member.name: getattr(value, member.name) for member in fields(value)}
-        return ["object", _name(type(value)), *([n, canonical(item, f"{where}.{n}")] for n, item in members.items())]
-    if isinstance(value, type | BuiltinFunctionType | np.ufunc):
+        names = [member.name for member in fields(value)]
+        members = [[name, canonical(getattr(value, name), f"{where}.{name}")] for name in names]
+        return ["object", _class(type(value), where), *members]
+    if isinstance(value, type):
+        return ["class", _class(value, where)]
+    if isinstance(value, BuiltinFunctionType | np.ufunc):
         return ["builtin", getattr(value, "__module__", ""), value.__name__]
     if isinstance(value, FunctionType):
         return _function(value, where)
@@ -82,18 +66,57 @@ def canonical(value: Any, where: str) -> Any:
     )
 
 
-def _function(function: FunctionType, where: str) -> Any:
-    name = _name(function)
-    if function.__name__ == "<lambda>":
-        raise InputError(f"{where} is a lambda, which has no name to be found again by; define it with def")
-    try:
-        inspect.getsource(function)
-    except (OSError, TypeError):
-        raise InputError(
-            f"the source of {name} cannot be read, so that a change would go unnoticed; put it in a file"
-        ) from None
+def _function(function: FunctionType, where: str, seen: tuple[FunctionType, ...] = ()) -> Any:
+    name, code = _name(function), function.__code__
     closed = [cell.cell_contents for cell in function.__closure__ or ()]
-    return ["function", name, canonical(closed, f"what {name} closes over")]
+    form = ["function", name, canonical(closed, f"what {name} closes over")]
+    form.append(canonical([function.__defaults__, function.__kwdefaults__], f"the defaults of {name}"))
+    if function.__name__ == "<lambda>" or not _has_file(function):
+        form.append(_code(code))
+    if not _has_file(function):  # the values that it takes from other cells of a notebook
+        used = {name: function.__globals__[name] for name in sorted(_names(code) & function.__globals__.keys())}
+        form += [[name, _used(value, name, (*seen, function))] for name, value in used.items()]
+    return form
+
+
+def _used(value: Any, where: str, seen: tuple[FunctionType, ...]) -> Any:
+    if isinstance(value, ModuleType):
+        return value.__name__
+    if isinstance(value, FunctionType):
+        return value.__qualname__ if value in seen else _function(value, where, seen)
+    return canonical(value, where)
+
+
+def _class(kind: type, where: str) -> str:
+    if not _has_file(kind):
+        raise InputError(
+            f"{where} is of {_name(kind)}, which is in no file, so a change would go unnoticed; put it in one"
+        )
+    return _name(kind)
+
+
+def _has_file(item: FunctionType | type) -> bool:
+    """Return whether a function or class comes from the file of a module, and not from a notebook, say."""
+    module = item.__globals__.get("__name__", "") if isinstance(item, FunctionType) else item.__module__
+    file = getattr(sys.modules.get(module), "__file__", None)
+    if isinstance(item, FunctionType):
+        return file is not None and Path(file).name == Path(item.__code__.co_filename).name
+    return file is not None or module in sys.builtin_module_names
+
+
+def _code(code: CodeType) -> Any:
+    """Return what a function does, the same in each process."""
+    constants = [_code(item) if isinstance(item, CodeType) else _constant(item) for item in code.co_consts]
+    return [code.co_code.hex(), constants, code.co_names, code.co_varnames, code.co_freevars]
+
+
+def _constant(value: Any) -> str:
+    return repr(sorted(map(repr, value))) if isinstance(value, frozenset) else repr(value)
+
+
+def _names(code: CodeType) -> set[str]:
+    inner = [item for item in code.co_consts if isinstance(item, CodeType)]
+    return set(code.co_names).union(*map(_names, inner))
 
 
 def _array(value: np.ndarray, where: str) -> Any:
@@ -104,9 +127,6 @@ def _array(value: np.ndarray, where: str) -> Any:
 
 
 def _name(item: FunctionType | type) -> str:
-    """Return module and qualified name; of what has moved the name under which results may be stored."""
-    return f"{_MOVED.get(item.__module__, item.__module__)}.{item.__qualname__}"
-
-
-def _digest(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()
+    """Return module and qualified name; of beamfem itself without the module, which may move."""
+    module = "beamfem" if item.__module__.startswith("beamfem.") else item.__module__
+    return f"{module}.{item.__qualname__}"

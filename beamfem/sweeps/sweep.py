@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.keywords import keywords_checked
 from beamfem.progress import progress
 from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, name_of, split
 from beamfem.sweeps.result import Sweep
-from beamfem.sweeps.stored import StoredCalls
+from beamfem.sweeps.result_cache import ResultCache
 from beamfem.sweeps.tasks import Failure, TaskRunner
 from beamfem.sweeps.workers import ExecutorFactory, Outcome
 from beamfem.validation import flag
@@ -19,7 +18,6 @@ from beamfem.validation import flag
 _NOT_REACHED = "NotComputed: the sweep was interrupted before"
 
 
-@keywords_checked
 def sweep(
     function: Callable[..., Any],
     /,
@@ -43,9 +41,9 @@ def sweep(
         A file or folder that saves each result as it arrives; the next run of the same function with the same
         parameters reads it.
     keep_stale : bool, default False
-        Use stored results even if the code that they depend on has changed since. By default a `ChangedCodeWarning` is
-        given and the points are computed again if one of the user files that the function depends on (its constants,
-        helpers, and their imports) has changed.
+        Use stored results even if the code has changed since. By default any edit of the script, of a module of the
+        user that is loaded or imported by these, or another version of beamfem computes the points again, with a
+        `ChangedCodeWarning`.
     **parameters
         Arguments of the function. Lists, tuples, ranges and one-dimensional arrays are varied; everything else is
         passed on unchanged.
@@ -83,9 +81,9 @@ def sweep(
     texts = combinations({name: labels(values) for name, values in varied.items()}, {})
     outcomes: list[Outcome | None] = [None] * len(points)
     with ExitStack() as stack:
-        stored = None if store is None else stack.enter_context(StoredCalls(store, function, points))
-        if stored is not None:
-            outcomes = stored.found(keep_stale)
+        cache = None if store is None else stack.enter_context(ResultCache(store, function, points))
+        if cache is not None:
+            outcomes = cache.found(keep_stale)
         todo = [i for i, outcome in enumerate(outcomes) if outcome is None]
         runner = stack.enter_context(TaskRunner(function, executor))
         report = stack.enter_context(progress("points", len(todo)))
@@ -93,8 +91,8 @@ def sweep(
             for done, (number, outcome) in enumerate(runner.run([points[i] for i in todo]), 1):
                 i = todo[number]
                 outcomes[i] = outcome
-                if stored is not None and outcome.error is None:
-                    stored.add(i, assignments(texts[i]), outcome)
+                if cache is not None and outcome.error is None:
+                    cache.add(i, assignments(texts[i]), outcome)
                 report(done)
         except BaseException as error:
             if computed := sum(outcomes[i] is not None for i in todo):

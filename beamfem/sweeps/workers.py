@@ -17,11 +17,11 @@ from typing import Any
 
 import numpy as np
 
+import beamfem
 from beamfem.errors import BeamfemError, InputError
 from beamfem.kernels.compiling import seconds_waited
 from beamfem.progress import no_progress
 from beamfem.results.solution import Solution
-from beamfem.whole import whole_package
 
 ExecutorFactory = Callable[[], Executor]
 Point = Mapping[str, Any]
@@ -69,7 +69,8 @@ def call_all(function: Callable[..., Any], points: Sequence[Point], home: int, a
     if os.getpid() != home:
         end_with_parent()
         _one_thread()
-    whole_package()
+    for name in beamfem.__all__:
+        getattr(beamfem, name)  # imports it
     with no_progress():
         return [call(function, point) for point in points]
 

@@ -101,7 +101,8 @@ def _frames(shapes: Shapes, undeformed: bool, supports: bool, loads: bool, dpi: 
 
 def _write_gif(path: Path, frames: Iterator[np.ndarray], duration: float) -> None:
     """Write with one palette for all frames, so that only what moves is stored."""
-    from PIL import Image
+    with needed_for("a GIF file"):
+        from PIL import Image
 
     palette = Image.new("P", (1, 1))
     palette.putpalette(_palette().ravel().tolist())

@@ -2,23 +2,20 @@
 
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any, Unpack
+from typing import Any
 
 import numpy as np
 
 from beamfem.assembly.equations import MIXED
 from beamfem.assembly.round_off import LOSES
 from beamfem.errors import InputError
-from beamfem.keywords import keywords_checked
 from beamfem.linalg.eigenpairs import Pairs, digits_for, nothing_known
 from beamfem.linalg.general_pairs import general_pairs
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 from beamfem.once import cached_property
-from beamfem.registry import offered
 from beamfem.results.checks import may_lock, warn_of
-from beamfem.results.drawing_options import ModeOptions
 from beamfem.results.locking import frequency_locking
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status, counted
@@ -78,7 +75,9 @@ class Modes:
         return f"Modes({listed}{' ...' if len(self) > 12 else ''} {self.model.unit('Hz')}{warned})"
 
     def _repr_html_(self) -> str:
-        return offered(Modes._repr_html_)(self)
+        from beamfem.view.summary import modes_table
+
+        return modes_table(self)
 
     def __len__(self) -> int:
         return len(self.frequencies)
@@ -204,9 +203,11 @@ class Modes:
         >>> bf.solve_modes(model, count=2).to_xarray(beam)["frequency"].values.round(1)
         array([ 20.8, 129.1])
         """
-        return offered(Modes.to_xarray)(self, beam)
+        from beamfem.io.mode_table import modes_to_xarray
 
-    def plot(self, path: str | PathLike[str] | None = None, **options: Unpack[ModeOptions]) -> Any:
+        return modes_to_xarray(self, beam)
+
+    def plot(self, path: str | PathLike[str] | None = None, *, most: int = 6) -> Any:
         """Draw the modes, each with its frequency.
 
         Dark: the mode at its largest; pale: half a period later; dashed: the reference.
@@ -234,10 +235,11 @@ class Modes:
         --------
         >>> figure = bf.solve_modes(model, count=2).plot("modes.png")
         """
-        return offered(Modes.plot)(self, path, **options)
+        from beamfem.view.mode_shapes import plot_modes
+
+        return plot_modes(self, path, most=most)
 
 
-@keywords_checked
 def solve_modes(model: Model, count: int = 10, about: State | Solution | None = None) -> Modes:
     """Find the lowest modes of vibration, K phi = omega^2 M phi, including those of rigid motions.
 

@@ -10,7 +10,6 @@ from beamfem.assembly.rigid_velocity import RigidVelocity
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, EnergyWarning, InputError, warn
 from beamfem.kernels.motion_record import ITERATIONS
-from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
 from beamfem.model.turns import rotation_pairs
 from beamfem.results.checks import warned
@@ -38,7 +37,6 @@ from beamfem.solve.start.unresolved import name_unresolved
 from beamfem.validation import count, positive, shown
 
 
-@keywords_checked
 def simulate(
     model: Model,
     duration: float,

@@ -10,7 +10,6 @@ from scipy.linalg import LinAlgError
 
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, InputError
-from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
 from beamfem.progress import progress
 from beamfem.results.bent import advice
@@ -39,7 +38,6 @@ _NEAR_START = 0.01  # of the load factor: where an undeclared kink at load facto
 Until = float | Callable[[PathState], bool] | None
 
 
-@keywords_checked
 def trace_equilibrium(
     model: Model,
     until: Until = None,

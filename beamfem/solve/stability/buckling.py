@@ -2,18 +2,15 @@
 
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any, Unpack
+from typing import Any
 
 import numpy as np
 
 from beamfem.errors import ConvergenceError, InputError, RoundOffWarning, warn
-from beamfem.keywords import keywords_checked
 from beamfem.linalg.eigenpairs import digits_for
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
-from beamfem.registry import offered
 from beamfem.results.bent import advice
-from beamfem.results.drawing_options import ModeOptions
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.modes.shapes import largest_translation, upright
@@ -89,7 +86,9 @@ class Buckling:
         return f"Buckling({listed or 'no critical point'}{more}; ended because {self.ended})"
 
     def _repr_html_(self) -> str:
-        return offered(Buckling._repr_html_)(self)
+        from beamfem.view.summary import buckling_table
+
+        return buckling_table(self)
 
     def __len__(self) -> int:
         return len(self.load_factors)
@@ -173,9 +172,11 @@ class Buckling:
         MissingPackageError
             Without xarray.
         """
-        return offered(Buckling.to_xarray)(self, beam)
+        from beamfem.io.mode_table import buckling_to_xarray
 
-    def plot(self, path: str | PathLike[str] | None = None, **options: Unpack[ModeOptions]) -> Any:
+        return buckling_to_xarray(self, beam)
+
+    def plot(self, path: str | PathLike[str] | None = None, *, most: int = 6) -> Any:
         """Draw the modes, each with its load factor.
 
         Pale: the critical state; dark: the same state plus the mode; dashed: the reference.
@@ -204,10 +205,11 @@ class Buckling:
         >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e3, 0.0))])
         >>> figure = bf.solve_buckling(column).plot("buckling.png")
         """
-        return offered(Buckling.plot)(self, path, **options)
+        from beamfem.view.mode_shapes import plot_buckling
+
+        return plot_buckling(self, path, most=most)
 
 
-@keywords_checked
 def solve_buckling(model: Model, count: int = 1, about: State | Solution | None = None) -> Buckling:
     """Find the first points of the loading path at which the tangent stiffness is singular.
 

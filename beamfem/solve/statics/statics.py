@@ -9,7 +9,6 @@ from scipy.linalg import LinAlgError
 
 from beamfem.assembly.compiled import tell_of_compilation
 from beamfem.errors import ConvergenceError, InputError
-from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
 from beamfem.results.checks import warned
 from beamfem.results.solution import Solution
@@ -31,7 +30,6 @@ _NEWTON = Newton()
 _SIDE = 1e-9  # of the load factor: distance from a row at which a function with declared kinks is evaluated
 
 
-@keywords_checked
 def solve_static(
     model: Model,
     steps: int = 1,

@@ -74,7 +74,7 @@ def _require_no_hidden_pair(segment: Segment, found: int) -> None:
     S and T, the matrix (1 - x) S + x T is singular once for each negative eigenvalue of S^-1 T. The number of modes is
     doubled until some of them keep their sign.
     """
-    line, count = segment.line, found + 1
+    line, count = segment.line, found + 3
     while True:
         modes = line.softest_modes(segment.before.factors, count)
         try:

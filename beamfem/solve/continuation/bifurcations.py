@@ -24,6 +24,7 @@ from beamfem.solve.continuation.crossings import (
 
 _BESIDE = 1e-3  # of a segment: distance from a limit point at which signs of pivots and positions are reliable
 _SHARPEST = 1.0  # [rad] per segment: turn of the tangent beside a limit point; a whole step turns by 0.5 at most
+_REAL = 1e-6  # of an eigenvalue: imaginary part that is round-off
 _WINDOW = 0.1  # of a segment: around a limit point that coincides with a bifurcation
 _JUMP = 1e-3  # of a segment: points further apart than this at nearly equal fractions lie on two paths
 _DISTANCE = 5e-3  # of the searched part of a segment: least distance of samples from a bifurcation
@@ -60,7 +61,33 @@ def bifurcations(segment: Segment, limits: list[float]) -> list[Crossing]:
         start = high
     if start < 1.0:
         result += require_no_limit(segment, _search(segment, start, 1.0))
+    if limits or result:
+        _require_no_hidden_pair(segment, len(limits) + len(result))
     return sorted(result, key=lambda crossing: crossing.fraction)
+
+
+def _require_no_hidden_pair(segment: Segment, found: int) -> None:
+    """Raise SegmentLostError if more soft modes change the sign of their stiffness over a segment than were found.
+
+    A step that changes over from sheet to sheet where several modes are soft keeps the count of negative pivots if one
+    mode gains the sign that another loses. The tangents at its ends, condensed onto the same modes, show them: between
+    S and T, the matrix (1 - x) S + x T is singular once for each negative eigenvalue of S^-1 T. The number of modes is
+    doubled until some of them keep their sign.
+    """
+    line, count = segment.line, found + 3
+    while True:
+        modes = line.softest_modes(segment.before.factors, count)
+        try:
+            start, end = (condensed(line, point, modes).stiffness for point in (segment.before, segment.after))
+            ratios = np.linalg.eigvals(np.linalg.solve(start, end))
+        except LinAlgError as error:
+            raise SegmentLostError("the tangent is singular at the end of a step") from error
+        changed = int(np.sum((ratios.real < 0.0) & (np.abs(ratios.imag) < _REAL * np.abs(ratios))))
+        if changed >= found + 2:
+            raise SegmentLostError("the step leads to another path")
+        if changed < count or count > len(modes):
+            return
+        count *= 2
 
 
 def _require_no_corner(segment: Segment, fractions: list[float]) -> None:

@@ -25,6 +25,7 @@ _LARGEST_CORRECTION = 0.5  # of the step
 # path bends within the step.
 _ARC = 0.75
 _BESIDE = 0.03
+_ASIDE = 0.02
 _ANOTHER = 1e-4  # of the model: the least distance of another path; near limit points the tangent itself has an error
 _FARTHEST = 2.0  # of the step: iterates further away are considered to diverge
 _WANTED_ITERATIONS = 8
@@ -124,6 +125,8 @@ def take_step(line: Continuation, point: PathPoint, size: float, to: float | Non
         return Refused("the path turns too sharply", corrected.iterations)
     if leaves_arc(correction, turn) and correction * size > _ANOTHER:
         return Refused("the equilibrium beside the end of the step is on another path", corrected.iterations)
+    if _beside_tangents(line, point, new) > _ASIDE:
+        return Refused("the step leaves the plane of the tangents at its ends", corrected.iterations)
     segment = Segment(line, point, new)
     try:
         limits = segment.limit_points()
@@ -138,6 +141,18 @@ def take_step(line: Continuation, point: PathPoint, size: float, to: float | Non
 def leaves_arc(deviation: float, turn: float) -> bool:
     """Return whether a step deviates from a tangent [rad] by more than a path whose tangent turns by `turn` [rad]."""
     return deviation > _ARC * turn + _BESIDE
+
+
+def _beside_tangents(line: Continuation, before: PathPoint, after: PathPoint) -> float:
+    """Return which fraction of a step lies outside the plane of the tangents at its ends, where all of an arc is."""
+    chord = after.y - before.y
+    size = line.length(chord)
+    aside = after.tangent - line.dot(after.tangent, before.tangent) * before.tangent
+    for direction in (before.tangent, aside):
+        squared = line.dot(direction, direction)
+        if squared > 0.0:
+            chord = chord - line.dot(chord, direction) / squared * direction
+    return line.length(chord) / size
 
 
 def _may_hide_pair(line: Continuation, before: PathPoint, after: PathPoint) -> bool:

@@ -255,6 +255,29 @@ def test_counts_below_a_value_are_those_of_the_reference():
         assert pencil.below((2 * np.pi * hertz) ** 2) == expected
 
 
+def unstable_pencil(element):
+    """A hinged column that is shortened, but kept straight, so far that four modes grow."""
+    beam = thick(element, 12)
+    system = System(bf.Model([beam], [bf.Pin(beam.start), bf.Roller(beam.end, (0, 1))]), static=True)
+    straight = system.reference.copy()
+    straight[system.model.meshes[0].kinematics.dof[:, 0]] *= 1.0 - 0.13
+    return Pencil(system, straight, 1.0)
+
+
+def test_the_shift_about_an_unstable_state_is_clear_of_its_growing_modes_and_found_by_few_counts(monkeypatch):
+    """Eigenvalues by a dense solver; counting those that grow as near zero took 60 factorisations."""
+    pencil = unstable_pencil(bf.CRBF(2))
+    values = eigh(pencil.stiffness.toarray(), pencil.mass.toarray(), eigvals_only=True)
+    assert (values < 0.0).sum() == 4
+    counts, below = [], Pencil.below
+    monkeypatch.setattr(Pencil, "below", lambda own, value: counts.append(value) or below(own, value))
+    shift = pencil.shift(0)
+    assert 4.0 * values[0] / 0.75 <= shift <= values[0] / 0.75
+    assert len(counts) < 25
+    for factor, clear in ((0.9, False), (1.1, False), (1.3, False), (1.4, True), (4.0, True)):
+        assert pencil.clear_of(factor * values[0]) == clear
+
+
 def test_bad_input_is_named():
     beam = thick(bf.CRBF(1), 3)
     model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0, 1e6))])

@@ -6,7 +6,7 @@ import pytest
 import beamfem as bf
 from beamfem.assembly.columns import coordinate_columns
 from beamfem.assembly.equations import STATICS, linearise
-from beamfem.assembly.round_off import _digits
+from beamfem.assembly.round_off import _digits, remainder
 from beamfem.assembly.system import System
 
 SECTION, SOFT = bf.Rectangle(0.1, 0.1), bf.Material(1e6, 0.3, 1.0)
@@ -50,3 +50,16 @@ def test_digits_are_those_of_the_balance_of_the_whole(label, shares, worst):
         unbalanced[mesh.coordinates_of(node)[label]] = share * left
     found = _digits(system, system.reference, unbalanced, 1.0)
     assert found == pytest.approx(np.log10(2.0 * load / (worst * left)), abs=1e-9)
+
+
+@pytest.mark.parametrize(("size", "mended"), [(1e-9, True), (0.9e-7, True), (1.1e-7, False), (1e-5, False)])
+def test_only_the_last_digits_of_a_state_are_mended(size, mended):
+    """A clamped beam whose end is off by a part of the model's size: beyond 1e-7 it is another state, not round-off."""
+    beam = bf.Beam(bf.Line((0, 0), (2, 0)), 4, bf.CRBF(2), SECTION, SOFT)
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 1.0))])
+    system, p = System(model, static=True), bf.solve_static(model).p[-1]
+    shift = np.zeros(len(p))
+    shift[system.free_dofs] = size * system.scale[system.free_dofs]
+    found = remainder(system, p + shift, 1.0)
+    np.testing.assert_allclose(found.step, -shift if mended else 0.0, atol=0.02 * size * system.scale.max())
+    assert (found.digits > 9.0) == mended

@@ -7,7 +7,11 @@ import pytest
 from fuzz_steps import faults_of_steps
 
 import beamfem as bf
+from beamfem.assembly.system import system_of
+from beamfem.kernels import record
+from beamfem.kernels.motion_record import CHANGE, ORDER, TANGENTS
 from beamfem.kernels.motion_steps import check_convergence
+from beamfem.solve.motion.compiled_steps import CompiledSteps
 
 TOLERANCE = 1e-9
 
@@ -71,3 +75,65 @@ def test_a_kept_tangent_does_not_judge_itself(own, size, last, noise, verdict):
 def test_a_tangent_from_far_away_does_not_judge_what_it_led_to(own, far, verdict):
     """A beam that creeps: from 38 m away it converged to 7e-5 m beside the equilibrium."""
     assert check_convergence(2, 0, own, far, 1e-15, 38.0, 38.0, TOLERANCE, np.array([1.0, 0.0]), np.zeros(1)) == verdict
+
+
+@pytest.mark.parametrize(("last", "own", "verdict"), [(0.8e-9, 0, 2), (1.6e-9, 0, 0), (0.8e-9, 1, 1), (1.6e-9, 1, 0)])
+def test_one_small_correction_after_a_larger_one_is_no_round_off(last, own, verdict):
+    """Ratios of 0.56 would leave as much again; only two corrections within the tolerance may be noise."""
+    size = 0.56 * last
+    noise = np.zeros(1)
+    assert check_convergence(2, 0, own, 0, size, last, 1.0, TOLERANCE, np.array([1.0, 0.0]), noise) == verdict
+    assert (noise[0] > 0.0) == (verdict == 1)
+
+
+@pytest.mark.parametrize(("factor", "verdict"), [(0.9, 1), (1.1, 0)])
+def test_what_steps_leave_decreases_with_what_they_change(factor, verdict):
+    """The geometric series size (0.1 + 0.01 + ...) of what is to come is at most 1e-8 of the change by a step."""
+    changed = 1e-7
+    size = factor * 1e-8 * changed * 9.0
+    rate = np.array([0.1, 0.1])
+    assert check_convergence(3, 0, 0, 0, size, 10.0 * size, changed, 1e-3, rate, np.zeros(1)) == verdict
+
+
+@pytest.fixture
+def steps_taken(monkeypatch):
+    """The compiled steps of the motions of a test."""
+    taken, advance = [], CompiledSteps.advance
+
+    def seen(steps, *arguments):
+        taken.append(steps)
+        return advance(steps, *arguments)
+
+    monkeypatch.setattr(CompiledSteps, "advance", seen)
+    return taken
+
+
+def test_the_change_of_the_acceleration_counts_as_what_it_changes_in_positions(steps_taken):
+    """h^2 beta (1 - alpha_f) / (1 - alpha_m) times it; of the average-acceleration rule h^2 / 4."""
+    model, _ = bow_let_go()
+    motion = bf.simulate(model, 0.04, 2e-3, bf.GeneralizedAlpha(1.0))
+    changed = np.abs(motion.a[-1] - motion.a[-2]) / system_of(model, static=False).scale
+    assert steps_taken[-1]._statistics[CHANGE] == pytest.approx(0.25 * 2e-3**2 * changed.max(), rel=1e-9)
+
+
+@pytest.mark.parametrize(("begins", "order"), [(None, -1.0), (0.019, 0.0)], ids=["first", "tenth"])
+def test_a_step_that_fails_starts_anew_from_what_was_nearer(begins, order, steps_taken):
+    """A moment acts at once on a strip: in its first step from its positions, later from its acceleration before."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 6, bf.CRBF(2), bf.Rectangle(0.02, 0.01), bf.Material(1e7, 0.3, 1000.0))
+    sudden = {} if begins is None else {"amplitude": lambda t: float(t > begins)}
+    loads = [bf.PointMoment(beam.end, 0.2, **sudden), bf.Gravity((0.0, -0.1))]
+    bf.simulate(bf.Model([beam], [bf.Clamp(beam.start)], loads), begins or 2e-3, 2e-3)
+    steps = steps_taken[-1]
+    assert steps._statistics[TANGENTS] > 3.0
+    assert steps._space.arrays[record.RULE][ORDER] == order
+
+
+@pytest.mark.parametrize(("begins", "order"), [(None, 0.0), (0.095, -1.0)], ids=["first", "tenth"])
+def test_a_step_that_fails_again_starts_from_the_other_guess(begins, order, steps_taken):
+    """The moment winds the strip up so much in a step that neither guess leads to its end."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 6, bf.CRBF(2), bf.Rectangle(0.02, 0.01), bf.Material(1e7, 0.3, 1000.0))
+    sudden = {} if begins is None else {"amplitude": lambda t: float(t > begins)}
+    loads = [bf.PointMoment(beam.end, 5.0, **sudden), bf.Gravity((0.0, -0.1))]
+    with pytest.raises(bf.ConvergenceError, match="did not converge"):
+        bf.simulate(bf.Model([beam], [bf.Clamp(beam.start)], loads), begins or 1e-2, 1e-2)
+    assert steps_taken[-1]._space.arrays[record.RULE][ORDER] == order

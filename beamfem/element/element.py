@@ -85,7 +85,7 @@ class Element:
         if self.integration == "lobatto" and not has_stations(self.field):
             raise InputError(
                 f'integration="lobatto" is for the cubic field, whose two nodes have r_x; on the {self.field.name} '
-                'field "reduced" does not lock'
+                'field "reduced" with structural forces does not lock'
             )
         if self.integration == "lobatto" and not lobatto.knows(self.forces):
             raise InputError(

@@ -11,16 +11,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.linalg import LinAlgError
 
+from beamfem.assembly.assembler import Equations
 from beamfem.assembly.blocks import build_block
 from beamfem.assembly.equations import STATICS, linearise, predicted_stresses, residual
 from beamfem.assembly.round_off import row_floors
 from beamfem.assembly.system import System, system_of
-from beamfem.element.coordinates import ShearFree
+from beamfem.element.coordinates import Gradients, ShearFree
 from beamfem.element.element import Element, has_stations
 from beamfem.element.law_points import law_points
 from beamfem.errors import LockingWarning
-from beamfem.kernels.block import Block
+from beamfem.kernels.block import GREEN_LAGRANGE, Block
 from beamfem.model.model import Model
+from beamfem.model.named import beam_in_words
 from beamfem.once import kept_with
 from beamfem.results import postprocess
 from beamfem.results.element_shapes import heights, pairs, shared
@@ -37,6 +39,7 @@ _PREDICTIONS = 3
 _LEAST = 1e-9  # of a length: height of a section without one
 _SHORT = 0.1  # of the height of the section: length of elements that do not lock
 _ROWS = 32  # rows of a solution among which the most strained is assessed
+_THICKNESS = (3, 5)  # eyy and g1 = d.d' of `GREEN_LAGRANGE`
 
 
 @kept_with
@@ -50,8 +53,8 @@ def locking(solution: "Solution") -> tuple[Finding, ...]:
         for mesh in solution.model.meshes
     )
     span = None if solution.static else float(np.ptp(solution.at))
-    change = _change(solution[int(rows[np.argmax(energy)])], span)
-    return _found(solution.model, change, "the largest displacement")
+    change, work = _change(solution[int(rows[np.argmax(energy)])], span)
+    return _found(solution.model, change, work, "the largest displacement")
 
 
 def frequency_locking(state: "State", shapes: np.ndarray) -> tuple[Finding, ...]:
@@ -63,16 +66,18 @@ def frequency_locking(state: "State", shapes: np.ndarray) -> tuple[Finding, ...]
         return ()
     system = system_of(state.model, static=True)
     zeros, free = np.zeros(len(state.p)), system.free_dofs
+    at, unlocked = (state.p, zeros, zeros, state.at), system.equations_of(_unlocked_blocks(system))
+    _, _, predicted = _step(system, at, STATICS, unlocked)
     before, after = (
-        linearise(system, state.p, zeros, zeros, state.at, STATICS, equations=equations)[1].sparse(system.rotated)
-        for equations in (system.equations, system.equations_of(_unlocked_blocks(system)))
+        linearise(system, *at, STATICS, stresses, equations)[1].sparse(system.rotated)
+        for equations, stresses in ((system.equations, None), (unlocked, predicted))
     )
-    change = 0.0
+    change, work = 0.0, zeros.copy()
     for shape in np.real(shapes[:, free]):
-        stiffness = float(shape @ (before @ shape))
-        if stiffness > 0.0:
-            change = max(change, 0.5 * abs(1.0 - float(shape @ (after @ shape)) / stiffness))
-    return _found(state.model, change, "a frequency")
+        excess, stiffness = shape * ((before - after) @ shape), float(shape @ (before @ shape))
+        if stiffness > 0.0 and (found := 0.5 * abs(float(excess.sum())) / stiffness) > change:
+            change, work[free] = found, excess
+    return _found(state.model, change, work, "a frequency")
 
 
 def weights(system: System) -> np.ndarray:
@@ -80,7 +85,9 @@ def weights(system: System) -> np.ndarray:
 
     While their sum is below 1, locking changes displacements by less than 1 %. Cubic elements lock by at most about
     half of a^2 (1 + (l / h)^2), where a is the largest angle between the sections at their ends, now and in the
-    reference, in sum. Others lock by about (l / h)^2 / 3 at most, however little they bend.
+    reference, in sum. A director between unit vectors with the angle 2 a between them is shorter by a^2 / 2, which
+    changes the moment by 3/2 a^2 (l / h)^2. Full integration of other fields locks by about (l / h)^2 / 3 at most,
+    however little they bend.
     """
     neighbours = shared(system, pairs)
     ratio = neighbours.length / np.maximum(shared(system, heights), _LEAST * neighbours.length)
@@ -89,7 +96,9 @@ def weights(system: System) -> np.ndarray:
         own = neighbours.mesh == number
         if mesh.block not in unlocked:
             continue
-        if has_stations(mesh.beam.element.field) and not isinstance(mesh.beam.element.coordinates, ShearFree):
+        element = mesh.beam.element
+        bends = has_stations(element.field) and not isinstance(element.coordinates, ShearFree)
+        if bends or (_resists_its_director(element) and element.integration == "reduced"):
             result[0, own] = 2.0 * np.hypot(1.0, ratio[own]) / np.sqrt(_WARNED)
             result[1, own] = result[0, own] * neighbours.curved[own]
         else:
@@ -97,31 +106,48 @@ def weights(system: System) -> np.ndarray:
     return result
 
 
-def _change(state: "State", span: float | None) -> float:
+def _change(state: "State", span: float | None) -> tuple[float, np.ndarray]:
     """Return the largest change of a position in a Newton step to the locking-free mesh, over the displacement.
 
+    The second result is the work (n,) [J] of the excess forces along each coordinate.
     span: duration [s] of a motion, whose inertia keeps the tangent of an unsupported body regular; None in statics.
     """
     system = system_of(state.model, span is None)
     nodes = np.concatenate([block.dof[:, :2] for block in system.blocks])
     moved = float(np.linalg.norm((state.p - system.reference)[nodes], axis=1).max())
     if moved == 0.0 or span == 0.0:
-        return 0.0
-    at = (state.p, state.v, state.a, state.at)
+        return 0.0, np.zeros(len(state.p))
     weights = STATICS if span is None else (1.0, 0.0, 1.0 / span**2)
-    free, equations = system.free_dofs, system.equations_of(_unlocked_blocks(system))
-    step, stresses, floors = np.zeros(len(state.p)), None, row_floors(system, state.p)[free]
+    unlocked = system.equations_of(_unlocked_blocks(system))
+    step, work, _ = _step(system, (state.p, state.v, state.a, state.at), weights, unlocked)
+    return float(np.linalg.norm(step[nodes], axis=1).max()) / moved, work
+
+
+def _step(
+    system: System,
+    at: tuple[np.ndarray, np.ndarray, np.ndarray, float],
+    weights: tuple[float, float, float],
+    unlocked: Equations,
+) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...] | None]:
+    """Return a Newton step (n,) to the locking-free mesh, the work (n,) [J] of the excess forces, and the stresses.
+
+    They are None, and the step zero, where there is nothing to unlock.
+    """
+    free, step, work = system.free_dofs, np.zeros(len(at[0])), np.zeros(len(at[0]))
+    stresses: tuple[np.ndarray, ...] | None = None
+    floors = row_floors(system, at[0])[free]
     for _ in range(_PREDICTIONS):
-        other, tangent = linearise(system, *at, weights, stresses, equations)
+        other, tangent = linearise(system, *at, weights, stresses, unlocked)
         excess = (other - residual(system, *at))[free]
         if np.all(np.abs(excess) <= 2.0 * floors):
-            return 0.0
+            break
         try:
-            step[free] = tangent.solve(-excess, system.rotated)
+            found = tangent.solve(-excess, system.rotated)
         except LinAlgError:
-            return 0.0
-        stresses = predicted_stresses(system, state.p, step, state.at, equations)
-    return float(np.linalg.norm(step[nodes], axis=1).max()) / moved
+            return np.zeros(len(step)), np.zeros(len(step)), None
+        step[free], work[free] = found, -excess * found
+        stresses = predicted_stresses(system, at[0], step, at[3], unlocked)
+    return step, work, stresses
 
 
 def _unlocked(model: Model) -> dict[int, Element]:
@@ -131,9 +157,15 @@ def _unlocked(model: Model) -> dict[int, Element]:
         other = replace(element, integration="lobatto" if has_stations(element.field) else "reduced")
         # the history at the points of another rule is not known
         compared = first[number].beam.law is None or (law_points(other) > 0 and not first[number].history.size)
-        if other != element and compared:
+        if (other != element or _resists_its_director(element)) and compared:
             result[number] = other
     return result
+
+
+def _resists_its_director(element: Element) -> bool:
+    """Return whether a director that the field makes shorter between unit nodal vectors causes thickness strain."""
+    unit = not isinstance(element.coordinates, Gradients)
+    return unit and element.forces.code == GREEN_LAGRANGE and not has_stations(element.field)
 
 
 def _unlocked_blocks(system: System) -> tuple[Block, ...]:
@@ -142,18 +174,35 @@ def _unlocked_blocks(system: System) -> tuple[Block, ...]:
         meshes = [(i, mesh) for i, mesh in enumerate(system.model.meshes) if mesh.block == number]
         changed = [(i, replace(mesh, beam=replace(mesh.beam, element=other))) for i, mesh in meshes]
         blocks[number] = build_block(other, changed, system.model.imposing)
+        if _resists_its_director(other):
+            stiffness = blocks[number].stiffness.copy()
+            stiffness[..., _THICKNESS, :] = stiffness[..., _THICKNESS] = 0.0
+            blocks[number] = blocks[number]._replace(stiffness=stiffness)
     return tuple(blocks)
 
 
-def _found(model: Model, change: float, what: str) -> tuple[Finding, ...]:
+def _found(model: Model, change: float, work: np.ndarray, what: str) -> tuple[Finding, ...]:
     if change <= _TOLD:
         return ()
-    elements = _unlocked(model).values()
+    unlocked = _unlocked(model)
+    elements = [model.groups[number] for number in unlocked]
     names = ", ".join(dict.fromkeys(f"{element.name} ({element.forces.name} forces)" for element in elements))
-    cures = " or ".join(dict.fromkeys(f'integration="{element.integration}"' for element in elements))
+    cures = " or ".join(dict.fromkeys(_cure(model.groups[number], other) for number, other in unlocked.items()))
     size = f"about {100.0 * change:.2g} %" if change < 1.0 else "more than 100 %"
+    shares = [
+        work[np.unique(mesh.kinematics.dof[mesh.kinematics.dof >= 0])].sum() if mesh.block in unlocked else -np.inf
+        for mesh in model.meshes
+    ]
+    place = f", most in {beam_in_words(model.beams, int(np.argmax(shares)))}" if len(shares) > 1 else ""
     sentence = (
-        f"elements lock: {names}; without locking {what} would change by {size} on this mesh. Use {cures}, or more "
-        "elements"
+        f"elements lock{place}: {names}; without locking {what} would change by {size} on this mesh. Use {cures}, or "
+        "more elements"
     )
     return (Finding(sentence, LockingWarning if change >= _WARNED else None),)
+
+
+def _cure(element: Element, other: Element) -> str:
+    rule = f'integration="{other.integration}"'
+    if not _resists_its_director(element):
+        return rule
+    return "structural forces or a higher order" if other == element else f"{rule} with structural forces"

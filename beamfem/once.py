@@ -28,19 +28,6 @@ class cached_property(functools.cached_property[_Value]):
         return value
 
 
-class shared_property(cached_property[_Value]):
-    """A property that is computed once for all objects that are alike: they have one dictionary `alike` in common."""
-
-    def __get__(self, instance: Any, owner: type[Any] | None = None) -> Any:
-        if instance is None:
-            return self
-        name, shared = self.attrname, instance.alike
-        if name not in shared:
-            shared.setdefault(name, self.func(instance))
-        value = instance.__dict__[name] = shared[name]
-        return value
-
-
 def kept_with(function: Callable[[_Owner], _Found]) -> Callable[[_Owner], _Found]:
     """Return a function of one object that keeps its value with the object, under its name with an underscore."""
     name = f"_{function.__name__.lstrip('_')}"

@@ -98,11 +98,6 @@ CASES = {
 }
 
 
-@pytest.fixture(autouse=True)
-def each_model_by_itself(nothing_shared):
-    """Models that are alike but for loads would share their tiles."""
-
-
 @pytest.fixture
 def long(monkeypatch):
     """Chains of 200 elements are long, and their tiles have some 32 nodes."""

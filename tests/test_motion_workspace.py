@@ -18,7 +18,7 @@ def swinging(elements, element):
 
 @pytest.mark.parametrize("element", [bf.BilinearCRBF(), bf.CRBF(2), bf.ANCF()], ids=lambda element: element.name)
 @pytest.mark.parametrize("long", [False, True])
-def test_what_the_matrix_holds_does_not_count(element, long, monkeypatch, nothing_shared):
+def test_what_the_matrix_holds_does_not_count(element, long, monkeypatch):
     if long:  # eliminated tile by tile, in two halves
         monkeypatch.setattr(tiles, "LONG", 100)
         monkeypatch.setattr(tiles, "_NODES", 32)

@@ -16,7 +16,7 @@ from beamfem.errors import EnergyWarning, warn
 from beamfem.kernels.neighbouring_nodes import LOCKED, STRAINED, exceeds
 from beamfem.kernels.pointers import address_of
 from beamfem.results import large_strains, locking
-from beamfem.results.element_shapes import ROWS, pairs, rows_looked_at, shared
+from beamfem.results.element_shapes import ROWS, pairs, rows_looked_at
 from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.finding import Finding
 from beamfem.results.loading import loading
@@ -61,7 +61,7 @@ class _Bounds:
     """Bounds below which no strains are large, and no result changes by 1 % without locking; states: to be compared."""
 
     def __init__(self, system: System) -> None:
-        neighbours, size = shared(system, pairs), system.model.size
+        neighbours, size = system.table(pairs), system.model.size
         weights = np.vstack([locking.weights(system), large_strains.weights(system)])
         factors = np.hstack([neighbours.at_rest.view(float), weights.T])
         self.states = np.empty((ROWS, size))
@@ -78,7 +78,7 @@ def _unused(system: System) -> list[_Bounds]:
 
 def _found(system: System, p: np.ndarray, times: int = 1) -> int:
     """Return what may be wrong with states p (rows, n), see `exceeds`; times: factor of angles for locking."""
-    unused = shared(system, _unused)
+    unused = system.table(_unused)
     try:
         bounds = unused.pop()
     except IndexError:

@@ -1,6 +1,7 @@
 """Forces, moments and springs at points of elements, in the form that the kernels expect."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -41,6 +42,12 @@ class Actions:
         order = distributed[np.argsort(self.points.element[distributed], kind="stable")]
         return order, self.points.element[order]
 
+    @cached_property
+    def _at_points(self) -> list[tuple[int, int]]:
+        """Number of each load at a point and its number in `loads`."""
+        rows = np.flatnonzero(self.rule == 0)
+        return list(zip(rows.tolist(), self.source[rows].tolist(), strict=True))
+
     def distributed_on(self, elements: np.ndarray) -> np.ndarray:
         """Return the numbers (k,) of the distributed loads and foundations on elements of the block, ascending."""
         order, owner = self._distributed
@@ -50,10 +57,10 @@ class Actions:
 
     def of(self, model: Model) -> "Actions":
         """Return the actions on a model whose loads differ from the own ones only in their size."""
-        loads: tuple[PointLoad | LineLoad, ...] = (*model.point_loads, *_lines(model))
+        loads: tuple[Any, ...] = (*model.point_loads, *_lines(model))
         unit = self.unit.copy()
-        for row in np.flatnonzero(self.rule == 0).tolist():
-            unit[row] = model.point_loads[self.source[row]].value
+        for row, number in self._at_points:
+            unit[row] = loads[number].value
         return Actions(self.points, unit, self.source, self.xi, self.rule, loads)
 
     def values(self, time: float, static: bool) -> np.ndarray:

@@ -17,18 +17,13 @@ def make_grids(beams: Sequence[Beam], fractions: Sequence[Sequence[float]]) -> l
     alike: defaultdict[tuple[int, Field], list[int]] = defaultdict(list)
     grids: dict[int, Grid] = {}
     for number, (beam, beam_fractions) in enumerate(zip(beams, fractions, strict=True)):
-        if type(beam.curve) is Line and isinstance(beam.elements, int) and _at_ends(beam_fractions, beam.elements):
+        if type(beam.curve) is Line and isinstance(beam.elements, int) and not beam_fractions:
             alike[beam.elements, beam.element.field].append(number)
         else:
             grids[number] = make_grid(beam, beam_fractions)
     for (elements, field), numbers in alike.items():
         grids.update(zip(numbers, _straight_grids([beams[i] for i in numbers], elements, field), strict=True))
     return [grids[number] for number in range(len(beams))]
-
-
-def _at_ends(fractions: Sequence[float], elements: int) -> bool:
-    """Return whether ends of equal elements coincide with each of the fractions."""
-    return all((fraction * elements).is_integer() for fraction in fractions)
 
 
 def _straight_grids(beams: Sequence[Beam], elements: int, field: Field) -> list[Grid]:

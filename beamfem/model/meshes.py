@@ -112,12 +112,21 @@ class NodesNeeded(NamedTuple):
 
 def nodes_needed(model: "Model") -> NodesNeeded:
     """Return the nodes that supports, loads and connectors of a model need."""
-    fractions = [sorted({fraction for fraction, _ in requested}) for requested in nodes_asked(model)]
+    asked = zip(model.beams, nodes_asked(model), strict=True)
+    fractions = [_inside(beam, {fraction for fraction, _ in requested}) for beam, requested in asked]
     points = [support.point for support in model.point_supports if _turns(support)]
     points += [point for connector in model.connectors if uses_rotations(connector) for point in connector.points]
     angled = sorted({(model.number_of(point.beam), point.fraction) for point in points})
     further = sum(connector.unknowns + len(remembered(connector)) for connector in model.connectors)
     return NodesNeeded(fractions, angled, further)
+
+
+def _inside(beam: Beam, fractions: set[float]) -> list[float]:
+    """Return the fractions in ascending order, none if the elements of the beam end at all of them anyway."""
+    count = beam.elements
+    if isinstance(count, int) and not beam.curve.corners and all((at * count).is_integer() for at in fractions):
+        return []
+    return sorted(fractions)
 
 
 def numbered_meshes(model: "Model") -> NumberedMeshes:

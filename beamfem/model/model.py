@@ -170,7 +170,8 @@ class Model(ModelParts, ModelOutputs):
         return f"Model({', '.join(counted)})"
 
     def __post_init__(self) -> None:
-        _ = self._units
+        if self.units is not _UNNAMED:
+            _ = self._units
         for name, kinds in _KINDS.items():
             members = listed(name, getattr(self, name), _KINDS)
             object.__setattr__(self, name, members)
@@ -363,6 +364,14 @@ class Model(ModelParts, ModelOutputs):
     def imposing(self) -> tuple[tuple[int, ImposedStrain], ...]:
         """The loads that impose strains, each with the number of its beam."""
         return tuple((self._numbers[id(load.beam)], load) for load in self.loads if isinstance(load, ImposedStrain))
+
+    @cached_property
+    def imposed_on(self) -> dict[Beam, list[tuple[int, ImposedStrain]]]:
+        """The loads that impose strains on each beam, with their numbers in `imposing`."""
+        result: dict[Beam, list[tuple[int, ImposedStrain]]] = {}
+        for number, (_, load) in enumerate(self.imposing):
+            result.setdefault(load.beam, []).append((number, load))
+        return result
 
     def _repr_html_(self) -> str:
         return offered(Model._repr_html_)(self)

@@ -32,9 +32,9 @@ _Check = Callable[["Solution"], Iterable[Finding]]
 def findings(solution: "Solution") -> tuple[Finding, ...]:
     """Return all that is found wrong with a solution, besides what its solver has found."""
     checks: tuple[_Check, ...] = (
-        locking.locking,
-        large_strains.large_strains,
-        lambda solution: (Finding(sentence, EnergyWarning) for sentence in energy_warnings(solution)),
+        lambda solution: solution.computed(locking.locking),
+        lambda solution: solution.computed(large_strains.large_strains),
+        lambda solution: (Finding(sentence, EnergyWarning) for sentence in solution.computed(energy_warnings)),
         lambda solution: map(Finding, unjoined_warnings(solution)),
     )
     return tuple(chain.from_iterable(check(solution) for check in checks))
@@ -44,9 +44,9 @@ def warned(solution: _Solution) -> _Solution:
     """Return a solution that has just been found, after Python warnings of what is wrong with it by 1 % and more."""
     found = _found(loading(solution)[0], solution.p[rows_looked_at(solution)])
     if found & LOCKED:
-        warn_of(locking.locking(solution))
+        warn_of(solution.computed(locking.locking))
     if found & STRAINED:
-        warn_of(large_strains.large_strains(solution))
+        warn_of(solution.computed(large_strains.large_strains))
     return solution
 
 

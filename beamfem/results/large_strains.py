@@ -12,7 +12,6 @@ from beamfem.model.distributions import layers
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.named import beam_in_words
 from beamfem.model.reference import energy_points, energy_stiffness_at
-from beamfem.once import kept_with
 from beamfem.results.beam_stress import peak_stress
 from beamfem.results.element_shapes import heights, pairs, rows_looked_at
 from beamfem.results.finding import Finding
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
 _LARGE = 0.2  # strain beyond which no material is linear
 
 
-@kept_with
 def large_strains(solution: "Solution") -> tuple[Finding, ...]:
     """Return a warning of the largest strain of linear laws, if beyond 0.2, and of the largest utilisation above 1."""
     sentences = (_strained(solution), _overloaded(solution)) if len(solution) else ()

@@ -20,7 +20,6 @@ from beamfem.element.element import Element, has_stations
 from beamfem.errors import LockingWarning
 from beamfem.kernels.block import Block
 from beamfem.model.model import Model
-from beamfem.once import kept_with
 from beamfem.results import postprocess
 from beamfem.results.element_shapes import heights, pairs
 from beamfem.results.finding import Finding
@@ -38,7 +37,6 @@ _SHORT = 0.1  # of the height of the section: length of elements that do not loc
 _ROWS = 32  # rows of a solution among which the most strained is assessed
 
 
-@kept_with
 def locking(solution: "Solution") -> tuple[Finding, ...]:
     """Return a warning if locking changes the displacements by more than 1e-3 of the largest."""
     if not len(solution) or not _unlocked(solution.model):

@@ -2,8 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
-from weakref import WeakKeyDictionary
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -28,7 +27,9 @@ class _Kept:
     chunks: dict[int, dict[int, np.ndarray]]
 
 
-_KEPT = WeakKeyDictionary[Any, dict[Values, _Kept]]()  # of each solution
+def _kept(solution: "Solution") -> dict[Values, _Kept]:
+    """Return the values that are kept with a solution, none at first."""
+    return {}
 
 
 def of_beam(solution: "Solution", number: int, values: Values) -> np.ndarray:
@@ -36,7 +37,7 @@ def of_beam(solution: "Solution", number: int, values: Values) -> np.ndarray:
 
     From the second beam on, those of its neighbours are computed with it and kept, as far as they are few.
     """
-    by_values, mesh = _KEPT.setdefault(solution, {}), solution.model.meshes[number]
+    by_values, mesh = solution.computed(_kept), solution.model.meshes[number]
     if values not in by_values:
         result = values(solution, mesh)
         by_values[values] = _Kept(result.size // mesh.elements, {})

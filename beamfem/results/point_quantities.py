@@ -1,12 +1,14 @@
 """What a solution says of points: fields, positions, velocities, reactions, forces of connectors."""
 
-from typing import TYPE_CHECKING, cast
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 
 from beamfem.model.beam import Point
 from beamfem.model.contribution import Contribution
 from beamfem.model.model import Model
+from beamfem.once import cached_property
 from beamfem.results import postprocess
 from beamfem.results.connected import connector_force, multipliers
 from beamfem.results.nodal import rate_at
@@ -19,6 +21,8 @@ from beamfem.results.turns import rotations, turned_of
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
+_Value = TypeVar("_Value")
+
 
 class PointQuantities:
     """Quantities of a `Solution`, which derives from this class, at points."""
@@ -30,6 +34,21 @@ class PointQuantities:
     @property
     def _whole(self) -> "Solution":
         return cast("Solution", self)
+
+    def __getstate__(self) -> dict[str, object]:
+        """Return all but what `computed` keeps, which copies compute anew."""
+        return {name: value for name, value in vars(self).items() if name != "_computed"}
+
+    @cached_property
+    def _computed(self) -> dict[Any, Any]:
+        return {}
+
+    def computed(self, build: "Callable[[Solution], _Value]") -> _Value:
+        """Return build(solution), which is kept with the solution."""
+        if build not in self._computed:
+            self._computed[build] = build(self._whole)
+        value: _Value = self._computed[build]
+        return value
 
     def fields(self, point: Point) -> Fields:
         """Return position, gradients, rotation, shear angle, strain and stress at a point.

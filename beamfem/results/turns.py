@@ -8,7 +8,6 @@ import numpy as np
 from beamfem.model.beam import Point
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
-from beamfem.once import kept_with
 from beamfem.results import postprocess
 from beamfem.results.nodal import axis_at
 
@@ -28,10 +27,9 @@ def start_rotations(solution: "Solution") -> np.ndarray:
 
     As counted by the solve from step to step; else continued from row to row, the first of them within half a turn.
     """
-    return _continued(solution) if solution.turned is None else solution.turned
+    return solution.computed(_continued) if solution.turned is None else solution.turned
 
 
-@kept_with
 def _continued(solution: "Solution") -> np.ndarray:
     """Return the rotations of `start_rotations` from row to row."""
     parts = [postprocess.nodal_rotations(mesh, solution.p)[:, :1] for mesh in solution.model.numbered.uncounted]

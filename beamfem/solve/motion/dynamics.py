@@ -146,7 +146,7 @@ def simulate(
             f"converge: {failed.why}",
             solution,
         )
-    for sentence in energy_warnings(solution):
+    for sentence in solution.computed(energy_warnings):
         warn(sentence, EnergyWarning)
     found = detuned(solution, system, acting)
     if found:

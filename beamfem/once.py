@@ -1,12 +1,9 @@
-"""Properties, and functions of an object, that are computed once for each object, or once for all that are alike."""
+"""Properties that are computed once for each object."""
 
 import functools
-from collections.abc import Callable
 from typing import Any, Self, TypeVar, overload
 
 _Value = TypeVar("_Value", covariant=True)
-_Owner = TypeVar("_Owner")
-_Found = TypeVar("_Found")
 
 
 class cached_property(functools.cached_property[_Value]):
@@ -26,30 +23,3 @@ class cached_property(functools.cached_property[_Value]):
             return self
         value: _Value = instance.__dict__.setdefault(str(self.attrname), self.func(instance))
         return value
-
-
-class shared_property(cached_property[_Value]):
-    """A property that is computed once for all objects that are alike: they have one dictionary `alike` in common."""
-
-    def __get__(self, instance: Any, owner: type[Any] | None = None) -> Any:
-        if instance is None:
-            return self
-        name, shared = self.attrname, instance.alike
-        if name not in shared:
-            shared.setdefault(name, self.func(instance))
-        value = instance.__dict__[name] = shared[name]
-        return value
-
-
-def kept_with(function: Callable[[_Owner], _Found]) -> Callable[[_Owner], _Found]:
-    """Return a function of one object that keeps its value with the object, under its name with an underscore."""
-    name = f"_{function.__name__.lstrip('_')}"
-
-    @functools.wraps(function)
-    def kept(owner: _Owner) -> _Found:
-        values: dict[str, _Found] = vars(owner)
-        if name not in values:
-            values[name] = function(owner)
-        return values[name]
-
-    return kept

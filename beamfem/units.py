@@ -2,7 +2,6 @@
 
 import re
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 from beamfem.errors import InputError
@@ -48,11 +47,7 @@ class Units:
 
 def units_of(given: Any) -> Units:
     """Return the units of a text such as "N, mm" or "kN, m, s", in any order. Raises InputError."""
-    return _units_of(text("units", given))
-
-
-@lru_cache(maxsize=16)
-def _units_of(given: str) -> Units:
+    given = text("units", given)
     units: dict[str, str] = {}
     kinds = {"force": FORCES, "length": LENGTHS, "time": TIMES}
     for name in (part.strip() for part in given.split(",")):

@@ -226,6 +226,11 @@ def fulfils(item: object, protocol: type) -> bool:
     return kind is not type and (_has_all(kind, protocol) or all(hasattr(item, name) for name in members(protocol)))
 
 
+def of_package(kind: type) -> bool:
+    """Return whether a class is of the package."""
+    return kind.__module__.startswith("beamfem.")
+
+
 @lru_cache(maxsize=256)
 def _has_all(kind: type, protocol: type) -> bool:
     """Return whether a class has all members of a protocol; an object may have the others."""

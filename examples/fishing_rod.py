@@ -9,9 +9,8 @@ carbon = bf.Material(youngs_modulus=9e10, poisson_ratio=0.3, density=1600.0)
 rod = bf.Beam(
     bf.Line((0, 0), (2.5, 0)), elements=8, element=bf.CRBF(order=4), section=bf.Circle(0.008), material=carbon
 )
-handle = [bf.Clamp(rod.start)]
-bent = bf.solve_static(bf.Model([rod], handle, [bf.PointForce(rod.end, (0.0, -8.0))]))
-free = bf.Model([rod], handle)
+loaded = bf.Model([rod], [bf.Clamp(rod.start)], [bf.PointForce(rod.end, (0.0, -8.0))])
+bent, free = bf.solve_static(loaded), loaded.with_loads([])
 motion = bf.simulate(free, duration=1.0, step=1e-3, start=bent[-1], save_every=5)
 
 energy = motion.energy()

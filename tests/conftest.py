@@ -10,7 +10,6 @@ import beamfem as bf
 from beamfem.assembly import layout
 from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.fields import Cubic, Lagrange
-from beamfem.model import likeness
 
 FIELDS = (Cubic(), *(Lagrange(order) for order in (1, 2, 3, 5)))
 COORDINATES = (Gradients(), Rotation(), ShearFree(True), ShearFree(False))
@@ -52,14 +51,8 @@ def element(request):
 
 
 @pytest.fixture
-def nothing_shared(monkeypatch):
-    """Models share nothing with those before, so that changed settings of the package apply to all of them."""
-    monkeypatch.setattr(likeness, "_known", lambda likeness: {})
-
-
-@pytest.fixture
-def widest_band(monkeypatch, nothing_shared):
-    """Return a function that sets the widest half width for which a model gets a band, also one like those before."""
+def widest_band(monkeypatch):
+    """Return a function that sets the widest half width for which a model gets a band."""
     monkeypatch.setattr(layout, "_cached_order", layout._cached_order.__wrapped__)
     return lambda half_width: monkeypatch.setattr(layout, "_WIDEST_BAND", half_width)
 

@@ -160,9 +160,11 @@ NO_KEY = {
     "Model.groups": "numbers of the mesh for a program",
     "Model.number_of": "numbers of the mesh for a program",
     "Model.mesh_of": "numbers of the mesh for a program",
-    "Model.made_of": "numbers of the mesh for a program",
-    "Model.alike": "what models have in common, for a program",
-    "Model.blocks_of_beams": "numbers of the mesh for a program",
+    "Model.numbered": "numbers of the mesh for a program",
+    "Model.nodes_needed": "numbers of the mesh for a program",
+    "Model.tables": "tables of solvers, for a program",
+    "Model.with_loads": "loops over loads belong in Python",
+    "Model.with_": "loops over loads belong in Python",
     "Model.supports_along": "numbers of the mesh for a program",
     **dict.fromkeys(
         (

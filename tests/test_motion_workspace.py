@@ -17,7 +17,7 @@ def swinging(elements, element):
 
 @pytest.mark.parametrize("element", [bf.BilinearCRBF(), bf.CRBF(2), bf.ANCF()], ids=lambda element: element.name)
 @pytest.mark.parametrize("elements", [8, 300])
-def test_what_the_matrix_holds_does_not_count(element, elements, nothing_shared):
+def test_what_the_matrix_holds_does_not_count(element, elements):
     model = swinging(elements, element)
     expected = bf.simulate(model, 0.01, 5e-4).p
     (space,) = system_of(model, static=False).spare_motions

@@ -24,7 +24,7 @@ def system(element, elements, damped):
 @pytest.mark.parametrize("weights", WEIGHTS)
 @pytest.mark.parametrize("damped", [False, True])
 @pytest.mark.parametrize("element", KINDS, ids=lambda element: element.name)
-def test_values_are_those_of_copied_nodes(element, damped, weights, elements, nothing_shared):
+def test_values_are_those_of_copied_nodes(element, damped, weights, elements):
     found = []
     for in_a_row in (True, False):
         own = system(element, elements, damped)

@@ -90,17 +90,3 @@ def test_a_field_without_members_is_told_which():
         bf.Element(Equidistant, Rotation(), bf.Structural())
     with pytest.raises(bf.InputError, match=r"the field Tabulated: elements are compared .* let it hold tuples"):
         bf.Element(Tabulated(2, np.ones(3)), Rotation(), bf.Structural())
-
-
-def test_a_field_is_checked_once_by_its_value():
-    calls = []
-
-    @dataclass(frozen=True)
-    class Counted(Equidistant):
-        def director_rule(self):
-            calls.append(self.order)
-            return super().director_rule()
-
-    for order in (2, 2, 3, 2):
-        bf.Element(Counted(order), Rotation(), bf.Structural())
-    assert calls == [2, 3]

@@ -23,7 +23,7 @@ MATERIAL = bf.Material(1e7, 0.3, 1000.0)
 
 
 @pytest.fixture
-def force_sparse(monkeypatch, nothing_shared):
+def force_sparse(monkeypatch):
     """Return a function that makes every model from now on sparse."""
     return lambda: monkeypatch.setattr("beamfem.assembly.layout._WIDEST_BAND", -1)
 

@@ -1,10 +1,11 @@
 """Forces, moments and springs at points of elements, in the form that the kernels expect."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from beamfem.element.element import Element, kept_with_elements
+from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import PointLoads
 from beamfem.model.beam import Beam
@@ -16,8 +17,6 @@ from beamfem.model.point_load import PointLoad
 from beamfem.model.reference import jacobians, length_points, reference_axis, scales
 from beamfem.model.returned import forces_of
 from beamfem.once import cached_property
-
-_FEW = 8  # points; tables of more points are not cached
 
 
 @dataclass(frozen=True)
@@ -43,6 +42,12 @@ class Actions:
         order = distributed[np.argsort(self.points.element[distributed], kind="stable")]
         return order, self.points.element[order]
 
+    @cached_property
+    def _at_points(self) -> list[tuple[int, int]]:
+        """Number of each load at a point and its number in `loads`."""
+        rows = np.flatnonzero(self.rule == 0)
+        return list(zip(rows.tolist(), self.source[rows].tolist(), strict=True))
+
     def distributed_on(self, elements: np.ndarray) -> np.ndarray:
         """Return the numbers (k,) of the distributed loads and foundations on elements of the block, ascending."""
         order, owner = self._distributed
@@ -51,12 +56,12 @@ class Actions:
         return np.sort(order[np.repeat(first - np.cumsum(count) + count, count) + np.arange(count.sum())])
 
     def of(self, model: Model) -> "Actions":
-        """Return the actions on a model that is like the own one but for the size of its loads."""
-        loads: tuple[PointLoad | LineLoad, ...] = (*model.point_loads, *_lines(model))
+        """Return the actions on a model whose loads differ from the own ones only in their size."""
+        loads: tuple[Any, ...] = (*model.point_loads, *_lines(model))
         unit = self.unit.copy()
-        for row in np.flatnonzero(self.rule == 0).tolist():
-            unit[row] = model.point_loads[self.source[row]].value
-        return replace(self, unit=unit, loads=loads)
+        for row, number in self._at_points:
+            unit[row] = loads[number].value
+        return Actions(self.points, unit, self.source, self.xi, self.rule, loads)
 
     def values(self, time: float, static: bool) -> np.ndarray:
         """Return forces and moments (nl, 3) at a time."""
@@ -154,7 +159,7 @@ def _part(
     """Return the rows of the point loads at points (element, xi) of a beam."""
     element_type, count = mesh.beam.element, len(element)
     scale = scales(element_type, mesh.lengths[element])
-    position, direction = _tables(element_type, xi) if count > _FEW else _cached_tables(element_type, xi.tobytes())
+    position, direction = _tables(element_type, xi)
     if element_type.forces.turns_with == "r_x":
         direction = _slope(mesh, element, xi)
     # from the interpolated reference, not the curve: on a curved beam they differ by the interpolation error
@@ -184,8 +189,3 @@ def _tables(element: Element, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     position, direction = np.zeros((2, len(xi), len(field.nodes) * len(field.vectors)))
     position[:, r_slots(field)], direction[:, d_slots(field)] = field.centreline(xi), field.director(xi)
     return position, direction
-
-
-@kept_with_elements  # loads at the ends of beams need the same tables repeatedly
-def _cached_tables(element: Element, xi: bytes) -> tuple[np.ndarray, np.ndarray]:
-    return _tables(element, np.frombuffer(xi))

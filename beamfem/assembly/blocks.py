@@ -1,7 +1,6 @@
 """Conversion of beam meshes to the arrays that the kernels expect."""
 
 from collections.abc import Hashable, Sequence
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -9,14 +8,12 @@ import numpy as np
 from beamfem.assembly.imposed import imposed_on
 from beamfem.assembly.law_pass import LawPass
 from beamfem.element.coordinates import Gradients
-from beamfem.element.element import Element, kept_with_elements
-from beamfem.element.law_points import law_points
+from beamfem.element.element import Element
 from beamfem.kernels.block import NO_HISTORY, Block
 from beamfem.model.classes import Classes, likenesses
 from beamfem.model.imposed_strain import ImposedStrain
 from beamfem.model.mesh import BeamMesh
 
-_FEW = 2000  # elements; results for larger blocks are not cached
 PER_CLASS = tuple(name for name in Classes._fields if name != "kind")
 
 
@@ -51,20 +48,12 @@ def build_block(
     law = beam_meshes[0].beam.law
     return Block(
         measures=element.forces.code,
-        director=_director(element),
-        law=None if law is None else LawPass(law, law_points(element), isinstance(element.coordinates, Gradients)),
+        director=element.tables.director,
+        law=None if law is None else LawPass(law, element.law_points, isinstance(element.coordinates, Gradients)),
         imposed=imposed_on(meshes, imposing) if imposing else None,
         history=_joined([mesh.history for mesh in beam_meshes]) if beam_meshes[0].history.size else NO_HISTORY,
         **joined,
     )
-
-
-@kept_with_elements
-def _director(element: Element) -> np.ndarray:
-    """Return the shape functions (nq, nn) of d at the points of the energy, read-only."""
-    director = np.ascontiguousarray(element.field.director(element.energy_points()[0]))
-    director.setflags(write=False)
-    return director
 
 
 def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
@@ -74,7 +63,6 @@ def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
     node = _joined([mesh.node for mesh in beam_meshes])
     if len(beam_meshes) > 1:
         node += np.repeat(np.cumsum(nodes) - nodes, elements)[:, None]
-    home = homes(node, int(nodes.sum())) if len(node) > _FEW else _cached_homes(node.tobytes(), node.shape)
     width = max(mesh.kinematics.dof.shape[1] for mesh in beam_meshes)
     return {
         "node": node,
@@ -82,7 +70,7 @@ def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
         "node_kind": _joined([mesh.kinematics.node_kind for mesh in beam_meshes]),
         "frame": _joined([mesh.kinematics.frame for mesh in beam_meshes]),
         "dof": _joined([_widened(mesh.kinematics.dof, width) for mesh in beam_meshes]),
-        "home": home,
+        "home": homes(node, int(nodes.sum())),
     }
 
 
@@ -91,14 +79,7 @@ def homes(node: np.ndarray, nodes: int) -> np.ndarray:
     home = np.empty((nodes, 2), dtype=np.int64)
     for local_number, numbers in enumerate(node.T):
         home[numbers, 0], home[numbers, 1] = np.arange(len(node)), local_number
-    home.setflags(write=False)
     return home
-
-
-@lru_cache(maxsize=64)
-def _cached_homes(node: bytes, shape: tuple[int, int]) -> np.ndarray:
-    nodes = np.frombuffer(node, dtype=np.int64).reshape(shape)
-    return homes(nodes, int(nodes.max()) + 1)
 
 
 def _joined(parts: Sequence[np.ndarray]) -> np.ndarray:

@@ -18,7 +18,7 @@ from beamfem.assembly.connector_directions import passes
 from beamfem.model.contribution import remembered, uses_rotations
 from beamfem.model.load import factor
 from beamfem.model.model import Model
-from beamfem.once import cached_property, kept_with
+from beamfem.once import cached_property
 
 _ROUND_OFF = 1e-13  # relative to the largest stiffness of a contribution
 _COORDINATES = ("r^x", "r^y", "theta")
@@ -157,12 +157,15 @@ class Connectors:
 
 def connectors_of(model: Model, static: bool) -> Connectors:
     """Return the connectors of a model with their coordinates. Raises InputError for inconsistent ones."""
-    return Connectors(model, static, _checked_connectors(model) if model.connectors else ())
+    if not model.connectors:
+        return Connectors(model, static, ())
+    if "connectors" not in model.tables:  # checked once for statics and motions
+        model.tables["connectors"] = _checked_connectors(model)
+    return Connectors(model, static, model.tables["connectors"])
 
 
-@kept_with
 def _checked_connectors(model: Model) -> tuple[Connector, ...]:
-    """Return the connectors of a model, checked once for statics and motions."""
+    """Return the connectors of a model. Raises InputError for inconsistent ones."""
     first, connectors = model.coordinates, []
     behind = first + sum(item.unknowns for item in model.connectors)
     for item in model.connectors:

@@ -12,7 +12,6 @@ from beamfem.assembly.system import System
 from beamfem.linalg.bordered import BorderedTangent, border_of
 from beamfem.linalg.saddle import SaddleTangent
 from beamfem.linalg.tangent import BandTangent, SparseTangent, Tangent
-from beamfem.once import kept_with
 
 STATICS = (1.0, 0.0, 0.0)
 INERTIA = (0.0, 0.0, 1.0)
@@ -161,12 +160,11 @@ def _sure_stresses(system: System, p: np.ndarray, time: float) -> tuple[np.ndarr
 
 def sizes(system: System, p: np.ndarray) -> tuple[float, float]:
     """Return the largest position [m], at least the size of the model, and the largest other coordinate, at least 1."""
-    positions, others = _positions_and_others(system)
+    positions, others = system.table(_positions_and_others)
     reach, turn = (float(np.abs(p[dofs]).max(initial=0.0)) for dofs in (positions, others))
     return max(reach, system.extent), max(turn, 1.0)
 
 
-@kept_with
 def _positions_and_others(system: System) -> tuple[np.ndarray, np.ndarray]:
     """Return the numbers of the coordinates that are positions, and of the others but for history variables."""
     others = ~system.positions

@@ -7,7 +7,6 @@ import numpy as np
 from beamfem.assembly.columns import Columns, columns_of, coordinate_columns
 from beamfem.assembly.system import System
 from beamfem.model.mesh import BeamMesh
-from beamfem.once import kept_with
 from beamfem.validation import convert, finite, squared, vector
 
 
@@ -42,7 +41,7 @@ class RigidVelocity:
 def rigid_rates(system: System, velocity: RigidVelocity, p: np.ndarray) -> np.ndarray:
     """Return the rates (n,) of the coordinates of a model that moves rigidly from the state p (n,)."""
     result = np.zeros(len(p))
-    for columns in _columns_of(system):
+    for columns in system.table(_columns_of):
         _set_rates(columns, velocity, p, result)
     return result
 
@@ -52,7 +51,6 @@ def set_rigid_rates(mesh: BeamMesh, velocity: RigidVelocity, p: np.ndarray, rate
     _set_rates(coordinate_columns(mesh), velocity, p, rates)
 
 
-@kept_with
 def _columns_of(system: System) -> list[Columns]:
     """Return the coordinates of all beams of each block, which move rigidly by the same formulas."""
     groups = zip(system.blocks, system.model.groups, strict=True)

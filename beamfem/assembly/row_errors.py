@@ -5,7 +5,7 @@ unit vector or an angle has an error eps, whatever the size of the model.
 """
 
 from collections.abc import Sequence
-from functools import cache, lru_cache
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +15,6 @@ from beamfem.kernels.block import ELASTIC_LINE, SHEAR_RIGID, STRETCH, Block, Poi
 from beamfem.physics.measures import MEASURES, evaluate
 
 _COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted
-_FEW = 2000  # nodes; the entries of larger blocks are not cached
 
 
 def residual_errors(
@@ -61,26 +60,14 @@ class Entries(NamedTuple):
 
 
 def _entries(block: Block, names: tuple[str, ...]) -> list[Entries]:
-    if len(block.node_kind) > _FEW:
-        return _entries_of(block.node_kind, block.dof, names)
-    return _cached_entries(block.node_kind.tobytes(), block.dof.tobytes(), names)
-
-
-def _entries_of(node_kind: np.ndarray, dof: np.ndarray, names: tuple[str, ...]) -> list[Entries]:
     entries = []
-    for kind in np.unique(node_kind).tolist():
-        nodes, columns = np.flatnonzero(node_kind == kind), labels(kind, names)
+    for kind in np.unique(block.node_kind).tolist():
+        nodes, columns = np.flatnonzero(block.node_kind == kind), labels(kind, names)
         slots = np.tile([_slot(label, names) for label in columns], len(nodes))
         turns = [kind in (STRETCH, SHEAR_RIGID) and label == "theta" for label in columns]
-        dofs = dof[nodes, : len(columns)].ravel()
+        dofs = block.dof[nodes, : len(columns)].ravel()
         entries.append(Entries(dofs, nodes.repeat(len(columns)), slots, np.flatnonzero(np.tile(turns, len(nodes)))))
     return entries
-
-
-@lru_cache(maxsize=64)
-def _cached_entries(node_kind: bytes, dof: bytes, names: tuple[str, ...]) -> list[Entries]:
-    kinds = np.frombuffer(node_kind, dtype=np.int64)
-    return _entries_of(kinds, np.frombuffer(dof, dtype=np.int64).reshape(len(kinds), -1), names)
 
 
 def _slot(label: str, names: tuple[str, ...]) -> int:
@@ -127,7 +114,6 @@ def _of_slots(block: Block, names: tuple[str, ...]) -> np.ndarray:
     return result
 
 
-@lru_cache(maxsize=64)
 def _along_and_across(count: int, per_node: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the numbers of the nodal vectors that interpolate r0, and of those that interpolate d, among all."""
     slot = np.arange(count)

@@ -1,8 +1,8 @@
 """The numerical data of a model: coordinates, blocks of elements, prescribed coordinates and loads at a time."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -27,19 +27,33 @@ from beamfem.errors import InputError
 from beamfem.kernels.block import Block, Layout, PointLoads, Springs
 from beamfem.model.load import factor
 from beamfem.model.model import Model
-from beamfem.once import cached_property, shared_property
+from beamfem.once import cached_property
 from beamfem.validation import shown
 
+_Table = TypeVar("_Table", covariant=True)
 _KEPT_LOADS = 2  # load factors whose loads are cached
 _NOTHING = np.empty(0)
 _NO_MOVEMENT = 1e300  # scale of history variables: no change of them counts as movement
+
+
+class shared_table(cached_property[_Table]):
+    """A property of a system that does not depend on the size of loads, kept among its `tables`."""
+
+    def __get__(self, instance: Any, owner: type[Any] | None = None) -> Any:
+        if instance is None:
+            return self
+        name, tables = self.attrname, instance.tables
+        if name not in tables:
+            tables.setdefault(name, self.func(instance))
+        value = instance.__dict__[name] = tables[name]
+        return value
 
 
 @dataclass(frozen=True, eq=False)
 class System:
     """All data of a model that solvers need; `system_of` creates it once.
 
-    Systems of models that are alike but for the size of their loads share what does not depend on it.
+    Systems of models that differ only in the size of their loads have their tables in common, see `Model.with_loads`.
     released: whether the coordinates that supports move count as unknown; proven: names of properties that have been
     checked; known_loads: loads at recent load factors.
     """
@@ -55,34 +69,41 @@ class System:
         return system_of, (self.model, self.static)
 
     @cached_property
-    def alike(self) -> dict[Any, Any]:
-        """What the systems of models that are alike have in common, by name."""
-        shared: dict[Any, Any] = self.model.alike.setdefault((self.static, self.released), {})
-        return shared
+    def tables(self) -> dict[Any, Any]:
+        """The tables by name, in common with the systems of models that `with_loads` has made."""
+        tables: dict[Any, Any] = self.model.tables.setdefault((self.static, self.released), {})
+        return tables
 
-    @shared_property
+    def table(self, build: Callable[["System"], _Table]) -> _Table:
+        """Return build(system), kept among the tables; it must not depend on the size of loads."""
+        if build not in self.tables:
+            self.tables.setdefault(build, build(self))
+        found: _Table = self.tables[build]
+        return found
+
+    @shared_table
     def spare(self) -> list[Any]:
         """Unused workspaces of solves."""
         return []
 
-    @shared_property
+    @shared_table
     def spare_motions(self) -> list[Any]:
         """Unused workspaces of motions."""
         return []
 
-    @shared_property
+    @shared_table
     def spare_assemblers(self) -> list[Assembler]:
         """Unused workspaces of evaluations."""
         return []
 
-    @shared_property
+    @shared_table
     def reference(self) -> np.ndarray:
         """Coordinates of the stress-free state (n,)."""
         p = stress_free(self.model, self.blocks)
         p[self.history.numbers] = self.history.start
         return p
 
-    @shared_property
+    @shared_table
     def blocks(self) -> tuple[Block, ...]:
         numbered = list(enumerate(self.model.meshes))
         return tuple(
@@ -90,17 +111,17 @@ class System:
             for number, element in enumerate(self.model.groups)
         )
 
-    @shared_property
+    @shared_table
     def equations(self) -> Equations:
         """The equations in the form that compiled code expects."""
         return self.equations_of(self.blocks)
 
-    @shared_property
+    @shared_table
     def without_stiffness(self) -> Equations:
         """The equations with zero section stiffness."""
         return self.equations_of([block.resisting(np.zeros_like(block.stiffness)) for block in self.blocks])
 
-    @shared_property
+    @shared_table
     def strain_rates(self) -> tuple[StrainRates, ...]:
         """Strains of each block and their derivatives by the unknowns."""
         return tuple(strain_rates(block, self.unknowns.free) for block in self.blocks)
@@ -114,25 +135,25 @@ class System:
         """Return the equations with a new workspace; lent: see `Assembler`."""
         return Assembler(self.equations, lent=lent)
 
-    @shared_property
+    @shared_table
     def solver_table(self) -> SolverTable:
         """The unknowns of a band, as compiled drivers take them."""
         return SolverTable(self.unknowns, self.rotated, self.scale)
 
-    @shared_property
+    @shared_table
     def residual_errors(self) -> np.ndarray:
         """Residual (2, n) per unit relative error: in positions of 1 m [1/m], and in directions."""
         vectors = [element.field.vectors for element in self.model.groups]
         errors = residual_errors(self.blocks, vectors, self.springs, self.point_loads, self.model.size)
         return errors + self.connectors.errors
 
-    @shared_property
+    @shared_table
     def stress_errors(self) -> tuple[np.ndarray, ...]:
         """Stress resultants (2, nc, nq, ns) of each block per unit relative error, as `residual_errors`."""
         vectors = [element.field.vectors for element in self.model.groups]
         return tuple(stress_errors(*parts) for parts in zip(self.blocks, vectors, strict=True))
 
-    @shared_property
+    @shared_table
     def positions(self) -> np.ndarray:
         """Mask (n,) of the coordinates that are positions [m]."""
         result = np.zeros(self.model.size, dtype=bool)
@@ -143,18 +164,18 @@ class System:
     @cached_property
     def actions(self) -> tuple[Actions, ...]:
         """Loads and springs at points of each block, with their values."""
-        return tuple(actions.of(self.model) for actions in self._actions_alike)
+        return tuple(actions.of(self.model) for actions in self._unloaded_actions)
 
-    @shared_property
-    def _actions_alike(self) -> tuple[Actions, ...]:
-        """The actions on the first of the models that are alike, without its loads: their amplitudes may be large."""
+    @shared_table
+    def _unloaded_actions(self) -> tuple[Actions, ...]:
+        """The actions without their loads, whose sizes and amplitudes are those of another model."""
         built = (build_actions(self.model, number) for number in range(len(self.model.groups)))
         return tuple(replace(actions, loads=()) for actions in built)
 
-    @shared_property
+    @shared_table
     def point_loads(self) -> tuple[PointLoads, ...]:
         """Loads and springs at points of each block, in the order of `point_values`."""
-        return tuple(actions.points for actions in self._actions_alike)
+        return tuple(actions.points for actions in self._unloaded_actions)
 
     def point_values(self, time: float) -> tuple[np.ndarray, ...]:
         """Return the forces and moments (nl, 3) [N, N, N m] of each block at a time."""
@@ -190,7 +211,7 @@ class System:
         """Whether all loads are proportional to the load factor of statics."""
         return self.static and all(load.scale and load.amplitude is None for load in self.model.loads)
 
-    @shared_property
+    @shared_table
     def springs(self) -> Springs:
         """Springs of single coordinates to the ground."""
         return grounded_springs(self.model, self.unknowns, self.reference)
@@ -199,7 +220,7 @@ class System:
         """Return acceleration [m/s^2] and load per length [N/m] of each beam (beams, 4) at a time."""
         return body_loads(self.model, time, self.static)
 
-    @shared_property
+    @shared_table
     def symmetric(self) -> bool:
         """Whether the tangent is symmetric: no load follows the sections, and all else has a potential."""
         following = any(loads.follows.any() and loads.follows[~loads.stretches].any() for loads in self.point_loads)
@@ -207,7 +228,7 @@ class System:
         fixed = {*self.prescribed_dofs.tolist(), *directed}
         return not following and self.connectors.conservative and pressures_have_potential(self.model, fixed)
 
-    @cached_property
+    @shared_table
     def prescribed(self) -> tuple[PrescribedCoordinate, ...]:
         """Prescribed coordinates, ordered by number. Raises InputError if two supports prescribe the same one."""
         found = prescribed_coordinates(self.model)
@@ -219,7 +240,7 @@ class System:
         found = prescribed_coordinates(self.model) if self.released else ()
         return tuple(item for item in found if callable(item.value))
 
-    @shared_property
+    @shared_table
     def prescribed_dofs(self) -> np.ndarray:
         return np.array([item.dof for item in self.prescribed], dtype=np.int64)
 
@@ -232,11 +253,11 @@ class System:
         """Return the changes (nh,) of the prescribed coordinates from the reference at a time or load factor."""
         return np.array([item.change(time, self.static) for item in self.prescribed], dtype=float)
 
-    @shared_property
+    @shared_table
     def _prescribed_reference(self) -> np.ndarray:
         return self.reference[self.prescribed_dofs]
 
-    @cached_property
+    @shared_table
     def moved(self) -> bool:
         """Whether a prescribed value may differ from the reference."""
         return any(callable(item.value) or item.value != 0.0 for item in self.prescribed)
@@ -249,12 +270,12 @@ class System:
         static = self.static
         return max((abs(dof.change(after, static) - dof.change(before, static)) for dof in self._rotated), default=0.0)
 
-    @cached_property
+    @shared_table
     def _rotated(self) -> tuple[PrescribedCoordinate, ...]:
         """Prescribed rotations that may differ from the reference."""
         return tuple(item for item in self.prescribed if item.rotation and (callable(item.value) or item.value != 0.0))
 
-    @shared_property
+    @shared_table
     def unknowns(self) -> Unknowns:
         """The order of the coordinates that are not prescribed."""
         connectors, joined = self.connectors, bool(self.model.joints)
@@ -280,18 +301,18 @@ class System:
         """Positions of the element matrices of each block in the matrix."""
         return self.unknowns.layouts
 
-    @shared_property
+    @shared_table
     def inclined(self) -> tuple[tuple[int, np.ndarray], ...]:
         """First coordinate of r and unit normal of each roller whose normal is not along x or y."""
         return inclined_rollers(self.model, set(self.prescribed_dofs.tolist()))
 
-    @shared_property
+    @shared_table
     def rotated(self) -> tuple[np.ndarray, np.ndarray]:
         """Equation number of x (nt,) and unit normal (nt, 2) of each inclined roller."""
         first = np.array([self.unknowns.free[dof] for dof, _ in self.inclined], dtype=np.int64)
         return first, np.array([normal for _, normal in self.inclined], dtype=float).reshape(-1, 2)
 
-    @shared_property
+    @shared_table
     def rotating(self) -> np.ndarray:
         """Equation numbers of x and y, node and number of each nodal vector that is a coordinate (np, 4).
 
@@ -313,7 +334,7 @@ class System:
         """The unknown coordinates (unknown,) in the order of the equations."""
         return self.unknowns.dofs
 
-    @shared_property
+    @shared_table
     def extent(self) -> float:
         """Size of the model [m]: its longest beam, or twice the largest distance of a node from their mean."""
         position = np.concatenate([mesh.position for mesh in self.model.meshes])
@@ -321,7 +342,7 @@ class System:
         reach = float(np.hypot(x, y).max())
         return max(2.0 * reach, *(beam.curve.length for beam in self.model.beams))
 
-    @shared_property
+    @shared_table
     def scale(self) -> np.ndarray:
         """Scale (n,) of the change of each coordinate: the size of the model for positions [m], 1 for the rest.
 
@@ -333,7 +354,7 @@ class System:
         result[self.history.numbers] = _NO_MOVEMENT
         return result
 
-    @shared_property
+    @shared_table
     def strain_scale(self) -> np.ndarray:
         """Change of a coordinate that strains an element by about one (n,): its length for positions [m], else 1."""
         length = min(float(block.weight.sum(axis=1).min()) for block in self.blocks)

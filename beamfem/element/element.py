@@ -1,26 +1,26 @@
 """The definition of an element: a field, nodal coordinates and elastic forces."""
 
-from collections.abc import Callable, Hashable
+from collections.abc import Hashable
 from dataclasses import dataclass
-from functools import lru_cache, wraps
-from typing import Literal, TypeVar, get_args
+from typing import Any, Literal
 
 import numpy as np
 
-from beamfem.alike import whole
 from beamfem.element import lobatto
 from beamfem.element.coordinates import Coordinates, Gradients, ShearFree, labels
 from beamfem.element.field_checks import require_field
-from beamfem.element.fields import Cubic, Field, Lagrange
+from beamfem.element.fields import Cubic, Field
 from beamfem.element.forces import ElasticLine, Forces
+from beamfem.element.tables import Tables, tables_of
 from beamfem.errors import InputError
 from beamfem.kernels import block
+from beamfem.once import cached_property
 from beamfem.quadrature import gauss
 from beamfem.validation import one_of, optional, shown, text
+from beamfem.value_keys import by_value
 
 Integration = Literal["full", "reduced", "lobatto"]
-_Value = TypeVar("_Value")
-_LASTING = frozenset((Cubic, Lagrange, *get_args(Coordinates), *get_args(Forces)))
+STRAINS = 3  # of a nonlinear section law: stretch, shear and curvature, which precede other measures
 
 
 @dataclass(frozen=True)
@@ -109,10 +109,14 @@ class Element:
     def __hash__(self) -> int:
         return hash(self._compared)
 
-    @property
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the fields only: copies make their own tables."""
+        return {name: getattr(self, name) for name in self.__dataclass_fields__}
+
+    @cached_property
     def _compared(self) -> tuple[Hashable, ...]:
         # classes derived by users may have data that the base classes do not compare
-        return whole(self.field), whole(self.coordinates), whole(self.forces), self.integration, self.label
+        return by_value(self.field), by_value(self.coordinates), by_value(self.forces), self.integration, self.label
 
     @property
     def name(self) -> str:
@@ -134,7 +138,19 @@ class Element:
 
     def energy_points(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the points (nq,) and weights (nq,) on [0, 1] at which the strain energy is integrated."""
-        return _energy_points(self)
+        return self._energy_points
+
+    @cached_property
+    def _energy_points(self) -> tuple[np.ndarray, np.ndarray]:
+        if self.integration == "lobatto":
+            return lobatto.energy_points(self.forces)
+        rules = self.energy_rules()
+        return np.concatenate([rule[0] for rule in rules]), np.concatenate([rule[1] for rule in rules])
+
+    @cached_property
+    def tables(self) -> Tables:
+        """Shape functions at the points that integrate energy and mass."""
+        return tables_of(self.field, self._energy_points[0])
 
     def energy_stiffness(self, stiffness: np.ndarray, jacobian: np.ndarray) -> np.ndarray:
         """Return the part of the section stiffness that counts at the points of the strain energy.
@@ -154,8 +170,28 @@ class Element:
         """
         if self.integration == "lobatto":
             return lobatto.energy_stiffness(self.forces, self.coordinates, stiffness, jacobian)
-        counted = _counted(self)
-        return stiffness if counted is None else stiffness * counted
+        return stiffness if self._counted is None else stiffness * self._counted
+
+    @cached_property
+    def _counted(self) -> np.ndarray | None:
+        """Mask (nq, ns, ns) of the stiffness entries that enter the energy at its points, None if all do."""
+        counted = np.concatenate([np.tile(rule[2], (len(rule[0]), 1)) for rule in self.energy_rules()])
+        return None if counted.all() else counted[:, :, None] & counted[:, None, :]
+
+    @cached_property
+    def coupled_fractions(self) -> np.ndarray:
+        """Fractions (nq, ns, ns) of a stiffness that couples all strains in the energy at its points."""
+        points, measures = len(self._energy_points[0]), len(self.forces.shear_measures)
+        return self.energy_stiffness(np.ones((1, points, measures, measures)), np.ones((1, points)))[0]
+
+    @cached_property
+    def law_points(self) -> int:
+        """At how many points, the first ones, a law acts; 0 if its strains do not all count fully at the same."""
+        block = self.coupled_fractions[:, :STRAINS, :STRAINS]
+        count = int(block.any(axis=(1, 2)).sum())
+        full = np.zeros_like(block)
+        full[:count] = 1.0
+        return count if np.array_equal(block, full) else 0
 
     def energy_rules(self) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], ...]:
         """Return the points and weights on [0, 1] and the mask of strain measures (ns,) of each quadrature rule.
@@ -174,43 +210,6 @@ class Element:
         return ((*self.quadrature(), np.ones_like(shear)),)
 
 
-def kept_with_elements(function: Callable[..., _Value]) -> Callable[..., _Value]:
-    """Cache what a function returns for an element, unless a part of it is the user's own, which may change."""
-    known = lru_cache(maxsize=64)(function)
-
-    @wraps(function)
-    def kept(element: Element, *arguments: Hashable) -> _Value:
-        return known(element, *arguments) if lasts(element) else function(element, *arguments)
-
-    return kept
-
-
-def lasts(element: Element) -> bool:
-    """Return whether all parts of an element are of the package: those of users may change."""
-    field, coordinates, forces = type(element.field), type(element.coordinates), type(element.forces)
-    return field in _LASTING and coordinates in _LASTING and forces in _LASTING
-
-
 def has_stations(field: Field) -> bool:
     """Return whether the strains at the Lobatto points of the cubic field determine a field, and do not lock."""
     return type(field) is Cubic or ("r_x" in field.vectors and len(field.nodes) == 2 and field.degree == 3)
-
-
-@kept_with_elements  # every beam of a model needs them
-def _energy_points(element: Element) -> tuple[np.ndarray, np.ndarray]:
-    """Return the points and weights (nq,) of the strain energy, read-only."""
-    if element.integration == "lobatto":
-        result = lobatto.energy_points(element.forces)
-    else:
-        rules = element.energy_rules()
-        result = np.concatenate([rule[0] for rule in rules]), np.concatenate([rule[1] for rule in rules])
-    for values in result:
-        values.setflags(write=False)
-    return result
-
-
-@kept_with_elements
-def _counted(element: Element) -> np.ndarray | None:
-    """Return the mask (nq, ns, ns) of the stiffness entries that enter the energy at its points, None if all do."""
-    counted = np.concatenate([np.tile(rule[2], (len(rule[0]), 1)) for rule in element.energy_rules()])
-    return None if counted.all() else counted[:, :, None] & counted[:, None, :]

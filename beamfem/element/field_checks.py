@@ -1,11 +1,9 @@
 """Checks of a user's field: nodal values interpolate, rigid motions and constant strains are represented."""
 
-from functools import lru_cache
 from typing import Any, NoReturn
 
 import numpy as np
 
-from beamfem.alike import whole
 from beamfem.element.fields import Cubic, Field, Lagrange
 from beamfem.errors import InputError
 from beamfem.validation import called, count, fulfils, members, shown, text
@@ -28,22 +26,13 @@ def require_field(field: Any) -> None:
             "beamfem.element.fields.Field, got "
             f"{shown(field)}{' without ' + ', '.join(missing) if missing else ': it is a class'}"
         )
-    if whole(field) is not field:  # it may change, or holds more than it is compared by
-        _require(field)
-        return
-    try:
-        hash(field)
-    except TypeError as error:
-        _refuse(field, f"elements are compared by their fields, but {error}; let it hold tuples, not arrays or lists")
-    _require_once(field)
-
-
-@lru_cache(maxsize=64)
-def _require_once(field: Field) -> None:
-    _require(field)
-
-
-def _require(field: Field) -> None:
+    if type(field).__hash__ is not None:
+        try:
+            hash(field)
+        except TypeError as error:
+            _refuse(
+                field, f"elements are compared by their fields, but {error}; let it hold tuples, not arrays or lists"
+            )
     text(f"name of the field {type(field).__name__}", field.name)
     if not isinstance(field.vectors, tuple) or field.vectors not in _VECTORS:
         _refuse(field, f"vectors must be {_VECTORS[0]} or {_VECTORS[1]}, got {shown(field.vectors)}")

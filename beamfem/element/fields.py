@@ -77,13 +77,10 @@ def d_slots(field: Field) -> np.ndarray:
     return slots(field.vectors, len(field.nodes), ("r_y",))
 
 
-@lru_cache(maxsize=64)
 def slots(vectors: tuple[str, ...], nodes: int, wanted: tuple[str, ...]) -> np.ndarray:
-    """Return the indices (k,) of the wanted nodal vectors among those of an element, read-only."""
+    """Return the indices (k,) of the wanted nodal vectors among those of an element."""
     indices = np.array([n * len(vectors) + i for n in range(nodes) for i, name in enumerate(vectors) if name in wanted])
-    indices = indices.astype(np.int64)
-    indices.setflags(write=False)
-    return indices
+    return indices.astype(np.int64)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 
-from beamfem.alike import by_value
 from beamfem.io.in_words import material_in_words, section_in_words
 from beamfem.io.samples import Samples, bodies, centrelines
 from beamfem.material import Material
@@ -16,6 +15,7 @@ from beamfem.model.named import names
 from beamfem.results.unknown_stress import warn_of_unknown_stress
 from beamfem.section import Layered
 from beamfem.validation import flag, one_of, require_known, shown
+from beamfem.value_keys import by_value
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution

@@ -59,13 +59,6 @@ def _plain() -> Any:
     return properties
 
 
-@lru_cache(maxsize=256)
-def _text(text: str) -> np.ndarray:
-    from h5py import string_dtype
-
-    return np.array(text, dtype=string_dtype())
-
-
 @lru_cache(maxsize=1)
 def _kind_of_text() -> Any:
     """Return the type and the shape of a text in a file."""
@@ -75,6 +68,6 @@ def _kind_of_text() -> Any:
 
 
 def _describe(made: Any, name: str, text: str) -> None:
-    from h5py import h5a
+    from h5py import h5a, string_dtype
 
-    h5a.create(made, name.encode(), *_kind_of_text()).write(_text(text))
+    h5a.create(made, name.encode(), *_kind_of_text()).write(np.array(text, dtype=string_dtype()))

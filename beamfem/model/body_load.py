@@ -27,8 +27,8 @@ class BodyLoad(Load):
         return
 
     @property
-    def besides_size(self) -> None:
-        """None, as no mesh depends on an acceleration; see `Load.besides_size`."""
+    def layout(self) -> None:
+        """None, as no table depends on an acceleration; see `Load.layout`."""
         return
 
     @property

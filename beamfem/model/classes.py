@@ -2,16 +2,12 @@
 
 from collections import defaultdict
 from collections.abc import Hashable, Sequence
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
-from beamfem.alike import by_value, lasting
-from beamfem.element.element import Element, kept_with_elements
-from beamfem.element.fields import d_slots, r_slots
+from beamfem.element.element import Element
 from beamfem.kernels.block import ELASTIC_LINE
-from beamfem.material import Material
 from beamfem.model.damping import retardation_time
 from beamfem.model.grid import Grid
 from beamfem.model.reference import (
@@ -20,11 +16,10 @@ from beamfem.model.reference import (
     inertia_at,
     jacobians,
     length_points,
-    length_rule,
     scales,
 )
+from beamfem.value_keys import by_value
 
-_FEW = 2000  # elements; the classes of larger grids are not cached
 _ALIKE = 1e-9  # of the longest element: elements whose lengths differ by less are in one class
 
 
@@ -47,33 +42,6 @@ class Classes(NamedTuple):
 
 def element_classes(grid: Grid) -> Classes:
     """Return the classes of a grid: by length on a straight prismatic beam, otherwise one per element."""
-    beam, few = grid.beam, grid.elements <= _FEW
-    # studies repeatedly make identical beams
-    if few and grid.straight and lasting(beam.element, beam.section, beam.material):
-        x, y = grid.tangent[0].tolist()
-        known = _known(beam.element, by_value(beam.section), beam.material, grid.lengths.tobytes(), x, y)
-        if not known:
-            known.append(_read_only(_classes(grid)))
-        return known[0]
-    return _read_only(_classes(grid))
-
-
-def _read_only(classes: Classes) -> Classes:
-    """Return the classes, whose arrays beams that are alike share."""
-    for values in classes:
-        values.setflags(write=False)
-    return classes
-
-
-@lru_cache(maxsize=64)
-def _known(
-    element: Element, section: Hashable, material: Material | None, lengths: bytes, x: float, y: float
-) -> list[Classes]:
-    """Return a list for the classes of straight prismatic beams that are alike in all this, empty at first."""
-    return []
-
-
-def _classes(grid: Grid) -> Classes:
     first, kind = _likes(grid)
     element, xi, weight = energy_points(grid, first)
     count, size = len(first), len(element) // len(first)
@@ -100,22 +68,12 @@ def _derivatives(
     scale (nc, nv): scale of the nodal vectors, included in N; jacobian, jacobian_xi (nc, nq): ds/dxi [m] and its
     derivative.
     """
-    table, curved = _slopes(element)
+    table, curved = element.tables.slope, element.tables.curve
     scaled, inverse = scale[:, None, :], 1.0 / jacobian[:, :, None]
     second = np.empty((len(scale), 0, 0))
     if element.forces.code == ELASTIC_LINE:
         second = np.ascontiguousarray((curved - jacobian_xi[:, :, None] * inverse * table) * scaled * inverse**2)
     return np.ascontiguousarray(table * scaled * inverse), second
-
-
-@kept_with_elements
-def _slopes(element: Element) -> tuple[np.ndarray, np.ndarray]:
-    """Return dN/dxi (nq, nv) for r0 and d, and d2N/dxi2 for r0, at the points of the energy."""
-    basis, (xi, _) = element.field, element.energy_points()
-    table, curved = np.zeros((2, len(xi), len(basis.nodes) * len(basis.vectors)))
-    table[:, r_slots(basis)], table[:, d_slots(basis)] = basis.centreline(xi, 1), basis.director(xi, 1)
-    curved[:, r_slots(basis)] = basis.centreline(xi, 2)
-    return table, curved
 
 
 def _likes(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
@@ -157,7 +115,7 @@ def likenesses(grids: Sequence[Grid]) -> list[Hashable]:
 
 def _inertia(grid: Grid, chosen: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return mass (nc, nv, nv), load of a uniform acceleration (nc, nv) and load of a uniform force (nc, nv)."""
-    tables = _tables(grid.beam.element)
+    tables = grid.beam.element.tables
     where, at, weight = length_points(grid, chosen)
     inertia = inertia_at(grid, where, at, weight)
     count, points = len(chosen), len(tables.r)
@@ -168,26 +126,3 @@ def _inertia(grid: Grid, chosen: np.ndarray, scale: np.ndarray) -> tuple[np.ndar
         gravity += first @ tables.d
     matrix = matrix.reshape(count, *scale.shape[1:], -1) * (scale[:, :, None] * scale[:, None, :])
     return matrix, gravity * scale, weight.reshape(count, points) @ tables.r * scale
-
-
-class _Tables(NamedTuple):
-    """Shape functions of r0 and d at the points that integrate mass (points, nv), and their products (points, nv nv).
-
-    rd: product of those of r0 and d plus its transpose.
-    """
-
-    r: np.ndarray
-    d: np.ndarray
-    rr: np.ndarray
-    dd: np.ndarray
-    rd: np.ndarray
-
-
-@kept_with_elements
-def _tables(element: Element) -> _Tables:
-    basis = element.field
-    xi, _ = length_rule(basis)
-    r, d = np.zeros((2, len(xi), len(basis.nodes) * len(basis.vectors)))
-    r[:, r_slots(basis)], d[:, d_slots(basis)] = basis.centreline(xi), basis.director(xi)
-    rr, dd, rd = (one[:, :, None] * other[:, None, :] for one, other in ((r, r), (d, d), (r, d)))
-    return _Tables(r, d, *(product.reshape(len(xi), -1) for product in (rr, dd, rd + np.swapaxes(rd, 1, 2))))

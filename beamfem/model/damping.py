@@ -1,8 +1,5 @@
 """The retardation time of a beam: the stress per strain rate, relative to the stiffness."""
 
-from functools import lru_cache
-
-from beamfem.alike import lasting
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.section.protocol import CrossSection
@@ -13,11 +10,6 @@ def retardation_time(section: CrossSection, material: Material | None) -> float:
 
     Raises InputError if layers have different ones.
     """
-    time = _known_time if lasting(section, material) else _time
-    return time(section, material)  # type: ignore[arg-type]
-
-
-def _time(section: CrossSection, material: Material | None) -> float:
     try:
         times = {part_material.retardation_time for part_material, _ in section.moments(material)}
     except InputError:  # known by its stiffness
@@ -28,7 +20,3 @@ def _time(section: CrossSection, material: Material | None) -> float:
             "a beam has one: damping is proportional to its stiffness"
         )
     return times.pop()
-
-
-# the beams of a frame share few sections
-_known_time = lru_cache(maxsize=64)(_time)

@@ -56,9 +56,7 @@ class Grid:
     @cached_property
     def lengths(self) -> np.ndarray:
         """Mesh length of each element (ne,) [m]."""
-        lengths = self.rate * (self.parameter[1:] - self.parameter[:-1])
-        lengths.setflags(write=False)
-        return lengths
+        return self.rate * (self.parameter[1:] - self.parameter[:-1])
 
     @property
     def nodes(self) -> int:

@@ -2,7 +2,6 @@
 
 from collections import defaultdict
 from collections.abc import Sequence
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -12,15 +11,13 @@ from beamfem.element.fields import Field
 from beamfem.model.beam import Beam
 from beamfem.model.grid import Grid, make_grid
 
-_FEW = 2000  # elements; the divisions of longer lines are not cached
-
 
 def make_grids(beams: Sequence[Beam], fractions: Sequence[Sequence[float]]) -> list[Grid]:
     """Return the grid of each beam with a node at each of its fractions and at each corner of its curve."""
     alike: defaultdict[tuple[int, Field], list[int]] = defaultdict(list)
     grids: dict[int, Grid] = {}
     for number, (beam, beam_fractions) in enumerate(zip(beams, fractions, strict=True)):
-        if type(beam.curve) is Line and isinstance(beam.elements, int) and _at_ends(beam_fractions, beam.elements):
+        if type(beam.curve) is Line and isinstance(beam.elements, int) and not beam_fractions:
             alike[beam.elements, beam.element.field].append(number)
         else:
             grids[number] = make_grid(beam, beam_fractions)
@@ -29,19 +26,11 @@ def make_grids(beams: Sequence[Beam], fractions: Sequence[Sequence[float]]) -> l
     return [grids[number] for number in range(len(beams))]
 
 
-def _at_ends(fractions: Sequence[float], elements: int) -> bool:
-    """Return whether ends of equal elements coincide with each of the fractions."""
-    return all((fraction * elements).is_integer() for fraction in fractions)
-
-
 def _straight_grids(beams: Sequence[Beam], elements: int, field: Field) -> list[Grid]:
     """Return the grids of straight beams with the same number of equal elements of one field."""
     lines = [beam.curve for beam in beams if isinstance(beam.curve, Line)]
     nodes = np.asarray(field.nodes, dtype=float)  # a user's field may return any sequence
-    if len(lines) > 1 or elements > _FEW:
-        division = _divided(lines, elements, nodes)
-    else:
-        division = _cached_division(lines[0], elements, nodes.tobytes())
+    division = _divided(lines, elements, nodes)
     parts = zip(beams, division.vertices, division.arc, division.position, division.tangent, strict=True)
     return [
         Grid(beam, ends, ends, 1.0, division.node, arc, position, tangent, division.speed)
@@ -65,8 +54,8 @@ def _divided(lines: Sequence[Line], elements: int, nodes: np.ndarray) -> _Divide
     length = np.array([line.length for line in lines])[:, None]
     start, end = np.array([line.start for line in lines])[:, None], np.array([line.end for line in lines])[:, None]
     last = len(nodes) - 1
-    fractions, node, speed = (_divisions_of if elements > _FEW else _cached_divisions)(elements, last)
-    vertices = fractions * length
+    node = last * np.arange(elements)[:, None] + np.arange(last + 1)
+    vertices = np.linspace(0.0, 1.0, elements + 1) * length
     arc = np.empty((len(lines), elements * last + 1))
     sizes = vertices[:, 1:] - vertices[:, :-1]
     arc[:, :-1] = (vertices[:, :-1, None] + sizes[:, :, None] * nodes[:-1]).reshape(len(lines), -1)
@@ -74,24 +63,4 @@ def _divided(lines: Sequence[Line], elements: int, nodes: np.ndarray) -> _Divide
     fraction = (arc / length)[:, :, None]
     position, tangent = (1.0 - fraction) * start + fraction * end, np.empty((*arc.shape, 2))
     tangent[:] = (end - start) / length[:, :, None]
-    return _Divided(vertices, node, arc, position, tangent, speed)
-
-
-def _divisions_of(elements: int, last: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return ends of equal elements on [0, 1], their nodes (ne, last + 1) and |r_x| of each node, read-only."""
-    node = last * np.arange(elements)[:, None] + np.arange(last + 1)
-    arrays = np.linspace(0.0, 1.0, elements + 1), node, np.ones(elements * last + 1)
-    for values in arrays:
-        values.setflags(write=False)
-    return arrays
-
-
-_cached_divisions = lru_cache(maxsize=64)(_divisions_of)
-
-
-@lru_cache(maxsize=64)  # studies repeatedly divide a line in the same way
-def _cached_division(line: Line, elements: int, nodes: bytes) -> _Divided:
-    division = _divided([line], elements, np.frombuffer(nodes))
-    for values in division:
-        values.setflags(write=False)
-    return division
+    return _Divided(vertices, node, arc, position, tangent, np.ones(arc.shape[1]))

@@ -1,18 +1,14 @@
 """The meshes of beams with like elements and sections as one mesh, so that results are evaluated on all at once."""
 
-from collections import defaultdict
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
-from beamfem.alike import by_value
 from beamfem.model.mesh import BeamMesh
-from beamfem.model.model import Model
 from beamfem.model.numbering import Nodes
-from beamfem.model.turns import number_uncounted
-from beamfem.once import cached_property, kept_with
+from beamfem.once import cached_property
 
 _NONE = np.empty(0)
 
@@ -92,7 +88,7 @@ class JoinedMesh(BeamMesh):
 
 
 def join(meshes: Sequence[BeamMesh]) -> BeamMesh:
-    """Return meshes that are alike, see `alike`, as one; a single one as it is."""
+    """Return meshes of a group, see `NumberedMeshes.joinable`, as one; a single one as it is."""
     if len(meshes) == 1:
         return meshes[0]
     first = meshes[0]
@@ -106,24 +102,6 @@ def join(meshes: Sequence[BeamMesh]) -> BeamMesh:
     return JoinedMesh(
         *grid, _joined_kinematics(meshes), 0, first.block, first.history[:0], tuple(meshes), moved=first.moved
     )
-
-
-@kept_with
-def alike(model: Model) -> list[list[int]]:
-    """Return the numbers of the beams of each group whose meshes can be joined, in the order of their first."""
-    groups: defaultdict[Hashable, list[int]] = defaultdict(list)
-    for number, mesh in enumerate(model.meshes):
-        groups[_kind(model, mesh)].append(number)
-    return list(groups.values())
-
-
-def _kind(model: Model, mesh: BeamMesh) -> Hashable:
-    """Return what meshes have in common that can be joined."""
-    beam = mesh.beam
-    if beam.elements == "knots":  # the mesh coordinate is that of its spline
-        return id(mesh)
-    counted = number_uncounted(model, mesh) is None
-    return mesh.block, mesh.straight, counted, by_value(beam.section), by_value(beam.material)
 
 
 def _joined_kinematics(meshes: Sequence[BeamMesh]) -> Nodes:

@@ -3,7 +3,6 @@
 from typing import TYPE_CHECKING
 
 from beamfem.element.coordinates import ShearFree
-from beamfem.element.law_points import law_points
 from beamfem.element.structural import Structural
 from beamfem.errors import InputError
 from beamfem.section.law import SectionLaw
@@ -40,7 +39,7 @@ def require_law_fits(beam: "Beam") -> None:
             f"{name} has a law of its own, of stretch, shear and curvature: it needs Structural forces, such as "
             f"CRBF(order=2) or ANCF(Structural()), but the element {element.name} has {type(element.forces).__name__}"
         )
-    if not law_points(element):
+    if not element.law_points:
         why = ", since its nodes do not shear" if isinstance(element.coordinates, ShearFree) else ""
         raise InputError(
             f"{name} has a law of its own, for stretch, shear and curvature at one point; the element {element.name} "

@@ -96,8 +96,8 @@ class LineLoad(AlongBeam, Load):
         return self.uniform and self.axes == "plane"
 
     @property
-    def besides_size(self) -> Any:
-        """None for forces that are one vector, which no mesh depends on, or else the load; see `Load.besides_size`."""
+    def layout(self) -> Any:
+        """None for forces that are one vector, or else the load; see `Load.layout`."""
         return None if self.even else self
 
     @property

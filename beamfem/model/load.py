@@ -43,8 +43,8 @@ class Load(ABC):
         return "plane"
 
     @property
-    def besides_size(self) -> Any:
-        """What models that differ in the size of this load only have in common; the load itself if that is nothing."""
+    def layout(self) -> Any:
+        """All of the load but its size; the load itself if tables of solvers depend on its size."""
         return self
 
     @property

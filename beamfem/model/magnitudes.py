@@ -1,11 +1,9 @@
 """Check that the quantities that solvers compute from a beam are in the range of double precision."""
 
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.alike import lasting
 from beamfem.curves import Line
 from beamfem.errors import InputError
 from beamfem.material import Material
@@ -47,8 +45,7 @@ def _formed(beam: "Beam", section: CrossSection) -> list[float]:
     h = length * beam.shortest
     if not h > 0.0:
         return [length, reach, h]
-    resistance = _known_resistance if lasting(section, beam.material) else _resistance
-    axial, shear, bending, mass, rotary = resistance(section, beam.material)  # type: ignore[arg-type]
+    axial, shear, bending, mass, rotary = _resistance(section, beam.material)
     quantities = [length, reach, h, axial, axial / h, axial * h, shear, shear / h, shear * h]
     quantities += (bending / h, bending / h / h / h, mass * h, rotary / h)
     if beam.element.forces.fills_body:
@@ -65,10 +62,6 @@ def _resistance(section: CrossSection, material: Material | None) -> tuple[float
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         rigidity, inertia = section.rigidity(material), section.inertia(material)
     return tuple(map(float, (rigidity.axial, rigidity.shear, rigidity.bending, inertia.mass, inertia.rotary)))
-
-
-# the beams of a frame share few sections
-_known_resistance = lru_cache(maxsize=64)(_resistance)
 
 
 def _names(beam: "Beam", section: CrossSection) -> list[str]:

@@ -1,12 +1,10 @@
 """The numbered mesh of one beam: its grid, and the coordinates of the model at its nodes."""
 
-from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.element.coordinates import labels
-from beamfem.model.beam import Beam
+from beamfem.element.coordinates import Gradients, labels
 from beamfem.model.classes import Classes, element_classes
 from beamfem.model.grid import Grid
 from beamfem.model.numbering import Nodes
@@ -32,12 +30,6 @@ class BeamMesh(Grid):
         """Classes of identical elements, with their data."""
         return element_classes(self)
 
-    def on(self, beam: Beam) -> "BeamMesh":
-        """Return the mesh, with all that was computed for it, as that of another beam that is alike."""
-        mesh = copy(self)
-        object.__setattr__(mesh, "beam", beam)
-        return mesh
-
     @property
     def parts(self) -> tuple["BeamMesh", ...]:
         """The meshes of single beams that it consists of."""
@@ -57,6 +49,13 @@ class BeamMesh(Grid):
         """Each kind of nodal coordinates, by its number in compiled code, with its nodes (n,)."""
         codes = self.kinematics.node_kind
         return tuple((int(code), np.flatnonzero(codes == code)) for code in np.unique(codes))
+
+    @property
+    def has_gradients_only(self) -> bool:
+        """Whether no node has an angle as a coordinate."""
+        if not isinstance(self.beam.element.coordinates, Gradients):
+            return False
+        return all("theta" not in self.labels(int(nodes[0])) for _, nodes in self.node_kinds)
 
     def labels(self, node: int) -> tuple[str, ...]:
         """Return the names of the coordinates of a node."""

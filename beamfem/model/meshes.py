@@ -1,15 +1,16 @@
 """The meshes of all beams of a model, with the numbers of its coordinates."""
 
-from collections.abc import Sequence
-from dataclasses import fields
+from collections import defaultdict
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, fields
 from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from beamfem.element.law_points import law_points
+from beamfem.element.element import Element
 from beamfem.kernels.block import NO_HISTORY
-from beamfem.model.beam import Point
+from beamfem.model.beam import Beam, Point
 from beamfem.model.body import require_body
 from beamfem.model.contribution import remembered, uses_rotations
 from beamfem.model.gaps import close_gaps
@@ -20,6 +21,8 @@ from beamfem.model.nodes_asked import nodes_asked
 from beamfem.model.numbering import number_nodes
 from beamfem.model.size import require_room
 from beamfem.model.support import PointSupport
+from beamfem.once import cached_property
+from beamfem.value_keys import by_value
 
 if TYPE_CHECKING:
     from beamfem.model.model import Model
@@ -28,42 +31,143 @@ _GRID = tuple(each.name for each in fields(Grid))
 _NO_PAIRS = np.empty((0, 4), dtype=np.int64)
 
 
-class NumberedMeshes(NamedTuple):
-    """The mesh of each beam, the number of coordinates of the beams, and that of all variables of the model."""
+@dataclass(frozen=True, eq=False)
+class NumberedMeshes:
+    """The meshes of all beams of a model.
+
+    meshes: that of each beam; groups: the element of each block of beams; coordinates: number of coordinates of the
+    beams; size: number of all variables of the model.
+    """
 
     meshes: tuple[BeamMesh, ...]
+    groups: tuple[Element, ...]
     coordinates: int
     size: int
+
+    @cached_property
+    def uncounted(self) -> list[BeamMesh]:
+        """The meshes (m,) of the beams without a node whose rotation is a coordinate."""
+        return [mesh for mesh in self.meshes if mesh.has_gradients_only]
+
+    @cached_property
+    def numbers_uncounted(self) -> dict[BeamMesh, int]:
+        """The number of each mesh of `uncounted` in it."""
+        return {mesh: number for number, mesh in enumerate(self.uncounted)}
+
+    @cached_property
+    def rotation_pairs(self) -> np.ndarray:
+        """Coordinates x and y (m, 2) of the vector that determines the rotation at the start of each of `uncounted`."""
+        pairs = []
+        for mesh in self.uncounted:
+            vector = "r_x" if mesh.beam.element.forces.turns_with == "r_x" else "r_y"
+            column = mesh.labels(0).index(f"{vector}^x")
+            pairs.append(mesh.kinematics.dof[0, column : column + 2])
+        return np.array(pairs, dtype=np.int64).reshape(-1, 2)
+
+    @cached_property
+    def joinable(self) -> list[list[int]]:
+        """The numbers of the beams of each group whose meshes can be joined, in the order of their first."""
+        groups: defaultdict[Hashable, list[int]] = defaultdict(list)
+        for number, mesh in enumerate(self.meshes):
+            groups[self._kind(mesh)].append(number)
+        return list(groups.values())
+
+    def _kind(self, mesh: BeamMesh) -> Hashable:
+        """Return a key that meshes share if they can be joined."""
+        beam = mesh.beam
+        if beam.elements == "knots":  # the mesh coordinate is that of its spline
+            return mesh
+        counted = mesh not in self.numbers_uncounted
+        return mesh.block, mesh.straight, counted, by_value(beam.section), by_value(beam.material)
+
+    @cached_property
+    def places(self) -> dict[int, "Place"]:
+        """The place of each beam in its group of `joinable`."""
+        result = dict[int, Place]()
+        for group in self.joinable:
+            largest = max(self.meshes[number].elements for number in group)
+            result |= {number: Place(group, at, largest) for at, number in enumerate(group)}
+        return result
+
+
+class Place(NamedTuple):
+    """The numbers of beams whose meshes can be joined, the place of one among them, and the most elements of any."""
+
+    group: list[int]
+    at: int
+    largest: int
+
+
+class NodesNeeded(NamedTuple):
+    """All that the meshes of a model depend on besides its beams and joints.
+
+    fractions: those of each beam [-] at which there has to be a node; angled: number of the beam and fraction of each
+    node that has an angle as a coordinate; further: number of variables that are not coordinates of beams.
+    """
+
+    fractions: list[list[float]]
+    angled: list[tuple[int, float]]
+    further: int
+
+
+def nodes_needed(model: "Model") -> NodesNeeded:
+    """Return the nodes that supports, loads and connectors of a model need."""
+    asked = zip(model.beams, nodes_asked(model), strict=True)
+    fractions = [_inside(beam, {fraction for fraction, _ in requested}) for beam, requested in asked]
+    points = [support.point for support in model.point_supports if _turns(support)]
+    points += [point for connector in model.connectors if uses_rotations(connector) for point in connector.points]
+    angled = sorted({(model.number_of(point.beam), point.fraction) for point in points})
+    further = sum(connector.unknowns + len(remembered(connector)) for connector in model.connectors)
+    return NodesNeeded(fractions, angled, further)
+
+
+def _inside(beam: Beam, fractions: set[float]) -> list[float]:
+    """Return the fractions in ascending order, none if the elements of the beam end at all of them anyway."""
+    count = beam.elements
+    if isinstance(count, int) and not beam.curve.corners and all((at * count).is_integer() for at in fractions):
+        return []
+    return sorted(fractions)
 
 
 def numbered_meshes(model: "Model") -> NumberedMeshes:
     """Return the meshes of a model. Raises InputError for a beam that cannot be meshed."""
     require_room(model.beams)
-    fractions = [[fraction for fraction, _ in requested] for requested in nodes_asked(model)]
-    grids = make_grids(model.beams, fractions)
-    turned = [support.point for support in model.point_supports if _turns(support)]
-    turned += [point for connector in model.connectors if uses_rotations(connector) for point in connector.points]
-    angled = _places(model, grids, turned)
+    needed = model.nodes_needed
+    grids = make_grids(model.beams, needed.fractions)
+    places = [(number, grids[number].node_at(fraction)) for number, fraction in needed.angled]
+    angled = np.array(places, dtype=np.int64).reshape(-1, 2)
     turning, moving = _joined(model, grids)
     grids = close_gaps(grids, moving)
     for grid in grids:
         require_body(grid, model.unit)
     nodes, size = number_nodes(grids, angled, moving, turning)
-    blocks = model.blocks_of_beams
-    filled, meshes = [0] * len(model.groups), []
-    behind = size + sum(connector.unknowns + len(remembered(connector)) for connector in model.connectors)
+    groups, blocks = _blocks(model.beams)
+    filled, meshes = [0] * len(groups), []
+    behind = size + needed.further
     for grid, kinematics, block in zip(grids, nodes, blocks, strict=True):
         parts = {name: getattr(grid, name) for name in _GRID}
         history = _history(grid, behind)
         meshes.append(
             BeamMesh(**parts, kinematics=kinematics, first_element=filled[block], block=block, history=history)
         )
-        for values in (history, *parts.values()):
-            if isinstance(values, np.ndarray):
-                values.setflags(write=False)  # models that are alike share it
         filled[block] += grid.elements
         behind += history.size
-    return NumberedMeshes(tuple(meshes), size, behind)
+    return NumberedMeshes(tuple(meshes), groups, size, behind)
+
+
+def _blocks(beams: Sequence[Beam]) -> tuple[tuple[Element, ...], list[int]]:
+    """Return the element of each block of beams, in order of appearance, and the number of the block of each beam.
+
+    Beams of one block have the same element and section law.
+    """
+    blocks: dict[tuple[Element, Hashable], int] = {}
+    numbers = [blocks.setdefault(_block_key(beam), len(blocks)) for beam in beams]
+    return tuple(element for element, _ in blocks), numbers
+
+
+def _block_key(beam: Beam) -> tuple[Element, Hashable]:
+    law = beam.law
+    return beam.element, None if law is None else (by_value(law.section), by_value(law.material))
 
 
 def _joined(model: "Model", grids: Sequence[Grid]) -> tuple[np.ndarray, np.ndarray]:
@@ -97,7 +201,7 @@ def _history(grid: Grid, first: int) -> np.ndarray:
     law = grid.beam.law
     if law is None or not law.remembers:
         return NO_HISTORY
-    shape = grid.elements, law_points(grid.beam.element), len(law.start)
+    shape = grid.elements, grid.beam.element.law_points, len(law.start)
     return np.arange(first, first + prod(shape), dtype=np.int64).reshape(shape)
 
 

@@ -1,13 +1,12 @@
 """A model: beams with their supports, joints, loads and connectors."""
 
-from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, is_dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, is_dataclass, replace
 from os import PathLike
 from typing import Any
 
 import numpy as np
 
-from beamfem.alike import by_value, of_package
 from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
@@ -16,21 +15,20 @@ from beamfem.model.body_load import BodyLoad
 from beamfem.model.contribution import Contribution, require_connector
 from beamfem.model.imposed_strain import ImposedStrain
 from beamfem.model.joints import Joint
-from beamfem.model.likeness import shared_by_likes
 from beamfem.model.line_load import LineLoad
 from beamfem.model.load import Load
-from beamfem.model.made_of import MadeOf, made_of
 from beamfem.model.mesh import BeamMesh
-from beamfem.model.meshes import NumberedMeshes, numbered_meshes
+from beamfem.model.meshes import NodesNeeded, NumberedMeshes, nodes_needed, numbered_meshes
 from beamfem.model.misplaced import beam_like, listed, refused, touching
 from beamfem.model.named import require_different_names
 from beamfem.model.plausible import warn_of_units
 from beamfem.model.point_load import PointLoad
+from beamfem.model.sharing import share
 from beamfem.model.support import LineSupport, PointSupport, Support
 from beamfem.model.supports_along import SupportsAlong
-from beamfem.once import cached_property, shared_property
+from beamfem.once import cached_property
 from beamfem.units import Units, units_of
-from beamfem.validation import shown
+from beamfem.validation import of_package, shown
 
 _UNNAMED = "N, m, s"
 _KINDS: dict[str, tuple[type, ...]] = {
@@ -90,6 +88,77 @@ class Model:
     connectors: Sequence[Contribution] = ()
     units: str = _UNNAMED
 
+    def with_loads(self, loads: Sequence[Load]) -> "Model":
+        """Return the model with other loads, which shares with it all that does not depend on them.
+
+        The new model has the same mesh and numbering unless a load needs a node elsewhere, and the same tables of
+        solvers if the loads differ only in their size: point loads at the same points, gravity, uniform loads along
+        beams. Any other load, such as a pressure or a temperature, has to be the same object.
+
+        Parameters
+        ----------
+        loads : sequence
+            All loads of the new model.
+
+        Returns
+        -------
+        Model
+            The new model.
+
+        Raises
+        ------
+        InputError, UnknownPointError
+            As for a `Model`.
+
+        Examples
+        --------
+        >>> for force in (-1e3, -2e3, -3e3):
+        ...     loaded = model.with_loads([bf.PointForce(beam.end, (0.0, force))])
+        ...     tip = bf.solve_static(loaded).displacement(beam.end)[-1]
+        """
+        return self._with(loads=loads)
+
+    def with_(
+        self,
+        *,
+        supports: Sequence[Support] | None = None,
+        loads: Sequence[Load] | None = None,
+        connectors: Sequence[Contribution] | None = None,
+    ) -> "Model":
+        """Return the model with other supports, loads or connectors; it shares the mesh where the nodes are the same.
+
+        Parameters
+        ----------
+        supports, loads, connectors : sequence, optional
+            All of them in the new model; what is not given is unchanged.
+
+        Returns
+        -------
+        Model
+            The new model, see `with_loads`.
+
+        Raises
+        ------
+        InputError, UnknownPointError
+            As for a `Model`, and if nothing is given.
+
+        Examples
+        --------
+        >>> propped = model.with_(supports=[*model.supports, bf.Roller(beam.end)])
+        """
+        given = {"supports": supports, "loads": loads, "connectors": connectors}
+        changes = {name: parts for name, parts in given.items() if parts is not None}
+        if not changes:
+            raise InputError(
+                "with_ takes the supports, loads or connectors of the new model, such as with_(loads=[...])"
+            )
+        return self._with(**changes)
+
+    def _with(self, **changes: Any) -> "Model":
+        model = replace(self, **changes)
+        share(self, model)
+        return model
+
     def __getstate__(self) -> dict[str, object]:
         """Return the fields only: cached meshes refer to beams by identity, so copies rebuild theirs."""
         return {name: getattr(self, name) for name in self.__dataclass_fields__}
@@ -100,7 +169,8 @@ class Model:
         return f"Model({', '.join(counted)})"
 
     def __post_init__(self) -> None:
-        _ = self._units
+        if self.units is not _UNNAMED:
+            _ = self._units
         for name, kinds in _KINDS.items():
             members = listed(name, getattr(self, name), _KINDS)
             object.__setattr__(self, name, members)
@@ -117,8 +187,7 @@ class Model:
         require_different_names(self.beams)
         parts: tuple[Support | Load, ...] = (*self.supports, *self.loads)
         for part in (*parts, *self.joints):
-            part_kind: Any = type(part)
-            if not of_package(part_kind):
+            if not of_package(type(part)):
                 part.require_valid()
         for item in parts:
             self._require(item, item.place)
@@ -187,65 +256,43 @@ class Model:
         return self._units.of(unit)
 
     @cached_property
-    def alike(self) -> dict[Any, Any]:
-        """What this model and all models that are like it but for the size of loads have in common, by name."""
-        return shared_by_likes(self)
-
-    @shared_property
-    def made_of(self) -> MadeOf:
-        """What the meshes were made of and may change, see `made_of`."""
-        return made_of(self)
-
-    @cached_property
     def _numbers(self) -> dict[int, int]:
         return {id(beam): number for number, beam in enumerate(self.beams)}
 
     @cached_property
-    def _numbered(self) -> NumberedMeshes:
-        shared = self._numbered_alike
-        pairs = tuple(zip(shared.meshes, self.beams, strict=True))
-        if all(mesh.beam is beam for mesh, beam in pairs):  # models may have some of their beams in common
-            return shared
-        meshes = tuple(mesh.on(beam) for mesh, beam in pairs)
-        return shared._replace(meshes=meshes)
-
-    @shared_property
-    def _numbered_alike(self) -> NumberedMeshes:
-        """The meshes of the first of the models that are alike."""
-        _ = self.made_of
+    def numbered(self) -> NumberedMeshes:
+        """The meshes of the beams with the numbers of their coordinates."""
         return numbered_meshes(self)
+
+    @cached_property
+    def nodes_needed(self) -> NodesNeeded:
+        """The nodes that supports, loads and connectors need."""
+        return nodes_needed(self)
+
+    @cached_property
+    def tables(self) -> dict[Any, Any]:
+        """Tables of solvers, by name, in common with the models that `with_loads` has made from this one."""
+        return {}
 
     @property
     def meshes(self) -> tuple[BeamMesh, ...]:
         """The mesh of each beam, in the order of the beams."""
-        return self._numbered.meshes
+        return self.numbered.meshes
 
     @property
     def coordinates(self) -> int:
         """Number of coordinates of the beams, including prescribed ones; shared ones are counted once."""
-        return self._numbered.coordinates
+        return self.numbered.coordinates
 
     @property
     def size(self) -> int:
         """Number of all variables: coordinates of the beams, unknowns of connectors, and history variables."""
-        return self._numbered.size
-
-    @shared_property
-    def groups(self) -> tuple[Element, ...]:
-        """The element of each block of beams, in order of appearance; different section laws form separate blocks."""
-        return tuple(element for element, *_ in self._kinds[0])
+        return self.numbered.size
 
     @property
-    def blocks_of_beams(self) -> tuple[int, ...]:
-        """The number of the block of each beam."""
-        return self._kinds[1]
-
-    @shared_property
-    def _kinds(self) -> tuple[tuple[tuple[Element, Hashable], ...], tuple[int, ...]]:
-        """The key of each block of beams, and the number of the block of each beam."""
-        blocks: dict[tuple[Element, Hashable], int] = {}
-        numbers = tuple(blocks.setdefault(block_key(beam), len(blocks)) for beam in self.beams)
-        return tuple(blocks), numbers
+    def groups(self) -> tuple[Element, ...]:
+        """The element of each block of beams, in order of appearance; different section laws form separate blocks."""
+        return self.numbered.groups
 
     def number_of(self, beam: Beam) -> int:
         """Return the number of a beam, counted from 0.
@@ -316,6 +363,14 @@ class Model:
     def imposing(self) -> tuple[tuple[int, ImposedStrain], ...]:
         """The loads that impose strains, each with the number of its beam."""
         return tuple((self._numbers[id(load.beam)], load) for load in self.loads if isinstance(load, ImposedStrain))
+
+    @cached_property
+    def imposed_on(self) -> dict[Beam, list[tuple[int, ImposedStrain]]]:
+        """The loads that impose strains on each beam, with their numbers in `imposing`."""
+        result: dict[Beam, list[tuple[int, ImposedStrain]]] = {}
+        for number, (_, load) in enumerate(self.imposing):
+            result.setdefault(load.beam, []).append((number, load))
+        return result
 
     @cached_property
     def gravity(self) -> tuple[BodyLoad, ...]:
@@ -410,9 +465,3 @@ class Model:
         from beamfem.view.summary import model_table
 
         return model_table(self)
-
-
-def block_key(beam: Beam) -> tuple[Element, Hashable]:
-    """Return the key that beams of one block share."""
-    law = beam.law
-    return beam.element, None if law is None else (by_value(law.section), by_value(law.material))

@@ -47,7 +47,6 @@ def number_nodes(
     number = _number if sum(kind.nodes for kind in kinds) > _FEW else _cached_number
     numbered = number(kinds, tuple(map(tuple, angled.tolist())), *pairs)
     frame = _frames(grids, numbered)
-    frame.setflags(write=False)  # models that are alike share it
     nodes = [
         Nodes(numbered.node_kind[begin:end], numbered.dof[begin:end, :columns], frame[begin:end])
         for begin, end, columns in numbered.parts

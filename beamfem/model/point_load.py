@@ -48,8 +48,8 @@ class PointLoad(Load):
         return "section" if self.follower else "plane"
 
     @property
-    def besides_size(self) -> tuple[Point, bool]:
-        """Where the load acts, and whether it follows the section; see `Load.besides_size`."""
+    def layout(self) -> tuple[Point, bool]:
+        """Where the load acts, and whether it follows the section; see `Load.layout`."""
         return self.point, self.follower
 
     @property

@@ -1,24 +1,21 @@
 """The stress-free reference of a beam: axis, section stiffness and inertia at points of elements."""
 
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from beamfem.alike import of_package
 from beamfem.element.axis import Axis, cross, dot
 from beamfem.element.coordinates import across
 from beamfem.element.element import Element
-from beamfem.element.fields import Field, d_slots, r_slots, slots
+from beamfem.element.fields import d_slots, r_slots, slots
 from beamfem.element.forces import Forces
-from beamfem.element.law_points import coupled_fractions
 from beamfem.element.structural import section_frame
+from beamfem.element.tables import length_rule
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam
 from beamfem.model.grid import Grid
-from beamfem.quadrature import gauss
 from beamfem.section.protocol import CrossSection
-from beamfem.validation import shown
+from beamfem.validation import of_package, shown
 
 _SHORT, _INSIDE = 1e-4, 1e-6  # of an element: half the interval of a curvature, and its distance from the ends
 
@@ -125,18 +122,13 @@ def energy_stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tupl
     points = len(element_type.energy_points()[0])
     by_element = stiffness.reshape(-1, points, *stiffness.shape[1:])
     if grid.beam.law is not None:  # it may couple strains that are not coupled at zero strain
-        return (by_element * coupled_fractions(element_type)).reshape(stiffness.shape), reference
+        return (by_element * element_type.coupled_fractions).reshape(stiffness.shape), reference
     return element_type.energy_stiffness(by_element, jacobian.reshape(-1, points)).reshape(stiffness.shape), reference
 
 
 def length_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return element, xi and weight [m] of the points that integrate mass exactly on a straight prismatic beam."""
     return _points(grid, element, *length_rule(grid.beam.element.field))
-
-
-def length_rule(field: Field) -> tuple[np.ndarray, np.ndarray]:
-    """Return points and weights on [0, 1] that integrate mass exactly on a straight prismatic beam."""
-    return gauss(max(field.degree, field.director_degree) + 1)
 
 
 def _stiffness(beam: Beam, arc: float, at: Axis) -> np.ndarray:
@@ -175,7 +167,6 @@ def stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.nd
     return np.concatenate(parts), strains
 
 
-@lru_cache(maxsize=64)
 def _straight_axis(forces: Forces, x: float, y: float) -> tuple[Axis, np.ndarray]:
     """Return a point of a straight axis along (x, y) and the strain measures (1, ns) there."""
     along, none = np.array([[x, y]]), np.zeros((1, 2))

@@ -1,8 +1,7 @@
 """Forces acting on elements isolated as free bodies: weight, inertia, loads and foundations, at points."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
-from weakref import WeakKeyDictionary
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -37,17 +36,22 @@ class Rows:
     imposing: np.ndarray
 
 
-# the last rows of each solution, which the beams of a model ask for one after another
-_KEPT = WeakKeyDictionary[Any, tuple[slice | bytes, Rows]]()
-
-
 def rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:
-    """Return some rows of a solution with the forces that act in them, which is kept until other rows are asked for."""
+    """Return some rows of a solution with the forces that act in them, kept until other rows are asked for.
+
+    The beams of a model ask for the same rows one after another.
+    """
     key = rows if isinstance(rows, slice) else np.asarray(rows).tobytes()
-    kept = _KEPT.get(solution)
+    latest = solution.computed(_latest)
+    kept = latest.get("rows")
     if kept is None or kept[0] != key:
-        kept = _KEPT[solution] = key, _rows_of(solution, rows)
+        kept = latest["rows"] = key, _rows_of(solution, rows)
     return kept[1]
+
+
+def _latest(solution: "Solution") -> dict[str, tuple[slice | bytes, Rows]]:
+    """Return the latest rows of a solution, none at first."""
+    return {}
 
 
 def _rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:

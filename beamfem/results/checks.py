@@ -16,7 +16,7 @@ from beamfem.errors import EnergyWarning, warn
 from beamfem.kernels.neighbouring_nodes import LOCKED, STRAINED, exceeds
 from beamfem.kernels.pointers import address_of
 from beamfem.results import large_strains, locking
-from beamfem.results.element_shapes import ROWS, pairs, rows_looked_at, shared
+from beamfem.results.element_shapes import ROWS, pairs, rows_looked_at
 from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.finding import Finding
 from beamfem.results.loading import loading
@@ -32,9 +32,9 @@ _Check = Callable[["Solution"], Iterable[Finding]]
 def findings(solution: "Solution") -> tuple[Finding, ...]:
     """Return all that is found wrong with a solution, besides what its solver has found."""
     checks: tuple[_Check, ...] = (
-        locking.locking,
-        large_strains.large_strains,
-        lambda solution: (Finding(sentence, EnergyWarning) for sentence in energy_warnings(solution)),
+        lambda solution: solution.computed(locking.locking),
+        lambda solution: solution.computed(large_strains.large_strains),
+        lambda solution: (Finding(sentence, EnergyWarning) for sentence in solution.computed(energy_warnings)),
         lambda solution: map(Finding, unjoined_warnings(solution)),
     )
     return tuple(chain.from_iterable(check(solution) for check in checks))
@@ -44,9 +44,9 @@ def warned(solution: _Solution) -> _Solution:
     """Return a solution that has just been found, after Python warnings of what is wrong with it by 1 % and more."""
     found = _found(loading(solution)[0], solution.p[rows_looked_at(solution)])
     if found & LOCKED:
-        warn_of(locking.locking(solution))
+        warn_of(solution.computed(locking.locking))
     if found & STRAINED:
-        warn_of(large_strains.large_strains(solution))
+        warn_of(solution.computed(large_strains.large_strains))
     return solution
 
 
@@ -61,7 +61,7 @@ class _Bounds:
     """Bounds below which no strains are large, and no result changes by 1 % without locking; states: to be compared."""
 
     def __init__(self, system: System) -> None:
-        neighbours, size = shared(system, pairs), system.model.size
+        neighbours, size = system.table(pairs), system.model.size
         weights = np.vstack([locking.weights(system), large_strains.weights(system)])
         factors = np.hstack([neighbours.at_rest.view(float), weights.T])
         self.states = np.empty((ROWS, size))
@@ -78,7 +78,7 @@ def _unused(system: System) -> list[_Bounds]:
 
 def _found(system: System, p: np.ndarray, times: int = 1) -> int:
     """Return what may be wrong with states p (rows, n), see `exceeds`; times: factor of angles for locking."""
-    unused = shared(system, _unused)
+    unused = system.table(_unused)
     try:
         bounds = unused.pop()
     except IndexError:

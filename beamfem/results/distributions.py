@@ -16,7 +16,6 @@ def fractions_before(points: int, at: np.ndarray, cut: np.ndarray) -> np.ndarray
     return np.einsum("mk,mk->m", integral[nearest(xi, at)], np.polynomial.legendre.legvander(2.0 * cut - 1.0, points))
 
 
-@lru_cache(maxsize=32)
 def to_more_points(points: int, more: int) -> np.ndarray:
     """Return the matrix (more, points) that transfers lumped values from `points` to `more` Gauss points.
 

@@ -5,8 +5,7 @@ a over a length l strain the fibres of a section of height h by at most about |e
 polynomials. The parasitic strains of a cubic field, in terms of its bending strains, are about a l / h.
 """
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -18,7 +17,6 @@ if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
 ROWS = 32  # of a solution that are looked at
-_Found = TypeVar("_Found")
 
 
 class Pairs(NamedTuple):
@@ -41,15 +39,6 @@ def rows_looked_at(solution: "Solution") -> slice:
     count = len(solution)
     stride = -(-count // ROWS)
     return slice((count - 1) % stride if stride > 1 else min(1, count - 1), None, stride)
-
-
-def shared(system: System, build: Callable[[System], _Found]) -> _Found:
-    """Return a function of a model that is computed once for all that are alike."""
-    alike = system.alike
-    if build not in alike:
-        alike[build] = build(system)
-    found: _Found = alike[build]
-    return found
 
 
 def pairs(system: System) -> Pairs:

@@ -10,7 +10,6 @@ from beamfem.assembly.equations import ROUND_OFF, residual, sizes
 from beamfem.assembly.system import System, system_of
 from beamfem.kernels.motion_record import MotionLimits
 from beamfem.model.time_functions import kinks_of
-from beamfem.once import kept_with
 from beamfem.results.connected import kinetic_of_connectors, potential_of_connectors
 from beamfem.results.energy_drift import FIRST, driven, with_rows
 from beamfem.results.resolution import resolved
@@ -59,7 +58,6 @@ class _Balance:
     driven: bool
 
 
-@kept_with
 def energy_warnings(solution: "Solution") -> tuple[str, ...]:
     """Return a warning if the energy of a motion rises by more than work, or falls by more than damping, explains.
 
@@ -213,7 +211,7 @@ def _without_followers(solution: "Solution") -> System:
     """Return the equations with loads that have no potential multiplied by zero, with the same coordinates."""
     model = solution.model
     loads = [load if load.conservative else replace(cast("Any", load), amplitude=_zero) for load in model.loads]
-    return system_of(replace(model, loads=loads), static=False)
+    return system_of(model.with_loads(loads), static=False)
 
 
 def _zero(time: float) -> float:

@@ -6,7 +6,6 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.model import Model
-from beamfem.model.turns import uncounted
 from beamfem.validation import finite, flag, shown
 
 if TYPE_CHECKING:
@@ -24,7 +23,7 @@ def require_state(state: "State") -> None:
         _require_array(state, name, (model.size,))
     object.__setattr__(state, "at", finite(f"at of {type(state).__name__}", state.at))
     if state.turned is not None:
-        _require_array(state, "turned", (len(uncounted(model)),))
+        _require_array(state, "turned", (len(model.numbered.uncounted),))
 
 
 def require_crossing(state: "Bifurcation") -> None:
@@ -55,7 +54,7 @@ def require_rows(solution: "Solution") -> None:
     if solution.loaded is not None:
         _require_array(solution, "loaded", (rows,))
     if solution.turned is not None:
-        _require_array(solution, "turned", (rows, len(uncounted(model))))
+        _require_array(solution, "turned", (rows, len(model.numbered.uncounted)))
 
 
 def made_read_only(solution: "Solution") -> None:

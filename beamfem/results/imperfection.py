@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.alike import of_package
 from beamfem.assembly.system import system_of
 from beamfem.brief import brief
 from beamfem.curves import Chain, Curve, spline_through_hermite
@@ -21,7 +20,7 @@ from beamfem.model.model import Model
 from beamfem.model.remade import require_remade
 from beamfem.results.postprocess import axis, nodal_velocities
 from beamfem.section.protocol import CrossSection
-from beamfem.validation import finite, number_below, shown, squared
+from beamfem.validation import finite, number_below, of_package, shown, squared
 
 _PIECES = 4  # minimum number of cubic segments per element of the imperfect axis; one for a linear field
 

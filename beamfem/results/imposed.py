@@ -20,5 +20,5 @@ def imposed_measures(
     if imposed is None:
         return 0.0
     strains = imposed.of(slice(mesh.first_element, mesh.first_element + mesh.elements))
-    values = [strains.at(factors) for factors in imposing(solution)[rows]]
+    values = [strains.at(factors) for factors in solution.computed(imposing)[rows]]
     return np.array(values).reshape(len(values), -1, strains.first.shape[-1])

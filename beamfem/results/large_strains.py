@@ -12,9 +12,8 @@ from beamfem.model.distributions import layers
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.named import beam_in_words
 from beamfem.model.reference import energy_points, energy_stiffness_at
-from beamfem.once import kept_with
 from beamfem.results.beam_stress import peak_stress
-from beamfem.results.element_shapes import heights, pairs, rows_looked_at, shared
+from beamfem.results.element_shapes import heights, pairs, rows_looked_at
 from beamfem.results.finding import Finding
 from beamfem.results.imposed import imposed_measures
 from beamfem.results.nodal import axis, nodal_vectors
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
 _LARGE = 0.2  # strain beyond which no material is linear
 
 
-@kept_with
 def large_strains(solution: "Solution") -> tuple[Finding, ...]:
     """Return a warning of the largest strain of linear laws, if beyond 0.2, and of the largest utilisation above 1."""
     sentences = (_strained(solution), _overloaded(solution)) if len(solution) else ()
@@ -38,10 +36,10 @@ def weights(system: System) -> np.ndarray:
 
     The angle counts as a shear strain too.
     """
-    neighbours, meshes = shared(system, pairs), system.model.meshes
+    neighbours, meshes = system.table(pairs), system.model.meshes
     linear = np.array([mesh.beam.law is None for mesh in meshes])[neighbours.mesh] / _LARGE
     loaded = np.array([_strain_per_utilisation(mesh) for mesh in meshes])[neighbours.mesh]
-    bent = 3.0 * shared(system, heights) / neighbours.length
+    bent = 3.0 * system.table(heights) / neighbours.length
     return np.stack([np.maximum(linear, loaded), np.maximum(np.fmax(bent, 1.0) * linear, bent * loaded)])
 
 

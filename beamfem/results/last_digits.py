@@ -12,7 +12,6 @@ import numpy as np
 from beamfem.assembly.differences import changed, widths
 from beamfem.assembly.round_off import digits_of, remainder
 from beamfem.assembly.system import system_of
-from beamfem.once import kept_with
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -32,13 +31,11 @@ def remainders(solution: "Solution") -> np.ndarray:
     return result
 
 
-@kept_with
 def _corrected(solution: "Solution") -> np.ndarray:
     """Return whether each row has remainders (steps,)."""
     return np.asarray(solution.remainders.any(axis=1))
 
 
-@kept_with
 def _widths(solution: "Solution") -> np.ndarray:
     """Return the widths of the differences (steps,), those of the whole model: values of a beam do not depend on which
     others are evaluated with it.
@@ -55,6 +52,6 @@ def exactly(
     """Return a function (steps, ...) of some coordinates (steps, k) of rows; remainders are included to first order."""
     p = solution.p[rows][:, some]
     result = values(p)
-    if not _corrected(solution)[rows].any():
+    if not solution.computed(_corrected)[rows].any():
         return result
-    return result + changed(values, p, solution.remainders[rows][:, some], _widths(solution)[rows])
+    return result + changed(values, p, solution.remainders[rows][:, some], solution.computed(_widths)[rows])

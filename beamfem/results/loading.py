@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem.assembly.system import System, system_of
-from beamfem.once import kept_with
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -18,8 +17,7 @@ def loading(solution: "Solution") -> tuple[System, np.ndarray]:
     return system_of(solution.model, solution.static), solution.at
 
 
-@kept_with
 def imposing(solution: "Solution") -> np.ndarray:
-    """Return the factors (steps, k) of the loads that impose strains, computed once for all beams."""
+    """Return the factors (steps, k) of the loads that impose strains."""
     system, at = loading(solution)
     return np.array([system.imposing(time) for time in at.tolist()]).reshape(len(at), -1)

@@ -18,14 +18,12 @@ from beamfem.assembly.round_off import row_floors
 from beamfem.assembly.system import System, system_of
 from beamfem.element.coordinates import Gradients, ShearFree
 from beamfem.element.element import Element, has_stations
-from beamfem.element.law_points import law_points
 from beamfem.errors import LockingWarning
 from beamfem.kernels.block import GREEN_LAGRANGE, Block
 from beamfem.model.model import Model
 from beamfem.model.named import beam_in_words
-from beamfem.once import kept_with
 from beamfem.results import postprocess
-from beamfem.results.element_shapes import heights, pairs, shared
+from beamfem.results.element_shapes import heights, pairs
 from beamfem.results.finding import Finding
 from beamfem.results.imposed import imposed_measures
 
@@ -42,7 +40,6 @@ _ROWS = 32  # rows of a solution among which the most strained is assessed
 _THICKNESS = (3, 5)  # eyy and g1 = d.d' of `GREEN_LAGRANGE`
 
 
-@kept_with
 def locking(solution: "Solution") -> tuple[Finding, ...]:
     """Return a warning if locking changes the displacements by more than 1e-3 of the largest."""
     if not len(solution) or not _unlocked(solution.model):
@@ -89,8 +86,8 @@ def weights(system: System) -> np.ndarray:
     changes the moment by 3/2 a^2 (l / h)^2. Full integration of other fields locks by about (l / h)^2 / 3 at most,
     however little they bend.
     """
-    neighbours = shared(system, pairs)
-    ratio = neighbours.length / np.maximum(shared(system, heights), _LEAST * neighbours.length)
+    neighbours = system.table(pairs)
+    ratio = neighbours.length / np.maximum(system.table(heights), _LEAST * neighbours.length)
     result, unlocked = np.zeros((2, len(ratio))), _unlocked(system.model)
     for number, mesh in enumerate(system.model.meshes):
         own = neighbours.mesh == number
@@ -156,7 +153,7 @@ def _unlocked(model: Model) -> dict[int, Element]:
     for number, element in enumerate(model.groups):
         other = replace(element, integration="lobatto" if has_stations(element.field) else "reduced")
         # the history at the points of another rule is not known
-        compared = first[number].beam.law is None or (law_points(other) > 0 and not first[number].history.size)
+        compared = first[number].beam.law is None or (other.law_points > 0 and not first[number].history.size)
         if (other != element or _resists_its_director(element)) and compared:
             result[number] = other
     return result

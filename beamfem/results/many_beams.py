@@ -7,7 +7,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from beamfem.model.joined_mesh import alike, join
+from beamfem.model.joined_mesh import join
 from beamfem.model.model import Model
 from beamfem.once import cached_property
 from beamfem.results.along import AxisPoints
@@ -45,7 +45,7 @@ class LikeBeams:
 def like_beams(model: Model, points: Sequence[AxisPoints], rows: int) -> list[LikeBeams]:
     """Return the points of all beams of a model by groups of like beams, as large as the number of rows allows."""
     result = []
-    for numbers in alike(model):
+    for numbers in model.numbered.joinable:
         by_pieces = defaultdict[int, list[int]](list)
         for number in numbers:
             by_pieces[points[number].pieces].append(number)

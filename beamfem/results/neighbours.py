@@ -2,15 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
-from weakref import WeakKeyDictionary
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.model.joined_mesh import alike, join
+from beamfem.model.joined_mesh import join
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
-from beamfem.once import kept_with
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -29,7 +27,9 @@ class _Kept:
     chunks: dict[int, dict[int, np.ndarray]]
 
 
-_KEPT = WeakKeyDictionary[Any, dict[Values, _Kept]]()  # of each solution
+def _kept(solution: "Solution") -> dict[Values, _Kept]:
+    """Return the values that are kept with a solution, none at first."""
+    return {}
 
 
 def of_beam(solution: "Solution", number: int, values: Values) -> np.ndarray:
@@ -37,7 +37,7 @@ def of_beam(solution: "Solution", number: int, values: Values) -> np.ndarray:
 
     From the second beam on, those of its neighbours are computed with it and kept, as far as they are few.
     """
-    by_values, mesh = _KEPT.setdefault(solution, {}), solution.model.meshes[number]
+    by_values, mesh = solution.computed(_kept), solution.model.meshes[number]
     if values not in by_values:
         result = values(solution, mesh)
         by_values[values] = _Kept(result.size // mesh.elements, {})
@@ -72,24 +72,6 @@ def _of_beams(solution: "Solution", numbers: list[int], values: Values) -> dict[
 
 def _neighbours(model: Model, number: int, elements: int) -> list[int]:
     """Return the numbers of beams like one, with its own, that have up to so many elements, or only one."""
-    place = _places(model)[number]
+    place = model.numbered.places[number]
     most = max(1, min(_BEAMS, elements // place.largest))
     return place.group[place.at - place.at % most :][:most]
-
-
-class _Place(NamedTuple):
-    """The numbers of beams that are like one, its place among them, and the most elements that one of them has."""
-
-    group: list[int]
-    at: int
-    largest: int
-
-
-@kept_with
-def _places(model: Model) -> dict[int, _Place]:
-    """Return the place of each beam."""
-    result = dict[int, _Place]()
-    for group in alike(model):
-        largest = max(model.meshes[number].elements for number in group)
-        result |= {number: _Place(group, at, largest) for at, number in enumerate(group)}
-    return result

@@ -8,7 +8,6 @@ import numpy as np
 from beamfem.brief import brief
 from beamfem.element import body, coordinates
 from beamfem.element.axis import Axis, cross, dot
-from beamfem.element.law_points import law_points
 from beamfem.element.structural import section_frame
 from beamfem.element.thickness_law import THICKNESS, ThicknessLaw
 from beamfem.model.distributions import distributions
@@ -238,7 +237,7 @@ def _energies_of_law(
 
     strains (steps, points, 4): from the stress-free state; weight (points,) [m].
     """
-    rows, points = len(strains), law_points(mesh.beam.element)
+    rows, points = len(strains), mesh.beam.element.law_points
     acting = strains.reshape(rows, mesh.elements, -1, strains.shape[-1])[:, :, :points, :3]
     weights = weight.reshape(mesh.elements, -1)[:, :points].ravel()
     history = p[:, mesh.history].reshape(rows * len(weights), mesh.history.shape[-1])

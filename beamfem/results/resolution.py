@@ -10,7 +10,6 @@ from beamfem.assembly.equations import INERTIA, linearise
 from beamfem.assembly.system import System, system_of
 from beamfem.kernels.motion_record import ALPHA_F, ALPHA_M, BETA, GAMMA, TIME_STEP
 from beamfem.linalg.tangent import UNROTATED
-from beamfem.once import kept_with
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -32,13 +31,13 @@ def resolved(solution: "Solution") -> bool:
         return False
     if len(solution) == steps + 1:
         before, now, after = (solution.v[first : steps - 1 + first : 1 + steps // _COMPARED] for first in range(3))
-        squares = np.array((now, before - 2.0 * now + after)) ** 2 @ _masses(system)
+        squares = np.array((now, before - 2.0 * now + after)) ** 2 @ system.table(_masses)
         speed, change = squares.max(axis=1, initial=0.0).tolist()
         if change > _FAST * speed:
             return False
         speed, change = squares.sum(axis=1).tolist()
     else:
-        squares = np.array((solution.v, rule[TIME_STEP] * solution.a)) ** 2 @ _masses(system)
+        squares = np.array((solution.v, rule[TIME_STEP] * solution.a)) ** 2 @ system.table(_masses)
         speed, acceleration = squares.sum(axis=1).tolist()
         change = acceleration**2 / (speed or 1.0)
     mean = change / (speed or 1.0)
@@ -63,7 +62,6 @@ def _third_cumulant(alpha: float) -> float:
     return alpha * (1.0 - alpha) * (1.0 - 2.0 * alpha) / 6.0
 
 
-@kept_with
 def _masses(system: System) -> np.ndarray:
     """Return the diagonal (n,) of the mass matrix in the reference."""
     p, result = system.reference, np.zeros(system.model.size)

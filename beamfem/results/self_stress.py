@@ -1,17 +1,13 @@
 """Self-equilibrated stress over a section whose layers hinder each other's thermal expansion."""
 
-from collections import defaultdict
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamfem.model.along_beam import jumps_along
-from beamfem.model.imposed_strain import ImposedStrain
 from beamfem.model.joined_mesh import JoinedMesh
 from beamfem.model.mesh import BeamMesh
-from beamfem.model.model import Model
 from beamfem.model.returned import heat_of
-from beamfem.once import kept_with
 from beamfem.results.loading import imposing
 from beamfem.section.protocol import CrossSection
 from beamfem.section.thermal import expands_evenly, thermal_strain
@@ -34,15 +30,15 @@ def self_stress(
     eps, kappa: free strains of the section; y (n, heights) [m]; layer: the one, of several, to which y belongs; None:
     the one at the axis. It does not contribute to section forces.
     """
-    if not any(id(part.beam) in _imposed_on(solution.model) for part in mesh.parts):
+    if not any(part.beam in solution.model.imposed_on for part in mesh.parts):
         return 0.0
     if isinstance(mesh, JoinedMesh):
-        result = np.zeros((len(imposing(solution)[rows]), *y.shape))
+        result = np.zeros((len(solution.computed(imposing)[rows]), *y.shape))
         for part, points, own in mesh.by_beam(element):
             result[:, points] = self_stress(solution, part, own, xi[points], layer, y[points], rows)
         return result
     beam = mesh.beam
-    imposed = _imposed_on(solution.model)[id(beam)]
+    imposed = solution.model.imposed_on[beam]
     arc = mesh.section_arc_length(element, xi)
     sections = [beam.section_at(s) for s in (arc[:1] if beam.prismatic else arc).tolist()]
     if all(expands_evenly(section, beam.material) for section in sections):
@@ -50,20 +46,11 @@ def self_stress(
     units = np.array(
         [_units(section, mesh, layer, heights) for section, heights in zip(_each(sections, y), y, strict=True)]
     )
-    factors = imposing(solution)[rows]
+    factors = solution.computed(imposing)[rows]
     result = np.zeros((len(factors), *y.shape))
     for number, load in imposed:
         inside = mesh.arc_length_inside(element, xi, jumps_along(load))
         result += factors[:, number, None, None] * np.einsum("nhc,nc->nh", units, heat_of(load, inside))
-    return result
-
-
-@kept_with
-def _imposed_on(model: Model) -> dict[int, list[tuple[int, ImposedStrain]]]:
-    """Return the loads that impose strains on each beam, with their numbers, by the identity of the beam."""
-    result: defaultdict[int, list[tuple[int, ImposedStrain]]] = defaultdict(list)
-    for number, (_, load) in enumerate(model.imposing):
-        result[id(load.beam)].append((number, load))
     return result
 
 

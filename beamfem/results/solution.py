@@ -1,10 +1,10 @@
 """A solution: states of a model over load factor or time, and the results derived from them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
-from typing import Any, Literal, SupportsIndex, overload
+from typing import Any, Literal, SupportsIndex, TypeVar, overload
 
 import numpy as np
 
@@ -32,6 +32,8 @@ from beamfem.results.self_stress import self_stress
 from beamfem.results.status import Statistics, Status, counted
 from beamfem.results.turns import rotations, start_rotations, turned_of
 from beamfem.validation import number_below, shown, whole
+
+_Value = TypeVar("_Value")
 
 
 @dataclass(frozen=True, eq=False)
@@ -411,6 +413,21 @@ class Solution:
         >>> tension = solution.multipliers(model.connectors[0])[:, 0]  # doctest: +SKIP
         """
         return multipliers(self, connector)
+
+    def __getstate__(self) -> dict[str, object]:
+        """Return all but what `computed` keeps, which copies compute anew."""
+        return {name: value for name, value in vars(self).items() if name != "_computed"}
+
+    @cached_property
+    def _computed(self) -> dict[Any, Any]:
+        return {}
+
+    def computed(self, build: "Callable[[Solution], _Value]") -> _Value:
+        """Return build(solution), which is kept with the solution."""
+        if build not in self._computed:
+            self._computed[build] = build(self)
+        value: _Value = self._computed[build]
+        return value
 
     @cached_property
     def support_forces(self) -> np.ndarray:

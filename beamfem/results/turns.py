@@ -8,8 +8,6 @@ import numpy as np
 from beamfem.model.beam import Point
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
-from beamfem.model.turns import number_uncounted, uncounted
-from beamfem.once import kept_with
 from beamfem.results import postprocess
 from beamfem.results.nodal import axis_at
 
@@ -19,7 +17,7 @@ if TYPE_CHECKING:
 
 def first_turns(model: Model, p: np.ndarray, near: np.ndarray) -> np.ndarray:
     """Return the rotation of each such beam at its start (m,) [rad] in a state p (n,), within half a turn of `near`."""
-    meshes = uncounted(model)
+    meshes = model.numbered.uncounted
     nodal = [postprocess.nodal_rotations(mesh, p[None], near[i : i + 1]) for i, mesh in enumerate(meshes)]
     return np.array([rotations[0, 0] for rotations in nodal])
 
@@ -29,19 +27,18 @@ def start_rotations(solution: "Solution") -> np.ndarray:
 
     As counted by the solve from step to step; else continued from row to row, the first of them within half a turn.
     """
-    return _continued(solution) if solution.turned is None else solution.turned
+    return solution.computed(_continued) if solution.turned is None else solution.turned
 
 
-@kept_with
 def _continued(solution: "Solution") -> np.ndarray:
     """Return the rotations of `start_rotations` from row to row."""
-    parts = [postprocess.nodal_rotations(mesh, solution.p)[:, :1] for mesh in uncounted(solution.model)]
+    parts = [postprocess.nodal_rotations(mesh, solution.p)[:, :1] for mesh in solution.model.numbered.uncounted]
     return np.concatenate([np.empty((len(solution), 0)), *parts], axis=1)
 
 
 def turned_of(solution: "Solution", mesh: BeamMesh) -> np.ndarray | None:
     """Return the start rotation (steps, beams) [rad] of each beam of a mesh; None if coordinates hold full turns."""
-    indices = [number_uncounted(solution.model, part) for part in mesh.parts]
+    indices = [solution.model.numbered.numbers_uncounted.get(part) for part in mesh.parts]
     counted = [index for index in indices if index is not None]
     return start_rotations(solution)[:, counted] if counted else None
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.model.joined_mesh import alike, join
+from beamfem.model.joined_mesh import join
 from beamfem.results.along import QUANTITIES, AxisPoints, section_forces
 from beamfem.results.beam_stress import stress_at
 from beamfem.results.many_beams import of_each
@@ -24,7 +24,7 @@ def names_of(solution: Solution) -> tuple[str, ...]:
     """Return the names of the fields of a page: stresses where a section has some."""
     known = set()
     model = solution.model
-    for numbers in alike(model):
+    for numbers in model.numbered.joinable:
         mesh = join([model.meshes[number] for number in numbers])
         starts = np.arange(mesh.elements)
         stress = stress_at(solution, mesh, starts, np.zeros(mesh.elements), slice(len(solution) - 1, len(solution)))

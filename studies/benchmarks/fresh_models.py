@@ -1,7 +1,7 @@
 """From `Beam(...)` to the displacement of the tip: what one model of a study with few elements costs.
 
-A study varies something, so two times are given: of models that are alike but for their load, and of models of which
-sizes, stiffness and length change as well. Beside them the time to solve a ready model again.
+Beside a model that is made anew, with other measures, stiffness and length each time: the same model with another load,
+made by `with_loads`, and a ready model that is solved again.
 """
 
 from collections.abc import Callable
@@ -15,7 +15,7 @@ from studies.benchmarks.peer_clock import in_turns
 
 OUT = Path("out/bench")
 ELEMENTS = {"bilinear": STRUCTURAL, "order 2": bf.CRBF(2), "order 4": bf.CRBF(4), "ANCF": bf.ANCF()}
-HEADER = ("element", "elements", "load varies, ms", "median", "all varies, ms", "median", "solved again, ms", "median")
+HEADER = ("element", "elements", "fresh, ms", "median", "other load, ms", "median", "solved again, ms", "median")
 
 
 def model(element: bf.Element, elements: int, load: float, size: float = 1.0) -> bf.Model:
@@ -34,9 +34,10 @@ def tip(made: bf.Model) -> float:
 def tasks(element: bf.Element, elements: int) -> tuple[Callable[[], float], ...]:
     """Return the three tasks of a row."""
     number, ready = count(), model(element, elements, 20.0)
+    end = ready.beams[0].end
     return (
-        lambda: tip(model(element, elements, 20.0 + 1e-6 * next(number))),
         lambda: tip(model(element, elements, 20.0, 1.0 + 1e-9 * next(number))),
+        lambda: tip(ready.with_loads([bf.PointForce(end, (0.0, 20.0 + 1e-6 * next(number)))])),
         lambda: tip(ready),
     )
 

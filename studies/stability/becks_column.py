@@ -29,13 +29,22 @@ class Branch:
     flutter: float
 
 
-def modes(load: float, slenderness: float, elements: int = 8, order: int = 4) -> bf.Modes:
-    """Return the lowest two modes of the compressed column with L = EI = rho A = 1."""
+def column(slenderness: float, elements: int = 8, order: int = 4) -> bf.Model:
+    """Return the column with L = EI = rho A = 1, without load."""
     section = bf.Rectangle(1.0, 1.0 / slenderness)
     material = bf.Material(1.0 / section.second_moment, 0.3, slenderness)
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), elements, bf.CRBF(order), section, material)
-    force = bf.PointForce(beam.end, (-load, 0.0), follower=True)
-    model = bf.Model([beam], [bf.Clamp(beam.start)], [force])
+    return bf.Model([beam], [bf.Clamp(beam.start)], [force(beam, 0.0)])
+
+
+def force(beam: bf.Beam, load: float) -> bf.PointForce:
+    """Return the compressive force on the tip, which follows the section there."""
+    return bf.PointForce(beam.end, (-load, 0.0), follower=True)
+
+
+def modes(unloaded: bf.Model, load: float) -> bf.Modes:
+    """Return the lowest two modes of the compressed column."""
+    model = unloaded.with_loads([force(unloaded.beams[0], load)])
     return bf.solve_modes(model, 2, about=bf.solve_static(model))
 
 
@@ -47,11 +56,11 @@ def exact(load: float, omega: float) -> float:
     return float(load**2 + 2.0 * omega**2 + sides)
 
 
-def flutter_load(slenderness: float) -> float:
+def flutter_load(unloaded: bf.Model) -> float:
     """Return the load at which two frequencies meet: above it growth^2 rises, below it -(their half difference)^2."""
 
     def excess(load: float) -> float:
-        found = modes(load, slenderness)
+        found = modes(unloaded, load)
         apart = np.pi * (found.frequencies[1] - found.frequencies[0])
         return float(found.growth.max() ** 2 - apart**2)
 
@@ -70,11 +79,11 @@ def main(slendernesses: tuple[float, ...] = (10.0, 20.0, 1000.0), points: int = 
     """
     result = {}
     for slenderness in slendernesses:
-        loads = np.linspace(0.0, 30.0, points)
-        found = [modes(load, slenderness) for load in loads]
+        unloaded, loads = column(slenderness), np.linspace(0.0, 30.0, points)
+        found = [modes(unloaded, load) for load in loads]
         frequencies = np.array([2.0 * np.pi * one.frequencies for one in found])
         growth = np.array([one.growth.max() for one in found])
-        result[slenderness] = Branch(loads, frequencies, growth, flutter_load(slenderness))
+        result[slenderness] = Branch(loads, frequencies, growth, flutter_load(unloaded))
     return result
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from beamfem.assembly.equations import MIXED
 from beamfem.assembly.round_off import LOSES
+from beamfem.assembly.system import system_of
 from beamfem.errors import InputError
 from beamfem.linalg.eigenpairs import Pairs, digits_for, nothing_known
 from beamfem.linalg.general_pairs import general_pairs
@@ -27,7 +28,6 @@ from beamfem.solve.start.balance import left_over
 from beamfem.solve.start.memory import require_room
 from beamfem.solve.start.multipliers import refuse_dampers, refuse_multipliers
 from beamfem.solve.start.start_state import resting_state
-from beamfem.solve.start.system_to_solve import system_to_solve
 from beamfem.tabulate import as_pandas
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
@@ -280,7 +280,7 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     array([ 20.85, 129.12])
     """
     whole_number("count", count)
-    system = system_to_solve(model, static=True)
+    system = system_of(model, static=True)
     refuse_multipliers(system, "solve_modes")
     refuse_dampers(system)
     p, load_factor = resting_state(system, about)

@@ -7,11 +7,10 @@ import numpy as np
 
 from beamfem.assembly.compiled import tell_of_compilation
 from beamfem.assembly.rigid_velocity import RigidVelocity
-from beamfem.assembly.system import System
+from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, EnergyWarning, InputError, warn
 from beamfem.kernels.motion_record import ITERATIONS
 from beamfem.model.model import Model
-from beamfem.model.turns import rotation_pairs
 from beamfem.results.checks import warned
 from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.solution import Solution, State
@@ -31,7 +30,6 @@ from beamfem.solve.start.functions_of_time import functions_of_time
 from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.memory import require_memory
 from beamfem.solve.start.start_state import last_state, start_state
-from beamfem.solve.start.system_to_solve import system_to_solve
 from beamfem.solve.start.transfer import transferred_turns
 from beamfem.solve.start.unresolved import name_unresolved
 from beamfem.validation import count, positive, shown
@@ -105,7 +103,7 @@ def simulate(
             "integrator must be a GeneralizedAlpha(rho_inf=...), an object with rule(step) as it has, or one with "
             f"step(motion, begin, end) as bf.Integrator describes it, got {shown(integrator)}"
         )
-    system = system_to_solve(model, static=False)
+    system = system_of(model, static=False)
     rule = require_rule(integrator, step) if is_scheme(integrator) else ()
     tell_of_compilation()
     require_memory(model.size, duration, step, save_every)
@@ -130,7 +128,7 @@ def simulate(
         require_met(system, state[0], state[1], duration)
     state[2] = initial_acceleration(system, state, parts[0].loads_from)
     state[3] = state[2]
-    rows, pairs = -(-(len(times) - 1) // save_every) + 1, rotation_pairs(model)
+    rows, pairs = -(-(len(times) - 1) // save_every) + 1, model.numbered.rotation_pairs
     table = np.empty((rows, 3, model.size))
     record = Record(table, save_every, new_statistics(), pairs, np.empty((rows, len(pairs))))
     near = transferred_turns(start, model, "start")
@@ -146,7 +144,7 @@ def simulate(
             f"converge: {failed.why}",
             solution,
         )
-    for sentence in energy_warnings(solution):
+    for sentence in solution.computed(energy_warnings):
         warn(sentence, EnergyWarning)
     found = detuned(solution, system, acting)
     if found:

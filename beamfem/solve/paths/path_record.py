@@ -5,7 +5,6 @@ import numpy as np
 from beamfem.assembly.round_off import FEW_DIGITS, remainder
 from beamfem.assembly.system import system_of
 from beamfem.model.model import Model
-from beamfem.model.turns import uncounted
 from beamfem.results.path import Bifurcation, Path, PathState
 from beamfem.results.status import Statistics, Status
 from beamfem.results.turns import first_turns
@@ -71,7 +70,7 @@ class PathRecord:
 
     def _turned(self, y: np.ndarray) -> np.ndarray:
         """Return the rotations (m,) [rad] of `first_turns` in y (n + 1,), continued from the last point."""
-        last = self.rows[-1][2] if self.rows else np.zeros(len(uncounted(self.model)))
+        last = self.rows[-1][2] if self.rows else np.zeros(len(self.model.numbered.uncounted))
         return first_turns(self.model, y[:-1], last)
 
     def path(self) -> Path:

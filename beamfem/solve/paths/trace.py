@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.system import System
+from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
 from beamfem.progress import progress
@@ -26,7 +26,6 @@ from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.kinks import SAME, kinks_between
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import refuse_memory, refuse_multipliers
-from beamfem.solve.start.system_to_solve import system_to_solve
 from beamfem.solve.statics.preload import first_equilibrium, nothing_acts
 from beamfem.validation import count, finite, function_of_one, optional, positive, shown
 
@@ -121,7 +120,7 @@ def trace_equilibrium(
     if direction is None:
         direction = -1 if start is None and isinstance(until, float) and until < 0.0 else 1
     newton = require_newton(newton, Newton(iterations=_ITERATIONS))
-    system = system_to_solve(model, static=True)
+    system = system_of(model, static=True)
     refuse_multipliers(system, "trace_equilibrium")
     refuse_memory(system, "trace_equilibrium")
     if nothing_acts(system):

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.assembly.system import system_of
 from beamfem.errors import ConvergenceError, InputError, RoundOffWarning, warn
 from beamfem.linalg.eigenpairs import digits_for
 from beamfem.model.beam import Beam
@@ -21,7 +22,6 @@ from beamfem.solve.stability.loading_path import InvertedError, LoadingPath, Pat
 from beamfem.solve.stability.stable_start import stable_start
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import refuse_memory, refuse_multipliers
-from beamfem.solve.start.system_to_solve import system_to_solve
 from beamfem.tabulate import as_pandas
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
@@ -253,7 +253,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     539.2
     """
     whole_number("count", count)
-    system = system_to_solve(model, static=True)
+    system = system_of(model, static=True)
     refuse_multipliers(system, "solve_buckling")
     refuse_memory(system, "solve_buckling")
     require_support(system)

@@ -31,17 +31,17 @@ def require_support(system: System) -> None:
 
 def free_motion(system: System) -> FreeMotion | None:
     """Return the rigid-body motions and mechanisms that are possible in the reference, None if there are none."""
-    if _PROVEN in system.proven:
+    if _PROVEN in system.tables:
         return None
     model = system.model
     body = bodies_of(model)
     if len(body) == 1 and any(_fixes(support) for support in model.point_supports):
-        system.proven.add(_PROVEN)
+        system.tables[_PROVEN] = True
         return None
     rows = Conditions(system, body, system.reference)
     free = mechanisms(rows)
     if not len(free):
-        system.proven.add(_PROVEN)
+        system.tables[_PROVEN] = True
         return None
     sizes = np.abs(free[0].reshape(-1, 3)).max(axis=1)[body]
     # the first of those that move equally, whatever the round-off

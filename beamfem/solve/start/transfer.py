@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from beamfem.alike import equal
 from beamfem.assembly.columns import coordinate_columns
 from beamfem.assembly.system import System, system_of
 from beamfem.element.axis import cross, dot
@@ -14,9 +13,9 @@ from beamfem.model.model import Model
 from beamfem.model.named import beam_in_words
 from beamfem.model.nodes_asked import nodes_asked
 from beamfem.model.reference import reference_angle
-from beamfem.model.turns import number_uncounted, uncounted
 from beamfem.results import postprocess
 from beamfem.results.solution import State
+from beamfem.value_keys import equal
 
 _SAME = 1e-9  # of the length of a beam: tolerance between positions of nodes
 _SEVERAL = 3  # points that a message names
@@ -81,7 +80,7 @@ def transferred_turns(state: State | None, model: Model, name: str) -> np.ndarra
 
     Zero without a state. Raises InputError if the beams do not match.
     """
-    meshes = uncounted(model)
+    meshes = model.numbered.uncounted
     if state is None or not meshes:
         return np.zeros(len(meshes))
     pairs = zip(model.meshes, model.meshes, strict=True) if state.model is model else _matched(state.model, model, name)
@@ -91,7 +90,7 @@ def transferred_turns(state: State | None, model: Model, name: str) -> np.ndarra
 
 def _rotations(mesh: BeamMesh, state: State) -> np.ndarray:
     """Return the rotation of each node's section (nodes,) [rad] in a state."""
-    indices = number_uncounted(state.model, mesh)
+    indices = state.model.numbered.numbers_uncounted.get(mesh)
     turned = None if indices is None or state.turned is None else state.turned[[indices]]
     return np.asarray(postprocess.nodal_rotations(mesh, state.p[None], turned)[0])
 

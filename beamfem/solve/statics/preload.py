@@ -1,7 +1,6 @@
 """The equilibrium at load factor 0, under unscaled loads and prescribed values."""
 
 from copy import copy
-from dataclasses import replace
 
 import numpy as np
 
@@ -88,7 +87,7 @@ def _growing(model: Model) -> Model:
     loads = [_in_proportion(load) for load in model.loads]
     moved = {id(support): _in_step(support) for support in model.point_supports if _moves(support)}
     supports = [part for support in model.supports for part in moved.get(id(support), (support,))]
-    return replace(model, supports=supports, loads=loads)
+    return model.with_(supports=supports, loads=loads)
 
 
 def _moves(support: PointSupport) -> bool:

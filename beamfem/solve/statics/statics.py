@@ -8,6 +8,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.assembly.compiled import tell_of_compilation
+from beamfem.assembly.system import system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
 from beamfem.results.checks import warned
@@ -19,7 +20,6 @@ from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.kinks import kinks_and_turning_points
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import require_independent
-from beamfem.solve.start.system_to_solve import system_to_solve
 from beamfem.solve.start.unresolved import warn_between_rows
 from beamfem.solve.statics.load_steps import SAME, Snap, reach
 from beamfem.solve.statics.preload import first_equilibrium, nothing_acts
@@ -141,7 +141,7 @@ def solve_through(
     """
     steps = count("steps", steps)
     one_of("snap", snap, ("error", "jump"))
-    system = system_to_solve(model, static=True)
+    system = system_of(model, static=True)
     tell_of_compilation()
     if nothing_acts(system):
         require_support(system)

@@ -8,7 +8,7 @@ from typing import Any
 
 import typer
 
-from beamfem.cli.report import FAILED, AsJson, print_json, reported
+from beamfem.cli.report import FAILED, AsJson, print_json, reported, writable
 
 _RENDER = """
 import pyvista
@@ -24,7 +24,6 @@ def doctor(as_json: AsJson = False) -> None:
     """Check the installation: versions, compiled kernels, a first solve, pictures of bodies and missing extras."""
     with reported(as_json):
         start = time.perf_counter()
-        from beamfem.cli import targets
         from beamfem.kernels.cache import cache_folder, kept
 
         cache = cache_folder()
@@ -32,7 +31,7 @@ def doctor(as_json: AsJson = False) -> None:
             "versions": versions(),
             "cache": {
                 "folder": cache,
-                "writable": cache is not None and targets.writable(cache),
+                "writable": cache is not None and writable(cache),
                 "compiled_kernels": kept(),
                 "import_seconds": time.perf_counter() - start,
             },

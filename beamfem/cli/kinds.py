@@ -6,21 +6,16 @@ from dataclasses import dataclass
 from functools import wraps
 from inspect import signature
 from pathlib import Path
-from typing import Any, Literal, get_type_hints
+from typing import Any, get_type_hints
 
 import numpy as np
 
-from beamfem.cli.schema import Kinds, Names, at_key, in_braces, named, part, reader, shown
+from beamfem.cli.schema import Kinds, Names, in_braces, named, part, reader, shown
 from beamfem.curves import Arc, BSpline, Chain, Curve, Line, Polyline, elliptic_arc, spline_through_hermite
-from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.element import Element
-from beamfem.element.fields import Cubic, Field, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
 from beamfem.element.presets import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, ShearRigid
 from beamfem.errors import InputError
-from beamfem.io.cad import read_dxf
-from beamfem.io.frame import Frame, build_frame
-from beamfem.io.mesh import LineMesh, read_mesh
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
 from beamfem.model.grading import graded
@@ -28,50 +23,31 @@ from beamfem.model.listed_parts import parts_in
 from beamfem.model.time_functions import Interpolated, kinks_of
 from beamfem.section import Circle, Layered, Rectangle, Section, Tube
 from beamfem.section.protocol import CrossSection
-from beamfem.validation import count, finite, items, positive, require_known
+from beamfem.validation import positive
 
 
-@dataclass(frozen=True)
-class Sine:
-    """size sin(2 pi frequency t + phase) + mean; frequency [Hz], phase [rad]. Raises InputError."""
-
-    frequency: float
-    size: float = 1.0
-    phase: float = 0.0
-    mean: float = 0.0
-
-    def __post_init__(self) -> None:
-        positive("frequency", self.frequency)
-        for name in ("size", "phase", "mean"):
-            finite(name, getattr(self, name))
-
-    def __call__(self, time: float) -> float:
-        return float(self.mean + self.size * np.sin(2.0 * np.pi * self.frequency * time + self.phase))
+def _sine(frequency: float, size: float = 1.0, phase: float = 0.0, mean: float = 0.0) -> Callable[[float], float]:
+    """Return size sin(2 pi frequency t + phase) + mean; frequency [Hz], phase [rad]."""
+    positive("frequency", frequency)
+    return lambda t: float(mean + size * np.sin(2.0 * np.pi * frequency * t + phase))
 
 
-@dataclass(frozen=True)
-class SmoothRamp:
-    """From 0 at the time `start` to `size` after a `duration`, with continuous rate and acceleration.
+def _smooth_ramp(duration: float, size: float = 1.0, start: float = 0.0) -> Callable[[float], float]:
+    """Return a function that rises from 0 to size with continuous acceleration.
 
-    size (10 s^3 - 15 s^4 + 6 s^5), s = (t - start) / duration within [0, 1]. Raises InputError.
+    size (10 s^3 - 15 s^4 + 6 s^5), s = (t - start) / duration within [0, 1].
     """
+    positive("duration", duration)
 
-    duration: float
-    size: float = 1.0
-    start: float = 0.0
+    def ramp(t: float) -> float:
+        s = min(max((t - start) / duration, 0.0), 1.0)
+        return size * s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
 
-    def __post_init__(self) -> None:
-        positive("duration", self.duration)
-        for name in ("size", "start"):
-            finite(name, getattr(self, name))
-
-    def __call__(self, time: float) -> float:
-        s = min(max((time - self.start) / self.duration, 0.0), 1.0)
-        return self.size * s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
+    return ramp
 
 
 @dataclass(frozen=True)
-class AlongBeam:
+class NumbersAlong:
     """A section, or the vector of a load, some of whose numbers are functions of the arc length [m]."""
 
     make: Callable[..., Any]
@@ -94,7 +70,7 @@ def _tapered(make: Callable[..., Any]) -> Callable[..., Any]:
 
     @wraps(make)
     def made(**numbers: Any) -> Any:
-        return AlongBeam(make, numbers) if any(map(callable, numbers.values())) else make(**numbers)
+        return NumbersAlong(make, numbers) if any(map(callable, numbers.values())) else make(**numbers)
 
     hints = get_type_hints(make)
     made.__annotations__ = {
@@ -108,16 +84,6 @@ def _continuum(plane_stress: bool = False) -> ContinuumMechanics:
     return ContinuumMechanics(plane_stress)
 
 
-def _dxf(file: Path, layer: str | None = None, number: int | None = None) -> Curve:
-    """Return a curve of a DXF file, of one layer or of all; number: which one, from 1, if there are several."""
-    curves = read_dxf(file, layer)
-    if number is None and len(curves) > 1:
-        raise InputError(f"{file.name} has {len(curves)} curves there; number, from 1 to {len(curves)}, chooses one")
-    if (chosen := 1 if number is None else count("number", number)) > len(curves):
-        raise InputError(f"number is {number}, but {file.name} has {len(curves)} curves there")
-    return curves[chosen - 1]
-
-
 CURVES: Kinds = {
     "line": Line,
     "arc": Arc,
@@ -126,7 +92,6 @@ CURVES: Kinds = {
     "bspline": BSpline,
     "hermite": spline_through_hermite,
     "chain": Chain,
-    "dxf": _dxf,
 }
 SECTIONS: Kinds = {
     "rectangle": _tapered(Rectangle),
@@ -136,17 +101,14 @@ SECTIONS: Kinds = {
     "stiffness": _tapered(Section.from_stiffness),
     "layered": Layered,
 }
-FUNCTIONS: Kinds = {"table": Interpolated, "sine": Sine, "smooth-ramp": SmoothRamp}
-PRESETS: Kinds = {preset.__name__: preset for preset in (ANCF, ANCFCRBF, BilinearANCF, BilinearCRBF, CRBF, ShearRigid)}
-ELEMENTS: Kinds = {**PRESETS, "Element": Element}
+FUNCTIONS: Kinds = {"table": Interpolated, "sine": _sine, "smooth-ramp": _smooth_ramp}
+ELEMENTS: Kinds = {preset.__name__: preset for preset in (ANCF, ANCFCRBF, BilinearANCF, BilinearCRBF, CRBF, ShearRigid)}
 FORCES: Kinds = {
     "continuum": _continuum,
     "split-continuum": lambda: SplitContinuum(),
     "elastic-line": lambda: ElasticLine(),
     "structural": lambda: Structural(),
 }
-FIELDS: Kinds = {"cubic": lambda: Cubic(), "lagrange": Lagrange}
-COORDINATES: Kinds = {"gradients": Gradients, "rotation": Rotation, "shear-free": ShearFree}
 
 
 def _kinds_of(name: str) -> Kinds:
@@ -186,12 +148,16 @@ def _vector(value: Any, names: Names) -> Any:
     if not isinstance(value, list) or not any(isinstance(item, str | dict) for item in value):
         return value
     components = dict(enumerate(_number(item, names) for item in value))
-    return AlongBeam(lambda **parts: tuple(parts.values()), {f"_{key}": item for key, item in components.items()})
+    return NumbersAlong(lambda **parts: tuple(parts.values()), {f"_{key}": item for key, item in components.items()})
 
 
 def _file(value: Any, names: Names) -> Path:
+    """Return a file to write, below the folder of the model file, which may come from anybody."""
+    folder = names.folder.resolve()
     if not isinstance(value, str):
         raise InputError(f"must be a text, got {shown(value)}")
+    if not names.anywhere and not (folder / value).resolve().is_relative_to(folder):
+        raise InputError(f"{value} is not below the folder of the model file, {folder}; --files-anywhere allows it")
     return names.folder / value
 
 
@@ -200,18 +166,14 @@ _material, _section, _element = named("materials", Material), named("sections", 
 Elements = reader(_elements)
 TYPES: dict[Any, Any] = {
     Point: reader(lambda value, names: names.point(value)),
-    Sequence[Point]: reader(lambda value, names: names.several("points", value if isinstance(value, list) else [value])),
+    Sequence[Point]: reader(lambda value, names: names.points(value)),
     Beam: reader(lambda value, names: names.beam(value)),
     Material: reader(_material),
     CrossSection: reader(_section),
     Element: reader(_element),
     Curve: reader(_curve),
-    Field: reader(named("fields", FIELDS)),
     Path: reader(_file),
-    **dict.fromkeys(
-        (ContinuumMechanics, SplitContinuum, ElasticLine, Structural), reader(named("forces", FORCES))
-    ),
-    **dict.fromkeys((Gradients, Rotation, ShearFree), reader(named("coordinates", COORDINATES))),
+    **dict.fromkeys((ContinuumMechanics, SplitContinuum, ElasticLine, Structural), reader(named("forces", FORCES))),
     "function": reader(_function),
     "number": reader(_number),
     "vector": reader(_vector),
@@ -222,17 +184,6 @@ NAMED: dict[str, Kinds | Callable[..., Any]] = {
     "sections": SECTIONS,
     "elements": ELEMENTS,
 }
-
-
-def _by_set(read: Callable[[Any, Names], Any]) -> Any:
-    """Return the type of a property of a frame: one for all members, or a table of them by member set."""
-
-    def read_sets(value: Any, names: Names) -> Any:
-        if not isinstance(value, dict) or {"kind", "youngs_modulus"} & set(value):
-            return read(value, names)
-        return {name: at_key(name, read, item, names) for name, item in value.items()}
-
-    return reader(read_sets)
 
 
 @dataclass(frozen=True)
@@ -248,31 +199,6 @@ class BeamTable:
     def beam(self, name: str) -> Beam:
         """Return the beam with a name. Raises InputError."""
         return Beam(**vars(self), name=name)
-
-
-@dataclass(frozen=True)
-class FrameTable:
-    """The keys of [frames.NAME]: beams along the lines of a mesh file."""
-
-    file: Path
-    elements: _by_set(lambda value, names: value)  # type: ignore[valid-type]
-    element: _by_set(_element)  # type: ignore[valid-type]
-    section: _by_set(_section)  # type: ignore[valid-type]
-    material: _by_set(_material) = None  # type: ignore[valid-type]
-    members: Literal["cells", "chains"] = "cells"
-    hinges: Any = ()
-    merge: bool = False
-
-    def frame(self, name: str) -> Frame:
-        """Return the frame, whose beams are NAME[1], NAME[2], ... Raises InputError."""
-        mesh: LineMesh = read_mesh(self.file, merge=self.merge)
-        for key in ("elements", "element", "section", "material"):
-            value = getattr(self, key)
-            for known in value if isinstance(value, dict) else ():
-                require_known(f"{key} has no member set {known!r}", known, mesh.member_sets)
-        for known in [self.hinges] if isinstance(self.hinges, str) else items("hinges", self.hinges):
-            require_known(f"hinges has no point set {known!r}", known, mesh.point_sets)
-        return build_frame(mesh, self.elements, self.element, self.section, self.material, self.members, self.hinges, name)
 
 
 _PYTHON = {

@@ -3,24 +3,22 @@
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from inspect import signature
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from beamfem.assembly.system import System
-from beamfem.cli.analyses import ANALYSES, Analysis, Found, Imperfection, Static
-from beamfem.cli.kinds import ACTING, NAMED, TYPES, BeamTable, FrameTable, in_keys
+from beamfem.cli.analyses import ANALYSES, Analysis, Found, Imperfection
+from beamfem.cli.kinds import ACTING, NAMED, TYPES, BeamTable, in_keys
 from beamfem.cli.outputs import FILES, Output, OutputFile
-from beamfem.cli.schema import KeyFault, Kinds, Names, at_key, build, named_first, part, require_table, shown
+from beamfem.cli.schema import KeyFault, Kinds, Names, build, named_first, part, require_table, shown
 from beamfem.cli.toml_source import ModelFileError, Source, read_source
 from beamfem.errors import FileError, InputError
 from beamfem.model.beam import Beam
-from beamfem.model.joints import Joint
 from beamfem.model.model import Model
 from beamfem.validation import nearest
 
-_TEXTS, _TABLES = ("title", "units"), ("beams", "frames", "imperfection", "analysis", "outputs", "files")
+_TEXTS, _TABLES = ("title", "units"), ("beams", "imperfection", "analysis", "outputs", "files")
 
 
 @dataclass(frozen=True)
@@ -62,29 +60,23 @@ def read_model_file(path: str | PathLike[str], files_anywhere: bool = False) -> 
     for key in source.values:
         if key not in known:
             raise source.error(f"unknown key; {nearest(key, known)}", key)
-    names = Names(source.file.parent, TYPES, anywhere=files_anywhere)
+    names = Names(source.file.parent, files_anywhere, TYPES)
     for section, kinds in NAMED.items():
         names.parts[section] = {}
         for name, table in _named_tables(source, section).items():
             with _within(source, section, name):
                 read = build if callable(kinds) else part
                 names.parts[section][name] = read(kinds, table, names)
-    joints: list[Joint] = []
     for name, table in _named_tables(source, "beams").items():
         with _within(source, "beams", name):
             names.beams[name] = build(BeamTable, table, names).beam(name)
-    for name, table in _named_tables(source, "frames").items():
-        with _within(source, "frames", name):
-            frame = names.frames[name] = build(FrameTable, table, names).frame(name)
-        names.beams |= {f"{name}[{number}]": beam for number, beam in enumerate(frame.beams, 1)}
-        joints += frame.joints
     if not names.beams:
         raise source.error("a model needs at least one beam, a table headed [beams.NAME]")
     acting = {
         section: _tables(source, section, lambda table, kinds=kinds: _each_place(kinds, table, names))
         for section, kinds in ACTING.items()
     }
-    model = _model(source, list(names.beams.values()), acting, joints)
+    model = _model(source, list(names.beams.values()), acting)
     if "units" in source.values:
         with _within(source, "units"):
             model = replace(model, units=_text(source, "units"))
@@ -100,9 +92,6 @@ def _job(source: Source, names: Names, model: Model, imperfection: Imperfection 
     with _within(source, "analysis"):
         analysis = part(ANALYSES, table, names, default="static")
     outputs = _tables(source, "outputs", lambda table: build(Output, table, names))
-    outputs = [
-        item if item.name else replace(item, name=f"output {number}") for number, item in enumerate(outputs, 1)
-    ]
     files = _tables(source, "files", lambda table: part(FILES, table, names))
     for section, items in (("outputs", outputs), ("files", files)):
         for number, item in enumerate(items):
@@ -118,22 +107,19 @@ def _job(source: Source, names: Names, model: Model, imperfection: Imperfection 
 def _each_place(kinds: Kinds, table: Any, names: Names) -> list[Any]:
     """Return the part of a table, or one for each of its `points` or `beams`. Raises KeyFault."""
     require_table(table)
-    make = kinds.get(str(table.get("kind")))
-    for plural, single in (("points", "point"), ("beams", "beam")):
-        if plural in table and make is not None and single in signature(make).parameters:
-            if single in table:
-                raise KeyFault(f"{single} and {plural} are given; one of them is enough", plural)
+    for plural in ("points", "beams"):
+        if isinstance(places := table.get(plural), list):
             rest = {key: value for key, value in table.items() if key != plural}
-            places = at_key(plural, names.several, plural, table[plural])
-            return [part(kinds, {**rest, single: place}, names) for place in places]
+            tables = [{**rest, plural.removesuffix("s"): place} for place in places]
+            return [part(kinds, each, names) for each in tables]
     return [part(kinds, table, names)]
 
 
-def _model(source: Source, beams: list[Beam], acting: dict[str, list[list[Any]]], joints: list[Joint]) -> Model:
+def _model(source: Source, beams: list[Beam], acting: dict[str, list[list[Any]]]) -> Model:
     """Return the model, or raise the error of the first part that it refuses."""
     items = {section: [item for found in parts for item in found] for section, parts in acting.items()}
     try:
-        model = Model(beams, items["supports"], items["loads"], [*joints, *items["joints"]], items["connectors"])
+        model = Model(beams, items["supports"], items["loads"], items["joints"], items["connectors"])
         _require_compatible(model)
     except InputError:
         for section, parts in acting.items():

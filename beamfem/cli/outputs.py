@@ -1,6 +1,6 @@
 """What a model file asks for: outputs to print, and files to write."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from inspect import Parameter, signature
 from pathlib import Path
@@ -8,7 +8,7 @@ from typing import Any, get_type_hints
 
 import numpy as np
 
-from beamfem.cli.analyses import Analysis, Dynamics, Found
+from beamfem.cli.analyses import Analysis, Found
 from beamfem.cli.report import require_target
 from beamfem.cli.schema import Kinds, Names, reader, shown
 from beamfem.errors import InputError
@@ -20,7 +20,6 @@ from beamfem.results.path import Path as EquilibriumPath
 from beamfem.results.path import PathState
 from beamfem.results.solution import Solution
 from beamfem.solve.modes.modes import Modes
-from beamfem.solve.stability.buckling import Buckling
 from beamfem.validation import count, finite, nearest, require_known
 
 _NEAR = 1e-9
@@ -131,7 +130,7 @@ class Output:
         reactions = [quantity for quantity in self.quantities if quantity in ("fx", "fy", "m")]
         if reactions and self.point not in [support.point for support in model.point_supports]:
             raise InputError(f"quantities has the reaction {reactions[0]}, but there is no support at {self.point}")
-        if "stable" in self.quantities and isinstance(analysis, Dynamics):
+        if "stable" in self.quantities and analysis.moving:
             raise InputError("quantities has stable, which is for equilibria, and this analysis is a motion")
 
     def rows(self, solution: Solution) -> list[dict[str, Any]]:
@@ -152,7 +151,11 @@ class Output:
         for value in self.asked:
             if not low - _NEAR <= value <= high + _NEAR:
                 raise InputError(f"at asks for the {what} {value:g}, but the states are those from {low:g} to {high:g}")
-            if solution.static and not isinstance(solution, EquilibriumPath) and np.abs(solution.at - value).min() > _NEAR:
+            if (
+                solution.static
+                and not isinstance(solution, EquilibriumPath)
+                and np.abs(solution.at - value).min() > _NEAR
+            ):
                 raise InputError(f"at asks for the {what} {value:g}, where the structure jumps: it has no state there")
         return [int(np.abs(solution.at - value).argmin()) for value in self.asked]
 
@@ -193,6 +196,7 @@ WRITERS: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
     "model": (Model.plot, _PICTURE),
 }
 
+
 def require_saved(model: Model) -> None:
     """Raise InputError if a model has parts that cannot be saved in a results file."""
     describe(model, np.zeros(1))
@@ -218,7 +222,7 @@ class OutputFile:
             require_saved(model)
         if self.kind in ("history", "load-displacement") and not analysis.span:
             raise InputError("this analysis has no states to draw; these go with static, path and dynamics")
-        if self.kind == "load-displacement" and isinstance(analysis, Dynamics):
+        if self.kind == "load-displacement" and analysis.moving:
             raise InputError("a motion has no load factor to draw; these go with static and path")
         if self.kind == "mode-shapes" and analysis.span:
             raise InputError("this analysis finds no modes; these go with buckling and modes")

@@ -4,7 +4,7 @@ import json
 import math
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import fields, is_dataclass
 from enum import Enum
@@ -69,30 +69,30 @@ def print_json(value: Any) -> None:
 
 
 def plain(value: Any) -> Any:
-    """Return a value as mappings, lists, texts, numbers and None; a solution as its summary, unknown values as text."""
+    """Return a value as types of JSON; a solution as its summary, numbers that are not finite as None."""
     import numpy as np
 
     from beamfem.results.solution import Solution
 
-    if value is None or isinstance(value, bool | int | str):
-        return value
-    if isinstance(value, np.generic | np.ndarray):
-        return plain(value.tolist())
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, Enum):
-        return value.name.lower().replace("_", " ")
-    if isinstance(value, complex):
-        return [plain(value.real), plain(value.imag)]
     if isinstance(value, Solution):
         return summary(value)
+    if isinstance(value, Enum):
+        return value.name.lower().replace("_", " ")
     if isinstance(value, Mapping):
-        return {", ".join(map(str, key)) if isinstance(key, tuple) else str(key): plain(item) for key, item in value.items()}
+        return {
+            ", ".join(map(str, key)) if isinstance(key, tuple) else str(key): plain(item) for key, item in value.items()
+        }
     if is_dataclass(value) and not isinstance(value, type):
         return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
-    if isinstance(value, Iterable) and not isinstance(value, bytes):
+    if isinstance(value, np.generic | np.ndarray):
+        value = value.tolist()
+    if isinstance(value, list | tuple):
         return [plain(item) for item in value]
-    return str(value)
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, complex):
+        return [plain(value.real), plain(value.imag)]
+    return value if value is None or isinstance(value, bool | int) else str(value)
 
 
 def summary(solution: "Solution") -> dict[str, Any]:

@@ -1,7 +1,6 @@
 """`beamfem info`, `export` and `plot`: commands for a results file."""
 
-from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import Field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,7 +10,6 @@ from beamfem.cli.report import AsJson, Quiet, print_json, reported, require_targ
 from beamfem.cli.run import Colour
 
 if TYPE_CHECKING:
-    from beamfem.model.beam import Point
     from beamfem.model.model import Model
     from beamfem.results.solution import Solution
 
@@ -82,10 +80,9 @@ def _loaded(results: Path) -> "Solution":
     try:
         return load(results)
     except InputError as error:
-        missing = error.__cause__
-        if isinstance(missing, NotImportedError):
-            what = f"the file holds a {missing.kind} of the module {missing.module}, and commands run no code of yours"
-            raise InputError(f"{results} cannot be loaded: {what}; load it in Python with bf.load after the import") from error
+        if isinstance(missing := error.__cause__, NotImportedError):
+            held = f"the file holds a {missing.kind} of the module {missing.module}, and commands run no code of yours"
+            raise InputError(f"{results}: {held}; import the module in Python and use bf.load") from error
         raise
 
 
@@ -94,11 +91,18 @@ def _described(path: Path, solution: "Solution") -> dict[str, Any]:
     import h5py
 
     from beamfem.io.hdf5 import read_label
+    from beamfem.io.in_words import material_in_words, section_in_words
 
     with h5py.File(path, "r") as file:
         version = read_label(file, "beamfem_version")
     model, statistics = solution.model, solution.statistics
-    parts = ("supports", "joints", "connectors", "loads")
+    beams = [
+        f"{_text(beam, model)}: {type(beam.curve).__name__}, {beam.curve.length:.6g} {model.unit('m')} long, "
+        f"{mesh.elements} x {beam.element.name} ({beam.element.forces.name}), "
+        f"{section_in_words(beam.section, model.unit)}, material {material_in_words(beam.material, model.unit)}"
+        for beam, mesh in zip(model.beams, model.meshes, strict=True)
+    ]
+    parts = {name: getattr(model, name) for name in ("supports", "joints", "connectors", "loads")}
     return {
         "file": str(path),
         "written_by": f"beamfem {version}",
@@ -106,97 +110,62 @@ def _described(path: Path, solution: "Solution") -> dict[str, Any]:
         "outcome": statistics.outcome,
         "effort": statistics.effort,
         "units": model.units,
-        "model": {
-            "beams": _beam_lines(model),
-            **{name: [_part_line(item, model) for item in getattr(model, name)] for name in parts},
-        },
+        "model": {"beams": beams, **{key: [_part(item, model) for item in items] for key, items in parts.items()}},
     }
 
 
-def _beam_lines(model: "Model") -> list[str]:
-    """Return a line for each beam: its name, its axis, its elements, its section and its material."""
-    from beamfem.io.in_words import material_in_words, section_in_words
-    from beamfem.model.named import names
+def _part(item: Any, model: "Model") -> str:
+    """Return a support, joint, connector or load in a line: the values of its fields that are not their defaults."""
+    from beamfem.model.field_units import field_units
 
-    lines = []
-    for name, beam, mesh in zip(names(model.beams), model.beams, model.meshes, strict=True):
-        axis = f"{type(beam.curve).__name__}, {beam.curve.length:.6g} {model.unit('m')} long"
-        parts = [axis, f"{mesh.elements} x {beam.element.name} ({beam.element.forces.name})"]
-        parts.append(section_in_words(beam.section, model.unit))
-        if beam.material is not None:
-            parts.append(material_in_words(beam.material, model.unit))
-        lines.append(f"{name}: {', '.join(parts)}")
-    return lines
-
-
-def _part_line(item: Any, model: "Model") -> str:
-    """Return a support, joint, connector or load in a line, with its places and what differs from its defaults."""
-    from beamfem.model.joints import Joint
-
-    joined = ("a", "b") if isinstance(item, Joint) else ()
-    words = [f"{' and '.join(_place(getattr(item, name), model) for name in joined)}, {_at(item.a, model)}"] * bool(joined)
-    for field in fields(item):
-        value = getattr(item, field.name)
-        default = value is None or (not hasattr(value, "shape") and value == field.default)
-        if field.name not in joined and not default:
-            words.append(_value(item, field.name, value, model))
+    units = field_units(item)
+    given = [(field.name, getattr(item, field.name)) for field in fields(item) if _given(item, field)]
+    words = [f"{name} {_text(value, model)} {model.unit(units.get(name, ''))}".strip() for name, value in given]
     return f"{type(item).__name__}: {', '.join(words)}"
 
 
-def _value(item: Any, name: str, value: Any, model: "Model") -> str:
-    """Return a field of a part: its name, its value and its unit."""
+def _given(item: Any, field: Field[Any]) -> bool:
+    value = getattr(item, field.name)
+    return hasattr(value, "shape") or (value is not None and value != field.default)
+
+
+def _text(value: Any, model: "Model") -> str:
+    """Return a value of a part; points and beams as model files name them."""
     from beamfem.model.beam import Beam, Point
-    from beamfem.model.field_units import field_units
     from beamfem.model.named import names
-    from beamfem.model.sampled import Sampled, SampledAlong
 
-    points = value if isinstance(value, tuple) else (value,)
-    if points and all(isinstance(point, Point) for point in points):
-        places = " and ".join(f"{_place(point, model)}, {_at(point, model)}" for point in points)
-        return places if name == "point" else f"{name} {places}"
     if isinstance(value, Beam):
-        return f"along {names(model.beams)[model.number_of(value)]}"
-    if isinstance(value, Sampled | SampledAlong):
-        return f"{name} a function, saved at {len(value.at)} values"
-    if isinstance(value, bool):
-        return name if value else f"{name} false"
-    unit = field_units(item).get(name)
-    return f"{name} {_number(value)}" + (f" {model.unit(unit)}" if unit else "")
-
-
-def _place(point: "Point", model: "Model") -> str:
-    """Return a point as model files name it."""
-    from beamfem.model.named import names
-
-    name = names(model.beams)[model.number_of(point.beam)]
-    return f"{name}.{ {0.0: 'start', 1.0: 'end'}.get(point.fraction, f'at({point.fraction:g})')}"
-
-
-def _at(point: "Point", model: "Model") -> str:
-    x, y = point.reference
-    return f"at ({x:g}, {y:g}) {model.unit('m')}"
-
-
-def _number(value: Any) -> str:
-    if isinstance(value, Sequence) and not isinstance(value, str):
-        return f"({', '.join(map(_number, value))})"
-    points = getattr(value, "points", None)  # of a table over time, which is saved as it is
-    return f"a table of {len(points)} points" if points is not None else f"{value:.6g}" if isinstance(value, float) else str(value)
+        return names(model.beams)[model.number_of(value)]
+    if isinstance(value, Point):
+        return (
+            f"{_text(value.beam, model)}.{ {0.0: 'start', 1.0: 'end'}.get(value.fraction, f'at({value.fraction:g})') }"
+        )
+    if isinstance(value, tuple):
+        return f"({', '.join(_text(item, model) for item in value)})"
+    if callable(value):
+        return "a function"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _print(found: dict[str, Any]) -> None:
-    """Print what a results file holds."""
-    from beamfem.units import units_of
-
-    statistics, second = found["statistics"], units_of(found["units"]).of("s")
-    for name in ("file", "written_by", "kind", "units", "coordinates", "states", "load_factor", "time"):
-        if name in found:
+    """Print the contents of a results file."""
+    statistics = found["statistics"]
+    for name in (
+        "file",
+        "written_by",
+        "kind",
+        "units",
+        "coordinates",
+        "states",
+        "load_factor",
+        "time",
+        "outcome",
+        "effort",
+    ):
+        if found.get(name):
             value = found[name]
             text = f"{value[0]:g} to {value[1]:g}" if isinstance(value, list) else value
-            print(f"{name.replace('_', ' '):12s} {text}{f' {second}' if name == 'time' else ''}")
-    print(f"{'solve':12s} {found['outcome']}")
-    if statistics["iterations"]:
-        print(f"{'effort':12s} {found['effort']}")
+            print(f"{name.replace('_', ' '):12s} {text}")
     if statistics["digits"] is not None:
         print(f"{'accuracy':12s} {statistics['digits']:.0f} digits of the forces are reliable")
     for warning in statistics["warnings"]:

@@ -13,8 +13,8 @@ import typer
 from beamfem.cli.report import AsJson, Quiet, print_json, print_table, reported, require_target, summary
 
 if TYPE_CHECKING:
-    from beamfem.cli.model_file import Job
     from beamfem.cli.analyses import Found
+    from beamfem.cli.model_file import Job
 
 Colour = Annotated[
     str | None,

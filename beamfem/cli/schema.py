@@ -16,17 +16,15 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, PlainValidator, Strict, ValidationError, ValidationInfo, create_model
 
 from beamfem.errors import InputError
-from beamfem.io.frame import Frame
 from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
-from beamfem.validation import nearest
+from beamfem.validation import nearest, require_known
 
 Kinds = Mapping[str, Callable[..., Any]]
 Made = TypeVar("Made")
 
-_POINT = re.compile(r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\((?P<place>[^()]+)\))")
-_SET = re.compile(r"(?P<frame>[^.]+)\.(?P<name>.+)")
-_ABOUT_MODELS = ("self", "model", "path")  # parameters that are no keys
+_POINT = re.compile(r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\(\s*(?P<fraction>[-+.\deE]+)\s*\))")
+_NO_KEYS = ("self", "model", "asked", "path")  # parameters that are no keys
 _RULES = {
     "float_type": "a number",
     "int_type": "a whole number",
@@ -58,79 +56,49 @@ class Names:
     """What the keys of a model file may name; types: how pydantic reads values, by type hint."""
 
     folder: Path
+    anywhere: bool  # whether files to write may be outside the folder
     types: Mapping[Any, Any]
-    anywhere: bool = False  # whether files to write may be outside the folder
     parts: dict[str, dict[str, Any]] = field(default_factory=dict)  # by section: materials, sections ...
     beams: dict[str, Beam] = field(default_factory=dict)
-    frames: dict[str, Frame] = field(default_factory=dict)
-    moved: dict[Beam | Point, Any] = field(default_factory=dict)  # beams and points of the model with an imperfection
+    moved: dict[Beam | Point, Any] = field(default_factory=dict)  # what replaces beams and points in an imperfect model
     schemas: dict[Callable[..., Any], type[BaseModel]] = field(default_factory=dict)
 
     def move(self, old: Model, new: Model) -> None:
-        """Let names stand for the beams and points of a model with an imperfection."""
-        self.moved.update(zip(old.beams, new.beams, strict=True))
-        self.moved.update(zip(_points(old), _points(new), strict=True))
+        """Let names stand for the beams and points of an imperfect model."""
+        self.moved.update(zip((*old.beams, *_points(old)), (*new.beams, *_points(new)), strict=True))
 
     def beam(self, name: Any) -> Beam:
         """Return the beam of a name. Raises InputError."""
-        if isinstance(name, Beam):
-            return name
-        if not isinstance(name, str):
-            raise InputError(f"must be the name of a beam, got {shown(name)}")
-        if name not in self.beams:
-            raise InputError(f"there is no beam {name!r}; {nearest(name, self.beams)}")
+        require_known(f"there is no beam {name!r}", name, self.beams)
         return self.moved.get(self.beams[name], self.beams[name])
 
     def point(self, text: Any) -> Point:
-        """Return the point NAME.start, NAME.end, NAME.at(fraction) or FRAME.at(x, y). Raises InputError."""
-        if isinstance(text, Point):
-            return text
-        match = _POINT.fullmatch(text.strip()) if isinstance(text, str) else None
+        """Return the point NAME.start, NAME.end or NAME.at(fraction). Raises InputError."""
+        match = _POINT.fullmatch(text) if isinstance(text, str) else None
         if match is None:
-            name = text.partition(".")[0] if isinstance(text, str) else ""
-            name = name if name in self.beams else next(iter(self.beams), "NAME")
+            prefix = str(text).partition(".")[0]
+            name = prefix if prefix in self.beams else next(iter(self.beams), "NAME")
             such = f'"{name}.start", "{name}.end" or "{name}.at(0.5)"'
             raise InputError(f"must be a point such as {such}, got {shown(text)}")
-        frame = self.frames.get(match["beam"]) if match["place"] else None
-        if frame is not None:
-            point = frame.at(*_numbers(match["place"], 2))
-        else:
-            beam = self.beams[match["beam"]] if match["beam"] in self.beams else self.beam(match["beam"])
-            fraction = _numbers(match["place"], 1)[0] if match["place"] else float(match["end"] == "end")
-            point = Point(beam, fraction)
-        other = self.moved.get(point)
-        return other or Point(self.moved.get(point.beam, point.beam), point.fraction)
+        require_known(f"there is no beam {match['beam']!r}", match["beam"], self.beams)
+        fraction = float(match["fraction"]) if match["fraction"] else float(match["end"] == "end")
+        point = Point(self.beams[match["beam"]], fraction)
+        return self.moved.get(point) or Point(self.moved.get(point.beam, point.beam), fraction)
 
-    def several(self, key: str, value: Any) -> Sequence[Any]:
-        """Return the `points` or `beams` of a list or of a set of a frame, FRAME.SET. Raises InputError, KeyFault."""
-        read = self.point if key == "points" else self.beam
-        if isinstance(value, list):
-            return [at_key(number, read, item) for number, item in enumerate(value)]
-        match = _SET.fullmatch(value) if isinstance(value, str) else None
-        if match is None or match["frame"] not in self.frames:
-            hint = f"; {nearest(match['frame'] if match else value, self.frames)}" if self.frames else ""
-            raise InputError(f'must be an array, or a set of a frame, "FRAME.SET", got {shown(value)}{hint}')
-        frame = self.frames[match["frame"]]
-        found = frame.points(match["name"]) if key == "points" else frame.members(match["name"])
-        return [self.moved.get(item, item) for item in found]
+    def points(self, places: Any) -> list[Point]:
+        """Return the points of a list, or a list of one point. Raises InputError, KeyFault."""
+        return (
+            [at_key(number, self.point, item) for number, item in enumerate(places)]
+            if isinstance(places, list)
+            else [self.point(places)]
+        )
 
 
 def _points(model: Model) -> list[Point]:
     """Return all points with supports, loads, joints or connectors."""
-    points = [support.point for support in model.point_supports] + [load.point for load in model.point_loads]
+    points = [item.point for item in (*model.point_supports, *model.point_loads)]
     points += [point for joint in model.joints for point in (joint.a, joint.b)]
     return points + [point for connector in model.connectors for point in connector.points]
-
-
-def _numbers(text: str, count: int) -> list[float]:
-    try:
-        numbers = [float(part) for part in text.split(",")]
-        if len(numbers) == count:
-            return numbers
-    except ValueError:
-        pass
-    what = "the fraction along the beam must be a number" if count == 1 else "a node of a frame is at two numbers"
-    raise InputError(f"{what}, got {text!r}")
 
 
 def at_key(key: str | int, read: Callable[..., Made], *values: Any) -> Made:
@@ -180,7 +148,7 @@ def _schema(make: Callable[..., Any], types: Mapping[Any, Any]) -> type[BaseMode
     fields: Any = {
         name: (_type(hints.get(name, Any), types), ... if parameter.default is parameter.empty else parameter.default)
         for name, parameter in inspect.signature(make).parameters.items()
-        if name not in _ABOUT_MODELS
+        if name not in _NO_KEYS
     }
     return create_model("Table", __config__=ConfigDict(extra="forbid", arbitrary_types_allowed=True), **fields)
 
@@ -248,7 +216,7 @@ def require_table(value: Any) -> None:
 
 def _needed(make: Callable[..., Any]) -> list[str]:
     parameters = inspect.signature(make).parameters.values()
-    return [item.name for item in parameters if item.default is item.empty and item.name not in _ABOUT_MODELS]
+    return [item.name for item in parameters if item.default is item.empty and item.name not in _NO_KEYS]
 
 
 def in_braces(kind: str, make: Callable[..., Any]) -> str:

@@ -1,23 +1,22 @@
 """`beamfem study`: list the studies of a folder and run one, with the parameters of its `main` as options."""
 
-import argparse
 import ast
 import importlib.util
 import inspect
-import re
 import sys
 import typing
-from collections.abc import Callable, Iterable, Sequence
-from contextlib import redirect_stdout
-from dataclasses import dataclass, is_dataclass
+from collections.abc import Callable
+from contextlib import nullcontext, redirect_stdout, suppress
+from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
-from types import NoneType
+from pprint import pprint
 from typing import Annotated, Any
 
 import typer
 
 from beamfem.cli.examples import shipped
-from beamfem.cli.report import AsJson, Quiet, plain, print_json, reported
+from beamfem.cli.report import AsJson, Quiet, print_json, reported
 
 
 @dataclass(frozen=True)
@@ -59,16 +58,16 @@ def study(
             return
         chosen = _named(name, studies, folder)
         main = _main_of(chosen, folder)
-        values = vars(_parser(main, f"beamfem study {name}", chosen.title).parse_args(context.args))
-        as_json, quiet = values.pop("_json") or as_json, values.pop("_quiet") or quiet
-    with reported(as_json, quiet):
-        if not (as_json or quiet):
-            _show(main(**values))
+        if {"--help", "-h"} & set(context.args):
+            print(_help(main, name, chosen.title))
             return
-        with redirect_stdout(sys.stderr):
-            result = main(**values)
-        if as_json:
-            print_json({"result": result})
+        as_json, quiet = as_json or "--json" in context.args, quiet or "--quiet" in context.args
+    with reported(as_json, quiet), redirect_stdout(sys.stderr) if as_json or quiet else nullcontext():
+        result = main(**_options(main, [word for word in context.args if word not in ("--json", "--quiet")]))
+    if as_json:
+        print_json({"result": result})
+    elif result is not None and not quiet:
+        pprint(result) if isinstance(result, dict | list) else print(result)
 
 
 def find_studies(folder: Path) -> list[Study]:
@@ -128,86 +127,45 @@ def _main_of(item: Study, folder: Path) -> Callable[..., Any]:
     return main
 
 
-def _parser(main: Callable[..., Any], program: str, title: str) -> argparse.ArgumentParser:
-    """Return a parser of options with the names of the parameters of a function that can be given as text."""
-    parser = argparse.ArgumentParser(program, description=title, allow_abbrev=False)
-    hints = typing.get_type_hints(main)
-    for name, parameter in inspect.signature(main).parameters.items():
-        read = _reader(hints.get(name))
-        required = parameter.default is parameter.empty
-        if read is None and not required:
-            continue
-        default = "" if required or parameter.default is None else f" (default: {_text(parameter.default)})"
-        parser.add_argument(
-            f"--{name.replace('_', '-')}",
-            dest=name,
-            required=required,
-            default=None if required else parameter.default,
-            help=(_described(main, name) + default).replace("%", "%%"),
-            **({"action": argparse.BooleanOptionalAction} if read is bool else {"type": read, "metavar": ""}),
-        )
-    for name, words in (("json", "Print the result as JSON on stdout."), ("quiet", "Print errors only.")):
-        parser.add_argument(f"--{name}", dest=f"_{name}", action="store_true", help=words)
-    return parser
+def _help(main: Callable[..., Any], name: str, title: str) -> str:
+    """Return the options of a study: the parameters of its main, their defaults, and its docstring."""
+    parameters = inspect.signature(main).parameters.values()
+    options = [
+        f"  --{item.name.replace('_', '-')}" + ("" if item.default is item.empty else f" (default: {item.default})")
+        for item in parameters
+    ]
+    words = (inspect.getdoc(main) or "").partition("Parameters\n----------\n")[2]
+    listed = "\n".join([*options, "  --json, --quiet, --help"])
+    return f"Usage: beamfem study {name} [OPTIONS]\n\n{title}\n\nOptions:\n{listed}\n\n{words}".rstrip()
 
 
-def _reader(hint: Any) -> Callable[[str], Any] | None:
-    """Return what reads a value of a type from text, None if there is no text for it."""
-    options = [option for option in typing.get_args(hint) if option is not NoneType]
-    if typing.get_origin(hint) in (tuple, list, Sequence, Iterable):
-        item = _reader(options[0])
-        return item and (lambda text: tuple(item(part.strip()) for part in text.split(",")))
-    if typing.get_origin(hint) is typing.Literal:
-        return str
-    if options:
-        return _reader(options[0]) if len(options) == 1 else None
-    from beamfem.element.element import Element
+def _options(main: Callable[..., Any], words: list[str]) -> dict[str, Any]:
+    """Return the arguments of a function from --name value or --name=value, lists separated by commas.
 
-    return _element if hint is Element else hint if hint in (int, float, str, bool, Path) else None
+    Raises InputError.
+    """
+    from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-
-def _element(text: str) -> Any:
-    """Return the element of a text such as "ANCFCRBF" or "CRBF(4)"."""
-    from beamfem.element import presets
     from beamfem.errors import InputError
     from beamfem.validation import nearest
 
-    name, _, order = text.strip().rstrip(")").partition("(")
-    known = ("ANCF", "ANCFCRBF", "BilinearANCF", "BilinearCRBF", "CRBF", "ShearRigid")
-    if name not in known:
-        raise argparse.ArgumentTypeError(f"there is no element {name!r}; {nearest(name, known)}")
-    try:
-        return getattr(presets, name)(*([int(order)] if order else []))
-    except (InputError, TypeError, ValueError) as error:
-        raise argparse.ArgumentTypeError(f"{text}: {error}; CRBF needs its order, such as CRBF(4)") from None
-
-
-def _text(default: Any) -> str:
-    items = default if isinstance(default, tuple | list) else (default,)
-    return ",".join(getattr(item, "name", str(item)) for item in items)
-
-
-def _described(main: Callable[..., Any], name: str) -> str:
-    """Return the description of a parameter in the numpydoc section "Parameters" of a docstring."""
-    found = re.search(rf"^{name}(?:, \w+)* :.*\n((?:[ ]+.*\n?)+)", inspect.getdoc(main) or "", re.MULTILINE)
-    return " ".join(found[1].split()) if found else ""
-
-
-def _show(result: Any) -> None:
-    """Print what a study returned."""
-    if result is None:
-        return
-    if isinstance(result, str) or (type(result).__str__ is not object.__str__ and not isinstance(result, dict | list)):
-        print(result)
-    elif is_dataclass(result) or isinstance(result, dict):
-        print("\n".join(f"{key}: {_line(value)}" for key, value in plain(result).items()))
-    else:
-        print("\n".join(_line(value) for value in plain(result)))
-
-
-def _line(value: Any) -> str:
-    if isinstance(value, float):
-        return f"{value:.8g}"
-    if isinstance(value, dict):
-        return ", ".join(f"{key} {_line(item)}" for key, item in value.items())
-    return " ".join(_line(item) for item in value) if isinstance(value, list) else str(value)
+    hints, parameters = typing.get_type_hints(main), inspect.signature(main).parameters
+    values: dict[str, Any] = {}
+    words = [part for word in words for part in (word.split("=", 1) if word.startswith("--") else [word])]
+    for option, text in zip_longest(words[::2], words[1::2]):
+        name = option.removeprefix("--").replace("-", "_")
+        if name not in parameters or not option.startswith("--"):
+            raise InputError(f"there is no option {option}; {nearest(name, parameters)}")
+        if text is None:
+            raise InputError(f"{option} needs a value")
+        adapter: Any = TypeAdapter(hints.get(name, Any), config=ConfigDict(arbitrary_types_allowed=True))
+        for given in (text, text.split(",")):
+            with suppress(ValidationError):
+                values[name] = adapter.validate_python(given)
+                break
+        else:
+            raise InputError(f"{option} must be of the type {parameters[name].annotation}, got {text!r}")
+    missing = [item.name for item in parameters.values() if item.default is item.empty and item.name not in values]
+    if missing:
+        raise InputError(f"the option --{missing[0]} is missing")
+    return values

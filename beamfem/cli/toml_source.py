@@ -2,9 +2,7 @@
 
 import re
 import tomllib
-from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +11,7 @@ from beamfem.errors import InputError
 KeyPath = tuple[str | int, ...]
 
 _HDF5 = b"\x89HDF"
-_LARGEST = 20_000_000  # bytes
+_LARGEST = 5_000_000  # bytes
 # start of a message of tomllib, and the usual cause
 _CAUSES = {
     "Cannot overwrite": "the key is there twice, or the header of its table has another number of brackets above",
@@ -46,15 +44,9 @@ class Source:
     text: str
     values: dict[str, Any]
 
-    @cached_property
-    def lines(self) -> dict[KeyPath, int]:
-        """The line, from 1, of each key; keys of one statement are on the line where it begins."""
-        return key_lines(self.text)
-
     def error(self, message: str, *path: str | int) -> ModelFileError:
         """Return the error of a key; for a missing key, with the line of the table that should contain it."""
-        known = next((path[:end] for end in range(len(path), 0, -1) if path[:end] in self.lines), ())
-        return ModelFileError(message, self.file, self.lines.get(known), written(path) or None)
+        return ModelFileError(message, self.file, _line(self.text, path), written(path) or None)
 
 
 def read_source(path: Path) -> Source:
@@ -85,57 +77,38 @@ def read_source(path: Path) -> Source:
         raise ModelFileError("arrays or tables are nested too deeply", path) from None
 
 
-def key_lines(text: str) -> dict[KeyPath, int]:
-    """Return the line, from 1, of the statement that each key and each item of an array belongs to.
+def _line(text: str, path: KeyPath) -> int | None:
+    """Return the line, from 1, of the statement after which a key, or else the table that should contain it, is there.
 
-    A statement is the shortest sequence of lines that is valid TOML by itself.
+    The first lines of a text are valid TOML if they end with a statement.
     """
-    found: dict[KeyPath, int] = {}
-    arrays: dict[KeyPath, int] = {}  # last item of every array of tables
-    header: KeyPath = ()
-    statement, first = "", 0
-    for number, line in enumerate(text.splitlines(keepends=True), 1):
-        first = first if statement else number
-        statement += line
-        if statement != line and line.rstrip().endswith((",", "[")):
-            continue  # inside an array, which need not be parsed at each of its lines
-        try:
-            values = tomllib.loads(statement)
-        except tomllib.TOMLDecodeError:
-            continue
-        if statement.lstrip().startswith("["):
-            header = _header(values, arrays)
-            paths = [header]
+    lines = text.splitlines(keepends=True)
+    while path and not _known("".join(lines), path):
+        path = path[:-1]
+    without, having = 0, len(lines)
+    while path and having - without > 1:
+        middle = (without + having) // 2
+        # the lines of a long array, which end with a comma, need not be parsed each
+        ends = (end for end in range(middle, having) if end == middle or not lines[end - 1].rstrip().endswith(","))
+        found = next(((end, known) for end in ends if (known := _known("".join(lines[:end]), path)) is not None), None)
+        if found is None or found[1]:
+            having = middle
         else:
-            paths = [(*header, *path) for path in _paths(values)]
-        for path in paths:
-            for end in range(1, len(path) + 1):
-                found.setdefault(path[:end], first)
-        statement = ""
-    return found
+            without = found[0]
+    return having if path else None
 
 
-def _header(values: dict[str, Any], arrays: dict[KeyPath, int]) -> KeyPath:
-    """Return the path of the only table in values, with the numbers of the items of arrays of tables in it."""
-    path: KeyPath = ()
-    value: Any = values
-    while value:
-        if isinstance(value, list):
-            arrays[path] = arrays.get(path, -1) + 1
-            return (*path, arrays[path])
-        if path in arrays:
-            path = (*path, arrays[path])
-        ((key, value),) = value.items()
-        path = (*path, key)
-    return path
-
-
-def _paths(value: Any) -> Iterator[KeyPath]:
-    """Yield the path of every key and item in a value."""
-    pairs = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
-    for key, item in pairs:
-        yield (key,)
-        yield from ((key, *path) for path in _paths(item))
+def _known(text: str, path: KeyPath) -> bool | None:
+    """Return whether a text has a key, None if it is no TOML."""
+    try:
+        value: Any = tomllib.loads(text)
+        for key in path:
+            value = value[key]
+        return True
+    except (KeyError, IndexError, TypeError):
+        return False
+    except tomllib.TOMLDecodeError:
+        return None
 
 
 def written(path: KeyPath) -> str:

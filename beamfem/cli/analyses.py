@@ -1,13 +1,12 @@
-"""Analyses of model files: the keys of a kind are the keyword parameters of its function."""
+"""Analyses of model files: the keys of a kind are parameters of the functions that solve it."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import wraps
-from typing import Any, Literal
+from inspect import Parameter, signature
+from typing import Any, Literal, get_type_hints
 
 import numpy as np
 
-from beamfem.assembly.rigid_velocity import RigidVelocity
 from beamfem.cli.schema import Kinds, Names, build, reader, shown
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
@@ -18,12 +17,11 @@ from beamfem.results.solution import Solution, State
 from beamfem.solve.modes.modes import Modes, solve_modes
 from beamfem.solve.motion.dynamics import simulate
 from beamfem.solve.motion.integrators import GeneralizedAlpha
-from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.paths.trace import trace_equilibrium
 from beamfem.solve.stability.buckling import Buckling, solve_buckling
-from beamfem.solve.statics.load_steps import SAME, Snap
+from beamfem.solve.statics.load_steps import SAME
 from beamfem.solve.statics.statics import solve_static, solve_through
-from beamfem.validation import finite, number_below
+from beamfem.validation import count, finite, number_below
 
 
 @dataclass(frozen=True)
@@ -37,18 +35,61 @@ class Found:
 
 @dataclass(frozen=True)
 class Analysis:
-    """An analysis that is ready to run on a model; asked: load factors or times [s] at which outputs need a state.
+    """An analysis by its kind and keys."""
 
-    span: lowest and highest load factor or time of its states, empty for modes; moving: whether it has times.
-    """
+    kind: str
+    keys: dict[str, Any]
 
-    run: Callable[[Model, Sequence[float]], Found]
-    span: tuple[float, ...] = (-np.inf, np.inf)
-    moving: bool = False
+    @property
+    def span(self) -> tuple[float, ...]:
+        """Lowest and highest load factor or time [s] of its states, empty for modes."""
+        if self.kind in ("buckling", "modes"):
+            return ()
+        at = self.keys.get("at") or (0.0, 1.0)
+        return {"static": (min(at), max(at)), "path": (-np.inf, np.inf)}.get(
+            self.kind, (0.0, self.keys.get("duration", 0.0))
+        )
+
+    def run(self, model: Model, asked: Sequence[float]) -> Found:
+        """Solve the model; asked: load factors at which outputs need a state. Raises InputError, ConvergenceError."""
+        keys = {name: state(model, value) if name in ("about", "start") else value for name, value in self.keys.items()}
+        if self.kind == "static":
+            return Found(_static(model, asked, **keys))
+        if self.kind == "path":
+            path = trace_equilibrium(model, **keys)
+            names = ("limit_points", "bifurcations")
+            return Found(path, {name: [point.load_factor for point in getattr(path, name)] for name in names})
+        if self.kind == "dynamics":
+            if (rho_inf := keys.pop("rho_inf", None)) is not None:
+                keys["integrator"] = GeneralizedAlpha(rho_inf)
+            return Found(simulate(model, **keys))
+        solve: Callable[..., Any] = solve_buckling if self.kind == "buckling" else solve_modes
+        shown = {name: keys.pop(name) for name in ("mode", "amplitude", "frames") if name in keys}
+        number = count("count", keys.get("count", signature(solve).parameters["count"].default))
+        shown["mode"] = number_below("mode", shown.get("mode", 1), number + 1, lowest=1) - 1
+        modes = solve(model, **keys)
+        names = (
+            ("load_factors", "kinds", "linearised") if self.kind == "buckling" else ("frequencies", "growth", "rigid")
+        )
+        values = {name: list(getattr(modes, name)) for name in names if np.any(getattr(modes, name))}
+        return Found(modes.solution(**shown), values, modes)
+
+
+def state(model: Model, load_factor: float | None) -> State | None:
+    """Return the equilibrium at a load factor to start from, None for the reference."""
+    return None if load_factor is None else solve_static(model, at=[load_factor])[-1]
+
+
+def _static(
+    model: Model, asked: Sequence[float], steps: int = 1, newton: Any = None, snap: Any = "error", at: Any = None
+) -> Solution:
+    if at is None:
+        return warned(solve_through(model, asked, steps, newton, snap=snap))
+    further = [value for value in asked if all(abs(value - other) > SAME for other in at)]
+    return solve_static(model, steps, newton, at=sorted([*at, *further]) if further else at, snap=snap)
 
 
 def _start(value: Any, names: Names) -> float | None:
-    """Return the load factor of an equilibrium to start from, None for the reference."""
     if value in ("reference", "static"):
         return 1.0 if value == "static" else None
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 <= value <= 1.0:
@@ -57,24 +98,6 @@ def _start(value: Any, names: Names) -> float | None:
 
 
 Start = reader(_start)
-
-
-def _state(model: Model, load_factor: float | None) -> State | None:
-    return None if load_factor is None else solve_static(model, at=[load_factor])[-1]
-
-
-def _static(
-    model: Model,
-    asked: Sequence[float],
-    steps: int = 1,
-    newton: Newton | None = None,
-    snap: Snap = "error",
-    at: Sequence[float] | None = None,
-) -> Found:
-    if at is None:
-        return Found(warned(solve_through(model, asked, steps, newton, snap=snap)))
-    further = [value for value in asked if all(abs(value - other) > SAME for other in at)]
-    return Found(solve_static(model, steps, newton, at=sorted([*at, *further]) if further else at, snap=snap))
 
 
 @dataclass(frozen=True)
@@ -101,64 +124,6 @@ def _until(value: Any, names: Names) -> Any:
     return build(Until, value, names) if isinstance(value, dict) else finite("until", value)
 
 
-def _path(
-    model: Model,
-    asked: Sequence[float],
-    until: reader(_until) = None,  # type: ignore[valid-type]
-    points: int = 500,
-    step: float | None = None,
-    newton: Newton | None = None,
-    direction: int | None = None,
-) -> Found:
-    path = trace_equilibrium(model, until, direction=direction, step=step, points=points, newton=newton)
-    names = ("limit_points", "bifurcations")
-    return Found(path, {name: [point.load_factor for point in getattr(path, name)] for name in names})
-
-
-def _buckling(
-    model: Model,
-    asked: Sequence[float],
-    count: int = 1,
-    mode: int = 1,
-    about: Start = None,  # type: ignore[valid-type]
-    amplitude: float | None = None,
-) -> Found:
-    number_below("mode", mode, count + 1, lowest=1)
-    buckling = solve_buckling(model, count, _state(model, about))
-    values = {name: list(getattr(buckling, name)) for name in ("load_factors", "kinds", "linearised")}
-    return Found(buckling.solution(mode - 1, amplitude), values, buckling)
-
-
-def _modes(
-    model: Model,
-    asked: Sequence[float],
-    count: int = 10,
-    mode: int = 1,
-    about: Start = None,  # type: ignore[valid-type]
-    amplitude: float | None = None,
-    frames: int = 25,
-) -> Found:
-    number_below("mode", mode, count + 1, lowest=1)
-    modes = solve_modes(model, count, _state(model, about))
-    values: dict[str, Any] = {"frequencies": modes.frequencies.tolist(), "rigid": list(modes.rigid)}
-    values |= {"growth": modes.growth.tolist()} if np.any(modes.growth) else {}
-    return Found(modes.solution(mode - 1, amplitude, frames), values, modes)
-
-
-def _dynamics(
-    model: Model,
-    asked: Sequence[float],
-    duration: float,
-    step: float,
-    rho_inf: float | None = None,
-    save_every: int = 1,
-    start: Start = None,  # type: ignore[valid-type]
-    velocity: RigidVelocity | None = None,
-) -> Found:
-    rule = GeneralizedAlpha() if rho_inf is None else GeneralizedAlpha(rho_inf)
-    return Found(simulate(model, duration, step, rule, _state(model, start), velocity, save_every))
-
-
 @dataclass(frozen=True)
 class Imperfection:
     """The largest displacement of an axis, `size` [m], by a mode, counted from 1, of the perfect model."""
@@ -168,26 +133,33 @@ class Imperfection:
     of: Literal["buckling", "modes"] = "buckling"
     about: Start = None  # type: ignore[valid-type]
 
+    def __post_init__(self) -> None:
+        count("mode", self.mode)
+
     def of_model(self, model: Model) -> Model:
         """Return the imperfect model. Raises InputError, ConvergenceError."""
         solve: Callable[..., Any] = solve_buckling if self.of == "buckling" else solve_modes
-        return model.with_imperfection(solve(model, self.mode, _state(model, self.about)), self.size, self.mode - 1)
+        return model.with_imperfection(solve(model, self.mode, state(model, self.about)), self.size, self.mode - 1)
 
 
-def _ready(solve: Callable[..., Found], span: Callable[..., tuple[float, ...]], moving: bool = False) -> Any:
-    """Return a function that makes an analysis of the keys of a table."""
+def _analysis(kind: str, *sources: Callable[..., Any], without: Sequence[str] = (), **hints: Any) -> Any:
+    """Return what makes an analysis of its keys: the parameters of some functions, and those with type hints here."""
 
-    @wraps(solve)
     def make(**keys: Any) -> Analysis:
-        return Analysis(lambda model, asked: solve(model, asked, **keys), span(**keys), moving)
+        return Analysis(kind, keys)
 
+    found = {name: item for source in sources for name, item in signature(source).parameters.items()}
+    found |= {name: Parameter(name, Parameter.KEYWORD_ONLY, default=None) for name in hints}
+    kept = [item.replace(kind=Parameter.KEYWORD_ONLY) for name, item in found.items() if name not in without]
+    make.__signature__ = signature(make).replace(parameters=kept)  # type: ignore[attr-defined]
+    make.__annotations__ = {name: hint for source in sources for name, hint in get_type_hints(source).items()} | hints
     return make
 
 
 ANALYSES: Kinds = {
-    "static": _ready(_static, lambda at=(0.0, 1.0), **_: (min(at), max(at))),
-    "path": _ready(_path, lambda **_: (-np.inf, np.inf)),
-    "buckling": _ready(_buckling, lambda **_: ()),
-    "modes": _ready(_modes, lambda **_: ()),
-    "dynamics": _ready(_dynamics, lambda duration, **_: (0.0, duration), moving=True),
+    "static": _analysis("static", solve_static),
+    "path": _analysis("path", trace_equilibrium, without=["start"], until=reader(_until)),
+    "buckling": _analysis("buckling", solve_buckling, Buckling.solution, about=Start, mode=int),
+    "modes": _analysis("modes", solve_modes, Modes.solution, about=Start, mode=int),
+    "dynamics": _analysis("dynamics", simulate, without=["integrator"], start=Start, rho_inf=float),
 }

@@ -23,7 +23,7 @@ from beamfem.model.listed_parts import parts_in
 from beamfem.model.time_functions import Interpolated, kinks_of
 from beamfem.section import Circle, Layered, Rectangle, Section, Tube
 from beamfem.section.protocol import CrossSection
-from beamfem.validation import positive
+from beamfem.validation import nearest, positive
 
 
 def _sine(frequency: float, size: float = 1.0, phase: float = 0.0, mean: float = 0.0) -> Callable[[float], float]:
@@ -46,35 +46,24 @@ def _smooth_ramp(duration: float, size: float = 1.0, start: float = 0.0) -> Call
     return ramp
 
 
-@dataclass(frozen=True)
-class NumbersAlong:
-    """A section, or the vector of a load, some of whose numbers are functions of the arc length [m]."""
-
-    make: Callable[..., Any]
-    numbers: dict[str, Any]
-
-    def __post_init__(self) -> None:
-        self(0.0)
-
-    @property
-    def kinks(self) -> tuple[float, ...]:
-        """Arc lengths [m] of the kinks of all functions."""
-        return tuple(sorted({kink for value in self.numbers.values() for kink in kinks_of(value)}))
-
-    def __call__(self, arc_length: float) -> Any:
-        return self.make(**{key: item(arc_length) if callable(item) else item for key, item in self.numbers.items()})
-
-
-def _tapered(make: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that makes a section, whose numbers may be functions of the arc length [m]."""
+def _along(make: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function that makes a section or a vector of numbers, some of which may vary with the arc length [m]."""
 
     @wraps(make)
     def made(**numbers: Any) -> Any:
-        return NumbersAlong(make, numbers) if any(map(callable, numbers.values())) else make(**numbers)
+        if not any(map(callable, numbers.values())):
+            return make(**numbers)
+
+        def at(arc_length: float) -> Any:
+            return make(**{key: value(arc_length) if callable(value) else value for key, value in numbers.items()})
+
+        at.kinks = tuple(sorted({kink for value in numbers.values() for kink in kinks_of(value)}))  # type: ignore[attr-defined]
+        at(0.0)
+        return at
 
     hints = get_type_hints(make)
     made.__annotations__ = {
-        name: float | Callable if hints[name] in (float, float | None) else hints[name]
+        name: float | Callable if hints.get(name) in (float, float | None) else hints.get(name)
         for name in signature(make).parameters
     }
     return made
@@ -94,11 +83,11 @@ CURVES: Kinds = {
     "chain": Chain,
 }
 SECTIONS: Kinds = {
-    "rectangle": _tapered(Rectangle),
-    "circle": _tapered(Circle),
-    "tube": _tapered(Tube),
-    "moments": _tapered(Section),
-    "stiffness": _tapered(Section.from_stiffness),
+    "rectangle": _along(Rectangle),
+    "circle": _along(Circle),
+    "tube": _along(Tube),
+    "moments": _along(Section),
+    "stiffness": _along(Section.from_stiffness),
     "layered": Layered,
 }
 FUNCTIONS: Kinds = {"table": Interpolated, "sine": _sine, "smooth-ramp": _smooth_ramp}
@@ -139,16 +128,18 @@ def _elements(value: Any, names: Names) -> Any:
 
 
 def _number(value: Any, names: Names) -> Any:
-    if isinstance(value, bool | list):
-        raise InputError(f"must be a number, or a function by name or as a table, got {shown(value)}")
+    if isinstance(value, bool | list) or (isinstance(value, str) and value not in names.parts["functions"]):
+        hint = f"; {nearest(value, names.parts['functions'])}" if isinstance(value, str) else ""
+        raise InputError(f"must be a number, or a function by name or as a table, got {shown(value)}{hint}")
     return value if isinstance(value, int | float) else _function(value, names)
 
 
 def _vector(value: Any, names: Names) -> Any:
     if not isinstance(value, list) or not any(isinstance(item, str | dict) for item in value):
         return value
-    components = dict(enumerate(_number(item, names) for item in value))
-    return NumbersAlong(lambda **parts: tuple(parts.values()), {f"_{key}": item for key, item in components.items()})
+    return _along(lambda **parts: tuple(parts.values()))(
+        **{f"_{key}": _number(item, names) for key, item in enumerate(value)}
+    )
 
 
 def _file(value: Any, names: Names) -> Path:

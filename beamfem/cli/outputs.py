@@ -1,6 +1,6 @@
 """What a model file asks for: outputs to print, and files to write."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from inspect import Parameter, signature
 from pathlib import Path
@@ -23,63 +23,45 @@ from beamfem.solve.modes.modes import Modes
 from beamfem.validation import count, finite, nearest, require_known
 
 _NEAR = 1e-9
-Quantities = Mapping[str, Callable[[Solution, Any], Any]]
+# what a quantity is: the method of a Solution and the attributes or columns of its result; and the unit in SI
+_AT_POINT = """
+x position.0 m, y position.1 m, ux displacement.0 m, uy displacement.1 m, vx velocity.0 m/s, vy velocity.1 m/s,
+rotation rotation rad, fx reaction.0 N, fy reaction.1 N, m reaction.2 N_m, shear_angle fields.shear_angle rad,
+strain_xx fields.green_strain.xx, strain_yy fields.green_strain.yy, strain_xy fields.green_strain.xy,
+stress_xx fields.stress.xx Pa, stress_yy fields.stress.yy Pa, stress_xy fields.stress.xy Pa
+"""
+_OF_BEAM = """
+normal section_forces.normal N, shear section_forces.shear N, moment section_forces.moment N_m,
+lower stresses.lower Pa, upper stresses.upper Pa, tension stresses.tension Pa, compression stresses.compression Pa,
+shear_stress stresses.shear Pa, von_mises stresses.von_mises Pa, utilisation stresses.utilisation
+"""
+_OF_MODEL = """
+kinetic energy.kinetic J, strain energy.strain J, potential energy.potential J, total energy.total J,
+dissipated energy.dissipated J, px linear_momentum.0 N_s, py linear_momentum.1 N_s,
+angular_momentum angular_momentum N_m_s, stable stable
+"""
 
 
-def _components(*names: str, of: str) -> dict[str, Callable[[Solution, Any], Any]]:
-    return {
-        name: lambda solution, item, number=number: getattr(solution, of)(item)[:, number]
-        for number, name in enumerate(names)
-    }
+def _table(text: str) -> dict[str, list[str]]:
+    """Return what the quantities of a text are, by name."""
+    rows = [row.split() for row in text.split(",")]
+    return {name: what for name, *what in rows}
 
 
-def _attributes(*names: str, of: Callable[[Solution, Any], Any]) -> dict[str, Callable[[Solution, Any], Any]]:
-    return {name: lambda solution, item, name=name: getattr(of(solution, item), name) for name in names}
+AT_POINT, OF_BEAM, OF_MODEL = map(_table, (_AT_POINT, _OF_BEAM, _OF_MODEL))
+UNITS = {
+    name: what[1].replace("_", " ") for name, what in {**AT_POINT, **OF_BEAM, **OF_MODEL}.items() if len(what) > 1
+} | {"time": "s", "arc_length": "m"}
 
 
-def _tensor(name: str, of: str) -> dict[str, Callable[[Solution, Any], Any]]:
-    return {
-        f"{name}_{part}": lambda solution, point, part=part: getattr(getattr(solution.fields(point), of), part)
-        for part in ("xx", "yy", "xy")
-    }
-
-
-AT_POINT: Quantities = {
-    **_components("x", "y", of="position"),
-    **_components("ux", "uy", of="displacement"),
-    **_components("vx", "vy", of="velocity"),
-    "rotation": lambda solution, point: solution.rotation(point),
-    **_components("fx", "fy", "m", of="reaction"),
-    "shear_angle": lambda solution, point: solution.fields(point).shear_angle,
-    **_tensor("strain", "green_strain"),
-    **_tensor("stress", "stress"),
-}
-OF_BEAM: Quantities = {
-    **_attributes("normal", "shear", "moment", of=lambda solution, beam: solution.section_forces(beam)),
-    **_attributes("lower", "upper", "tension", "compression", "von_mises", "utilisation",
-                  of=lambda solution, beam: solution.stresses(beam)),
-    "shear_stress": lambda solution, beam: solution.stresses(beam).shear,
-}  # fmt: skip
-OF_MODEL: Quantities = {
-    **_attributes("kinetic", "strain", "potential", "total", "dissipated", of=lambda solution, _: solution.energy()),
-    "px": lambda solution, _: solution.linear_momentum()[:, 0],
-    "py": lambda solution, _: solution.linear_momentum()[:, 1],
-    "angular_momentum": lambda solution, _: solution.angular_momentum(),
-    "stable": lambda solution, _: solution.stable,
-}
-_UNITS = {
-    "m": "x y ux uy arc_length",
-    "m/s": "vx vy",
-    "rad": "rotation shear_angle",
-    "N": "fx fy normal shear",
-    "N m": "m moment",
-    "Pa": "stress_xx stress_yy stress_xy shear_stress lower upper tension compression von_mises",
-    "J": "kinetic strain potential total",
-    "N s": "px py",
-    "N m s": "angular_momentum",
-    "s": "time",
-}
-UNITS = {name: unit for unit, names in _UNITS.items() for name in names.split()}  # in SI
+def _value(solution: Solution, item: Any, what: str) -> np.ndarray:
+    """Return a quantity of a point, a beam or the model in every state."""
+    method, *parts = what.split(".")
+    value: Any = getattr(solution, method)
+    value = (value() if item is None else value(item)) if callable(value) else value
+    for part in parts:
+        value = value[:, int(part)] if part.isdigit() else getattr(value, part)
+    return np.asarray(value)
 
 
 def _states(value: Any, names: Names) -> Any:
@@ -110,14 +92,14 @@ class Output:
                 raise InputError(f"quantities has no {quantity!r} here; {nearest(quantity, self.known)}")
 
     @property
-    def known(self) -> Quantities:
+    def known(self) -> dict[str, list[str]]:
         """Quantities of what the output is of."""
         return AT_POINT if self.point is not None else OF_BEAM if self.beam is not None else OF_MODEL
 
     @property
     def asked(self) -> list[float]:
         """Times [s] or load factors that are requested as numbers."""
-        return [] if isinstance(self.at, str) else self.at
+        return [] if isinstance(self.at, str) else list(self.at)
 
     def require(self, model: Model, analysis: Analysis) -> None:
         """Raise InputError for what the analysis of the model cannot provide."""
@@ -130,13 +112,13 @@ class Output:
         reactions = [quantity for quantity in self.quantities if quantity in ("fx", "fy", "m")]
         if reactions and self.point not in [support.point for support in model.point_supports]:
             raise InputError(f"quantities has the reaction {reactions[0]}, but there is no support at {self.point}")
-        if "stable" in self.quantities and analysis.moving:
+        if "stable" in self.quantities and analysis.kind == "dynamics":
             raise InputError("quantities has stable, which is for equilibria, and this analysis is a motion")
 
     def rows(self, solution: Solution) -> list[dict[str, Any]]:
         """Return a row for each requested state: its time [s] or load factor, and the quantities. Raises InputError."""
         item = self.beam if self.point is None else self.point
-        columns = {name: np.asarray(self.known[name](solution, item)) for name in self.quantities}
+        columns = {name: _value(solution, item, self.known[name][0]) for name in self.quantities}
         axis = "load_factor" if solution.static else "time"
         along = {} if self.beam is None else {"arc_length": solution.section_forces(self.beam).arc_length.tolist()}
         return [
@@ -222,7 +204,7 @@ class OutputFile:
             require_saved(model)
         if self.kind in ("history", "load-displacement") and not analysis.span:
             raise InputError("this analysis has no states to draw; these go with static, path and dynamics")
-        if self.kind == "load-displacement" and analysis.moving:
+        if self.kind == "load-displacement" and analysis.kind == "dynamics":
             raise InputError("a motion has no load factor to draw; these go with static and path")
         if self.kind == "mode-shapes" and analysis.span:
             raise InputError("this analysis finds no modes; these go with buckling and modes")

@@ -8,6 +8,7 @@ import inspect
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, is_dataclass
+from difflib import get_close_matches
 from pathlib import Path
 from types import NoneType
 from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin, get_type_hints
@@ -167,6 +168,8 @@ def _type(hint: Any, types: Mapping[Any, Any]) -> Any:
         scalar, vector = float in kinds.values(), tuple in kinds.values()
         return types["number" if scalar else "vector" if vector else "function"]
     hint = options[0]
+    if get_origin(hint) is tuple and Ellipsis not in get_args(hint):
+        return Any  # the library checks vectors
     if get_origin(hint) in (tuple, list, Sequence):
         return list[_type(get_args(hint)[0], types)]  # type: ignore[misc]
     if is_dataclass(hint):
@@ -236,9 +239,10 @@ def _fault(error: ValidationError, schema: type[BaseModel]) -> KeyFault:
     if first["type"] == "extra_forbidden":
         return KeyFault(f"unknown key; {nearest(path[-1], schema.model_fields)}", *path)
     if first["type"] == "literal_error":
-        allowed = [item.strip("'") for item in re.split(", | or ", first["ctx"]["expected"])]
-        hint = nearest(given, allowed)
-        return KeyFault(f"{hint}, got {shown(given)}" if "mean" not in hint else f"got {shown(given)}; {hint}", *path)
+        rule = first["ctx"]["expected"].replace("'", '"')
+        near = get_close_matches(str(given), re.findall(r'"(.*?)"', rule), 1)
+        hint = f"; did you mean {near[0]}?" if near else ""
+        return KeyFault(f"must be {rule}, got {shown(given)}{hint}", *path)
     return KeyFault(f"must be {_RULES.get(first['type'], first['msg'])}, got {shown(given)}", *path)
 
 

@@ -29,25 +29,27 @@ class Job:
     names: Names
     title: str
     model: Model
-    kind: str
     analysis: Analysis
     outputs: Sequence[Output]
     files: Sequence[OutputFile]
     imperfection: Imperfection | None = None
 
-    def solve(self) -> tuple["Job", Found]:
-        """Return the job, of the model with the imperfection if there is one, and what the analysis finds.
+    def imperfect(self) -> "Job":
+        """Return the job of the model with the imperfection, if there is one. Raises ModelFileError, ConvergenceError.
 
-        Raises ModelFileError, ConvergenceError.
+        Its mode has to be solved for, so this comes after all checks of the file.
         """
-        job = self
-        if self.imperfection is not None:
-            with _within(self.source, "imperfection"):
-                model = self.imperfection.of_model(self.model)
-            self.names.move(self.model, model)
-            job = _job(self.source, self.names, model, None)
+        if self.imperfection is None:
+            return self
+        with _within(self.source, "imperfection"):
+            model = self.imperfection.of_model(self.model)
+        self.names.move(self.model, model)
+        return _job(self.source, self.names, model, None)
+
+    def solve(self) -> Found:
+        """Run the analysis and return what it finds. Raises ModelFileError, ConvergenceError."""
         with _within(self.source, "analysis"):
-            return job, job.analysis.run(job.model, [at for output in job.outputs for at in output.asked])
+            return self.analysis.run(self.model, [at for output in self.outputs for at in output.asked])
 
 
 def read_model_file(path: str | PathLike[str], files_anywhere: bool = False) -> Job:
@@ -88,9 +90,8 @@ def read_model_file(path: str | PathLike[str], files_anywhere: bool = False) -> 
 
 
 def _job(source: Source, names: Names, model: Model, imperfection: Imperfection | None) -> Job:
-    table = source.values.get("analysis", {})
     with _within(source, "analysis"):
-        analysis = part(ANALYSES, table, names, default="static")
+        analysis = part(ANALYSES, source.values.get("analysis", {}), names, default="static")
     outputs = _tables(source, "outputs", lambda table: build(Output, table, names))
     files = _tables(source, "files", lambda table: part(FILES, table, names))
     for section, items in (("outputs", outputs), ("files", files)):
@@ -101,7 +102,7 @@ def _job(source: Source, names: Names, model: Model, imperfection: Imperfection 
         if file.file in [other.file for other in files[:number]]:
             raise source.error(f"{file.file} is written twice", "files", number, "file")
     title = _text(source, "title", source.file.stem)
-    return Job(source, names, title, model, table.get("kind", "static"), analysis, outputs, files, imperfection)
+    return Job(source, names, title, model, analysis, outputs, files, imperfection)
 
 
 def _each_place(kinds: Kinds, table: Any, names: Names) -> list[Any]:

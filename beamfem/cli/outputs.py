@@ -10,7 +10,7 @@ import numpy as np
 
 from beamfem.cli.analyses import Analysis, Found
 from beamfem.cli.report import require_target
-from beamfem.cli.schema import Kinds, Names, reader, shown
+from beamfem.cli.schema import KeyFault, Kinds, Names, reader, shown
 from beamfem.errors import InputError
 from beamfem.io.description import describe
 from beamfem.model.beam import Beam, Point
@@ -196,8 +196,11 @@ class OutputFile:
     options: dict[str, Any] = field(default_factory=dict)
 
     def require(self, model: Model, analysis: Analysis) -> None:
-        """Raise InputError for what cannot be written."""
-        require_target(self.file, WRITERS[self.kind][1])
+        """Raise InputError or KeyFault for what cannot be written."""
+        try:
+            require_target(self.file, WRITERS[self.kind][1])
+        except InputError as error:
+            raise KeyFault.of(error, "file") from None
         if "colour" in self.options:
             require_known(f"colour has no {self.options['colour']!r}", self.options["colour"], COLOURS)
         if self.kind == "results":
@@ -223,11 +226,12 @@ def _file_of(kind: str) -> Callable[..., OutputFile]:
     def make(file: Path, **options: Any) -> OutputFile:
         return OutputFile(kind, file, options)
 
-    keys = [item.replace(kind=Parameter.KEYWORD_ONLY) for name, item in signature(method).parameters.items()
-            if name not in ("self", "path")]  # fmt: skip
-    file = Parameter("file", Parameter.KEYWORD_ONLY)
-    make.__signature__ = signature(method).replace(parameters=[file, *keys])  # type: ignore[attr-defined]
-    make.__annotations__ = {**get_type_hints(method), "file": Path}
+    keys = {name: item for name, item in signature(method).parameters.items() if name not in ("self", "path")}
+    keys = {"file": Parameter("file", Parameter.KEYWORD_ONLY)} | keys
+    ordered = [item.replace(kind=Parameter.KEYWORD_ONLY) for item in keys.values()]
+    make.__signature__ = signature(method).replace(parameters=ordered)  # type: ignore[attr-defined]
+    hints = get_type_hints(method)
+    make.__annotations__ = {name: hints.get(name, item.annotation) for name, item in keys.items()} | {"file": Path}
     return make
 
 

@@ -68,7 +68,8 @@ def run(
                 tell_of_compilation()
             start = time.perf_counter()
             with _kept(job, out):
-                job, found = job.solve()
+                job = job.imperfect()
+                found = job.solve()
             seconds = time.perf_counter() - start
             if out is not None:
                 found.solution.save(out)
@@ -140,7 +141,7 @@ def _result(job: "Job", found: "Found", seconds: float, written: list[str]) -> d
     return {
         "title": job.title,
         "file": str(job.source.file),
-        "analysis": job.kind,
+        "analysis": job.analysis.kind,
         "beams": len(job.model.beams),
         **summary(found.solution),
         "seconds": seconds,

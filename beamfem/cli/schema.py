@@ -146,10 +146,10 @@ def named_first(message: str, table: Mapping[str, Any]) -> list[str]:
 def _schema(make: Callable[..., Any], types: Mapping[Any, Any]) -> type[BaseModel]:
     """Return a pydantic model whose fields are the parameters of a class or function."""
     hints = get_type_hints(make, include_extras=True)
+    parameters = {key: item for key, item in inspect.signature(make).parameters.items() if key not in _NO_KEYS}
     fields: Any = {
-        name: (_type(hints.get(name, Any), types), ... if parameter.default is parameter.empty else parameter.default)
-        for name, parameter in inspect.signature(make).parameters.items()
-        if name not in _NO_KEYS
+        key: (_type(hints.get(key, item.annotation), types), ... if item.default is item.empty else item.default)
+        for key, item in parameters.items()
     }
     return create_model("Table", __config__=ConfigDict(extra="forbid", arbitrary_types_allowed=True), **fields)
 
@@ -158,6 +158,8 @@ def _type(hint: Any, types: Mapping[Any, Any]) -> Any:
     """Return the type with which pydantic checks a value in a model file."""
     if get_origin(hint) is Annotated:
         return hint
+    if hint is inspect.Parameter.empty:
+        return Any
     options = get_args(hint) if get_origin(hint) not in (Literal, tuple, list, Sequence, Callable, dict) else ()
     options = [option for option in options or (hint,) if option not in (NoneType, np.ndarray)]
     for option in reversed(options):

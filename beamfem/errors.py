@@ -6,7 +6,19 @@ from typing import Any
 
 
 class BeamfemError(Exception):
-    """Any error that beamfem raises on purpose."""
+    """Any error that beamfem raises on purpose.
+
+    Parameters
+    ----------
+    reason : str
+        What is wrong.
+    remedy : str, optional
+        What would be right, in the names of the Python interface; other front ends replace these names.
+    """
+
+    def __init__(self, reason: str = "", *, remedy: str = "") -> None:
+        super().__init__(f"{reason}; {remedy}" if remedy else reason)
+        self.reason, self.remedy = reason, remedy
 
 
 class InputError(BeamfemError, ValueError):
@@ -32,8 +44,8 @@ class ConvergenceError(BeamfemError, RuntimeError):
         Every state found before.
     """
 
-    def __init__(self, message: str, solution: Any = None) -> None:
-        super().__init__(message)
+    def __init__(self, message: str, solution: Any = None, *, remedy: str = "") -> None:
+        super().__init__(message, remedy=remedy)
         self.solution = solution
 
 
@@ -50,8 +62,8 @@ class LimitPointError(ConvergenceError):
         The states before it.
     """
 
-    def __init__(self, message: str, load_factor: float, solution: Any = None) -> None:
-        super().__init__(message, solution)
+    def __init__(self, message: str, load_factor: float, solution: Any = None, *, remedy: str = "") -> None:
+        super().__init__(message, solution, remedy=remedy)
         self.load_factor = load_factor
 
 

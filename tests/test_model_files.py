@@ -9,29 +9,45 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+import beamfem as bf
 from beamfem.cli.app import app
-from beamfem.cli.modelfile import ModelFileError, actions, axes, elements, files, functions, parts, read_model_file
-from beamfem.cli.modelfile.analyses import ANALYSES
-from beamfem.cli.modelfile.lines import key_lines
+from beamfem.cli.model_file import read_model_file
+from beamfem.cli.toml_source import ModelFileError, read_source
 
 ROOT = Path(__file__).parent.parent
-DOCS = (ROOT / "docs" / "model_files.md").read_text()
-BLOCKS = re.findall(r"```toml\n(.*?)```", DOCS, re.S)
+BLOCKS = re.findall(r"```toml\n(.*?)```", (ROOT / "docs" / "model_files.md").read_text(), re.S)
 BASE = (ROOT / "examples" / "cantilever.toml").read_text()
-
+ARM = """
+[materials.steel]
+youngs_modulus = 2e11
+poisson_ratio = 0.3
+density = 7800.0
+[beams.arm]
+curve = { kind = "line", start = [0, 0], end = [1, 0] }
+elements = 4
+element = { kind = "CRBF", order = 3 }
+section = { kind = "rectangle", width = 0.01, height = 0.01 }
+material = "steel"
+[[supports]]
+kind = "clamp"
+point = "arm.start"
+[[loads]]
+kind = "force"
+point = "arm.end"
+vector = [0, 100]
+"""
+MOTION = '[analysis]\nkind = "dynamics"\nduration = 0.01\nstep = 1e-3\n'
+MODES = '[analysis]\nkind = "modes"\ncount = 3\n'
 AWKWARD = """# no key = here
-title = "a # that is no comment, = and ]"   # but this is
+title = "a # that is no comment, = and ]"   # but this, is,
 "quoted.key" = 1
 dotted . "second part" . third = '''
 [not.a.table]
 x = 1
 '''
-date = 1979-05-27 07:32:00
 list = [ # comment with ]
   [1, 2], # first
   { a = 1, b = { c = "}" } },
-  \"\"\"text \\\"\"\" with ""quotes"" and
-  [[none]] \"\"\"\"\",
 ]
 
 [ table . "a b" ]
@@ -52,39 +68,32 @@ x = 3
 
 
 def leaves(value, path=()):
-    yield path
-    if isinstance(value, dict | list):
-        for key, item in value.items() if isinstance(value, dict) else enumerate(value):
-            yield from leaves(item, (*path, key))
+    if path:
+        yield path
+    for key, item in value.items() if isinstance(value, dict) else enumerate(value if isinstance(value, list) else ()):
+        yield from leaves(item, (*path, key))
 
 
-def test_every_key_of_an_awkward_text_has_its_line():
-    values = tomllib.loads(AWKWARD)
-    lines, text = key_lines(AWKWARD), AWKWARD.splitlines()
-    for path in leaves(values):
-        if path:
-            assert path in lines, path
-        if path and isinstance(path[-1], str):
-            assert path[-1] in text[lines[path] - 1], path
-    assert set(lines) == set(leaves(values)) - {()}
-    assert lines["list", 1, "b", "c"] == 11
-    assert lines["array", 1, "inner", 1, "x"] == 29
-    assert lines["array", 0, "inner", 0, "deep", "y"] == 24
-    assert key_lines(AWKWARD.replace("\n", "\r\n")) == lines
-
-
-@pytest.mark.parametrize("name", ["cantilever", "lee_frame", "flying_beam"])
-def test_lines_of_the_examples(name):
-    text = (ROOT / "examples" / f"{name}.toml").read_text()
-    lines = key_lines(text)
+@pytest.mark.parametrize(
+    "text", [AWKWARD, AWKWARD.replace("\n", "\r\n"), *((ROOT / "examples" / f"{name}.toml").read_text() for name in
+             ("cantilever", "lee_frame", "flying_beam"))]
+)  # fmt: skip
+def test_every_key_has_its_line(text, tmp_path):
+    (tmp_path / "a.toml").write_bytes(text.encode())
+    source, lines = read_source(tmp_path / "a.toml"), text.splitlines()
     for path in leaves(tomllib.loads(text)):
-        if path and isinstance(path[-1], str):
-            assert path[-1] in text.splitlines()[lines[path] - 1]
+        line = source.error("", *path).line
+        if isinstance(path[-1], str) and path[0] != "list":
+            assert path[-1] in lines[line - 1]
+        assert path[0] != "list" or line == 8  # where the statement begins
+    if text is AWKWARD:
+        assert source.error("", "array", 1, "inner", 1, "x").line == 26
 
 
 # what is replaced by what; the line, key and words of the error
 MISTAKES = {
-    "syntax": ("width = 0.01", "width = = 1", 12, None, "not valid TOML"),
+    "syntax": ("width = 0.01", "width = .5", 12, None, "numbers like 0.5"),
+    "a key twice": ("width = 0.01", "width = 1\nwidth = 2", 13, None, "the key is there twice"),
     "unknown table": ("[[loads]]", "[[load]]", 26, "load", "did you mean loads"),
     "unknown key": ("height = 0.01", "hight = 0.01", 13, "sections.square.hight", "did you mean height"),
     "capital letter": ("width = 0.01", "Width = 0.01", 12, "sections.square.Width", "did you mean width"),
@@ -94,115 +103,50 @@ MISTAKES = {
     "negative length": ("height = 0.01", "height = -0.01", 13, "sections.square.height", "greater than zero"),
     "length of words": ("height = 0.01", 'height = "thin"', 13, "sections.square.height", 'the text "thin"'),
     "true as a number": ("height = 0.01", "height = true", 13, "sections.square.height", "got true"),
+    "text as a number": ("density = 7800.0", 'density = "7800"', 8, "materials.steel.density", "must be a number"),
     "incompressible": ("poisson_ratio = 0.3", "poisson_ratio = 0.5", 7, "materials.steel.poisson_ratio", "between"),
     "half an element": ("elements = 4", "elements = 4.5", 17, "beams.arm.elements", "whole number"),
     "unknown section": ('"square"', '"sqare"', 19, "beams.arm.section", "did you mean square"),
+    "a kind as a name": ('"square"', '"rectangle"', 19, "beams.arm.section", "width = ..., height = ... }"),
     "unknown material": ('= "steel"', '= "wood"', 20, "beams.arm.material", "known are steel"),
     "unknown preset": ('kind = "CRBF"', 'kind = "CRBFS"', 18, "beams.arm.element.kind", "did you mean CRBF"),
     "no order": (", order = 4", "", 18, "beams.arm.element", "order is missing"),
-    "odd integration": ("order = 4", 'order = 4, integration = "ful"', 18, "beams.arm.element.integration", '"full"'),
-    "curve without length": ("end = [1, 0]", "end = [0, 0]", 16, "beams.arm.curve.start", "two different points"),
+    "half an order": ("order = 4", "order = 4.5", 18, "beams.arm.element.order", "must be a whole number, got 4.5"),
+    "odd integration": ("order = 4", 'order = 4, integration = "ful"', 18, "beams.arm.element.integration", "mean full"),
+    "no length": ("end = [1, 0]", "end = [0, 0]", 16, "beams.arm.curve.start", "two different points"),
     "curve of words": ("[1, 0]", '"right"', 16, "beams.arm.curve.end", "two numbers"),
+    "a kind of curve": ('{ kind = "line", start = [0, 0], end = [1, 0] }', '"line"', 16, "beams.arm.curve", "start ="),
     "point of no beam": ('"arm.start"', '"leg.start"', 24, "supports[1].point", "there is no beam 'leg'"),
     "no point": ('"arm.start"', '"arm"', 24, "supports[1].point", "arm.end"),
     "point beyond": ('"arm.start"', '"arm.at(1.5)"', 24, "supports[1].point", "between 0 and 1"),
-    "point at words": ('"arm.start"', '"arm.at(half)"', 24, "supports[1].point", "must be a number"),
+    "one of many points": ('point = "arm.start"', 'points = ["arm.start", "arm"]', 22, "supports[1].point", "arm.end"),
     "one table of many": ("[[supports]]", "[supports]", 22, "supports", "array of tables"),
-    "held twice": (
-        "[[loads]]",
-        '[[supports]]\nkind = "pin"\npoint = "arm.start"\n[[loads]]',
-        26,
-        "supports[2]",
-        "already prescribes",
+    "held twice": ("[[loads]]", '[[supports]]\nkind = "pin"\npoint = "arm.start"\n[[loads]]', 26, "supports[2]", "already"),
+    "joined apart": (
+        "[[loads]]", '[[joints]]\nkind = "hinge"\na = "arm.start"\nb = "arm.end"\n[[loads]]', 28, "joints[1].a", "1 m apart"
     ),
     "force of three": ("[0, 833.3333333333334]", "[0, 1, 2]", 29, "loads[1].vector", "two finite numbers"),
     "scale as number": ("vector = [0, 833", "scale = 1\nvector = [0, 833", 29, "loads[1].scale", "true or false"),
+    "no function": ("vector = [0, 833", 'amplitude = "ramp"\nvector = [0, 833', 29, "loads[1].amplitude", "[functions.NAME]"),
     "no size": ("[[loads]]", "[imperfection]\nmode = 1\n[[loads]]", 26, "imperfection", "size is missing"),
-    "imperfection of no mode": (
-        "[[loads]]",
-        "[imperfection]\nsize = 0.001\nmode = 0\n[[loads]]",
-        28,
-        "imperfection.mode",
-        "at least 1, got 0",
-    ),
-    "imperfection of words": (
-        "[[loads]]",
-        '[imperfection]\nsize = 0.001\nof = "bucking"\n[[loads]]',
-        28,
-        "imperfection.of",
-        "buckling",
-    ),
+    "no mode 0": ("[[loads]]", "[imperfection]\nsize = 1\nmode = 0\n[[loads]]", 28, "imperfection.mode", "at least 1"),
     "unknown quantity": ('"ux", "uy", "rotation"', '"ux", "uz"', 34, "outputs[1].quantities", "no 'uz'"),
     "reaction nowhere": ('"ux", "uy", "rotation"', '"fx"', 34, "outputs[1].quantities", "no support"),
     "odd states": ('["fx", "fy", "m"]', '["fx"]\nat = "first"', 40, "outputs[2].at", '"last", "all"'),
+    "a state beyond": ('["fx", "fy", "m"]', '["fx"]\nat = [2]', 40, "outputs[2].at", "from 0 to 1"),
     "unknown analysis": ("[[loads]]", '[analysis]\nkind = "dynamic"\n[[loads]]', 27, "analysis.kind", "dynamics"),
-    "step beyond": (
-        "[[loads]]",
-        '[analysis]\nkind = "dynamics"\nduration = 1\nstep = 2\n[[loads]]',
-        29,
-        "analysis.step",
-        "must not exceed",
+    "no table": ("title =", 'analysis = "static"\ntitle =', 3, "analysis", "must be a table"),
+    "odd tolerance": ("[[loads]]", "[analysis]\nnewton = { tolerance = -1 }\n[[loads]]", 27, "analysis.newton.tolerance", "zero"),
+    "outputs of modes": ("[[loads]]", f"{MODES}[[loads]]", 34, "outputs[1]", "go with static"),
+    "odd start": ("[[loads]]", f'{MOTION}start = "rest"\n[[loads]]', 30, "analysis.start", '"static"'),
+    "until of nothing": (
+        "[[loads]]", '[analysis]\nkind = "path"\nuntil = { point = "arm.end", quantity = "uz" }\n[[loads]]', 28,
+        "analysis.until.quantity", '"ux", "uy" or "rotation"',
     ),
-    "odd tolerance": (
-        "[[loads]]",
-        '[analysis]\nkind = "static"\nnewton = { tolerance = -1 }\n[[loads]]',
-        28,
-        "analysis.newton.tolerance",
-        "greater than zero",
-    ),
-    "material of a number": ('= "steel"', "= 3", 20, "beams.arm.material", "must be the name of a material"),
-    "kind of a number": ('kind = "rectangle"', "kind = 3", 11, "sections.square.kind", "must be a text"),
-    "curve of a list": ('{ kind = "line", start = [0, 0], end = [1, 0] }', "[0, 1]", 16, "beams.arm.curve", "table"),
-    "load on no beam": (
-        'kind = "force"\npoint = "arm.end"\nvector = [0, 833.3333333333334]',
-        'kind = "distributed"\nbeam = "leg"\nvector = [0, 1]',
-        28,
-        "loads[1].beam",
-        "there is no beam 'leg'",
-    ),
-    "no quantities": ('["ux", "uy", "rotation"]', "[]", 34, "outputs[1].quantities", "must be a list of some of"),
-    "quantities as text": ('["ux", "uy", "rotation"]', '"ux"', 34, "outputs[1].quantities", "must be a list of some"),
-    "output of a number": ('name = "tip"', "name = 3", 32, "outputs[1].name", "must be a text"),
-    "output of two things": ('name = "tip"', 'beam = "arm"', 32, "outputs[1].beam", "one of them, or none"),
-    "no states": ('["fx", "fy", "m"]', '["fx"]\nat = []', 40, "outputs[2].at", '"last", "all"'),
-    "states at a number": ('["fx", "fy", "m"]', '["fx"]\nat = 1.0', 40, "outputs[2].at", "a list of numbers"),
-    "outputs of modes": ("[[loads]]", '[analysis]\nkind = "modes"\n[[loads]]', 33, "outputs[1]", "go with static"),
-    "a mode beyond": (
-        "[[loads]]",
-        '[analysis]\nkind = "modes"\ncount = 2\nmode = 3\n[[loads]]',
-        29,
-        "analysis.mode",
-        "at most count, 2",
-    ),
-    "odd start": (
-        "[[loads]]",
-        '[analysis]\nkind = "dynamics"\nduration = 1\nstep = 0.1\nstart = "rest"\n[[loads]]',
-        30,
-        "analysis.start",
-        '"reference" or "static"',
-    ),
-    "until of no quantity": (
-        "[[loads]]",
-        '[analysis]\nkind = "path"\nuntil = { point = "arm.end", quantity = "uz", above = 1 }\n[[loads]]',
-        28,
-        "analysis.until.quantity",
-        "ux, uy or rotation",
-    ),
-    "until above and below": (
-        "[[loads]]",
-        '[analysis]\nkind = "path"\nuntil = { point = "arm.end", quantity = "uy", above = 1, below = 0 }\n[[loads]]',
-        28,
-        "analysis.until.below",
-        "and not both",
-    ),
-    "until neither": (
-        "[[loads]]",
-        '[analysis]\nkind = "path"\nuntil = { point = "arm.end", quantity = "uy" }\n[[loads]]',
-        28,
-        "analysis.until",
-        "either below or above",
-    ),
-    "no beams": ("[beams.arm]", "[materials.arm]", None, None, "at least one beam"),
+    "colour": ("[[loads]]", '[[files]]\nkind = "plot"\nfile = "a.svg"\ncolour = "momnet"\n[[loads]]', 29, "files[1].colour", "mean moment"),
+    "suffix": ("[[loads]]", '[[files]]\nkind = "film"\nfile = "a.avi"\n[[loads]]', 28, "files[1].file", "end in .gif or .mp4"),
+    "flag": ("[[loads]]", '[[files]]\nkind = "plot"\nfile = "a.svg"\nloads = 0\n[[loads]]', 29, "files[1].loads", "true or false"),
+    "dropped key": ("title =", 'code = "parts.py"\ntitle =', 3, "code", "unknown key"),
 }  # fmt: skip
 
 
@@ -220,45 +164,34 @@ def test_a_mistake_is_reported_with_file_line_and_key(case, tmp_path):
     assert str(error).startswith(str(file) + (f":{line}: " if line else ": ") + (f"{key}: " if key else ""))
 
 
-def test_a_file_that_is_none(tmp_path):
-    with pytest.raises(ModelFileError, match="no such file"):
-        read_model_file(tmp_path / "none.toml")
+def test_mistakes_that_the_analysis_finds_have_their_key_too(tmp_path):
+    (tmp_path / "a.toml").write_text(ARM + MOTION.replace("1e-3", "2"))
+    with pytest.raises(ModelFileError, match="must not exceed") as caught:
+        read_model_file(tmp_path / "a.toml").solve()
+    assert caught.value.key == "analysis.step"
+    (tmp_path / "a.toml").write_text(ARM + MODES + "mode = 4\n")
+    with pytest.raises(ModelFileError, match="between 1 and 3") as caught:
+        read_model_file(tmp_path / "a.toml").solve()
+    assert caught.value.key == "analysis.mode"
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (None, "no such file"),
+        (b'title = "\xfc"', "not a text in UTF-8; model files are TOML"),
+        (b"\x89HDF\r\n\xff", "a results file, which beamfem info, plot and export read"),
+        (b"", "at least one beam"),
+        (b"#" * 5_000_001, "more than 5 MB"),
+    ],
+)
+def test_other_files_are_named(content, words, tmp_path):
+    if content is not None:
+        (tmp_path / "a.toml").write_bytes(content)
+    with pytest.raises(ModelFileError, match=words):
+        read_model_file(tmp_path / "a.toml")
     with pytest.raises(ModelFileError, match="folder"):
         read_model_file(tmp_path)
-    (tmp_path / "latin.toml").write_bytes(b'title = "\xfc"')
-    with pytest.raises(ModelFileError, match="UTF-8"):
-        read_model_file(tmp_path / "latin.toml")
-    (tmp_path / "empty.toml").write_text("")
-    with pytest.raises(ModelFileError, match="at least one beam"):
-        read_model_file(tmp_path / "empty.toml")
-
-
-def test_joints_that_do_not_touch_have_a_line_and_tables_move_supports(tmp_path):
-    file = tmp_path / "model.toml"
-    joint = '[[joints]]\nkind = "hinge"\na = "arm.start"\nb = "arm.end"\n'
-    file.write_text(BASE + joint)
-    with pytest.raises(ModelFileError, match="1 m apart") as caught:
-        read_model_file(file)
-    assert caught.value.line == BASE.count("\n") + 3  # of the key that is named first
-    held = '[[supports]]\nkind = "prescribed"\npoint = "arm.end"\nuy = { kind = "table", points = [[0, 0], [1, 1]] }\n'
-    file.write_text(BASE + held)  # in statics it is a path of the support
-    assert read_model_file(file).model.supports[1].uy(0.25) == 0.25
-    motion = '[analysis]\nkind = "dynamics"\nduration = 1.0\nstep = 0.1\n'
-    file.write_text(BASE + motion + held)
-    assert read_model_file(file).model.supports[1].uy.kinks == (0.0, 1.0)
-
-
-def test_every_kind_and_key_is_documented():
-    kinds = {**parts.SECTIONS, **elements.ELEMENTS, **axes.CURVES, **functions.FUNCTIONS}
-    kinds |= {**actions.SUPPORTS, **actions.JOINTS, **actions.LOADS, **ANALYSES, **files.FILES}
-    import inspect
-
-    for kind, make in kinds.items():
-        (row,) = [line for line in DOCS.splitlines() if re.match(rf"\|[^|]*`{kind}`", line)]
-        for key in inspect.signature(make).parameters:
-            assert f"`{key}`" in row, (kind, key)
-    for kind in (*elements.FORCES, *elements.FIELDS, *elements.COORDINATES, *axes.MESHES):
-        assert f'"{kind}"' in DOCS
 
 
 def run(text, tmp_path, *options):
@@ -270,15 +203,7 @@ def run(text, tmp_path, *options):
 
 
 def test_documented_files_are_right(tmp_path):
-    (tmp_path / "parts.py").write_text(re.search(r"```python\n(.*?)```", DOCS, re.S)[1])
-    (tmp_path / "portal.msh").write_bytes((ROOT / "meshes" / "portal.msh").read_bytes())
-    weight, portal, crooked, string, column, driven, rolled, damped, swept = (run(block, tmp_path) for block in BLOCKS)
-    assert portal["outputs"][1]["rows"][0]["fy"] == pytest.approx(
-        500.0 * 6.0 / 2, rel=1e-9
-    )  # half of the load on the beam
-    assert damped["outputs"][1]["rows"][0]["fy"] == pytest.approx(
-        [-5.0 * damped["outputs"][0]["rows"][0]["vy"]], rel=1e-12
-    )
+    weight, crooked, string, column, driven = (run(block, tmp_path) for block in BLOCKS)
     critical = np.pi**2 * 2e11 * 0.02 * 0.01**3 / 12.0 / 4.0
     bent = 1e-3 / (1.0 - 600.0 / critical) - 1e-3
     assert abs(crooked["outputs"][0]["rows"][0]["ux"]) == pytest.approx(bent, rel=2e-4)
@@ -298,13 +223,8 @@ def test_documented_files_are_right(tmp_path):
     bending = 2e11 * 0.01**4 / 12
     np.testing.assert_allclose(column["load_factors"], bending * np.pi**2 / 4 * np.array([1, 9]), rtol=1e-3)
     assert [row["time"] for row in driven["outputs"][0]["rows"]] == [0.1, 0.2]
+    assert driven["outputs"][0]["rows"][0]["uy"] == pytest.approx(0.2, abs=0.02)
     assert driven["states"] == 21
-    assert [Path(path).stat().st_size > 1000 for path in rolled["written"]] == [True]
-    by_force = np.array([point["tip uy"] for point in swept["points"]]).reshape(4, 2)
-    assert np.all(np.diff(by_force, axis=0) > 0.0)  # stiffer and stiffer
-    ratio = by_force[:, 1] / by_force[:, 0]  # of a load ten times as large, nearer to ten the less the beam bends
-    assert np.all(np.diff(ratio) > 0.0)
-    assert np.all(ratio < 10.0)
 
 
 def test_examples_are_right(tmp_path):
@@ -321,3 +241,131 @@ def test_examples_are_right(tmp_path):
         pytest.approx((4.8973, 6.6470), abs=5e-4),
     ]
     assert flying["outputs"][2]["rows"][0]["total"] == pytest.approx(204.38, abs=0.05)
+
+
+def test_functions_of_time_and_of_the_arc_length(tmp_path):
+    ramp = '{ kind = "smooth-ramp", duration = 2, size = 3, start = 1 }'
+    sine = '{ kind = "sine", frequency = 0.5, size = 2, mean = 1 }'
+    held = f'[[supports]]\nkind = "prescribed"\npoint = "arm.end"\nux = {ramp}\nuy = {sine}\n'
+    (tmp_path / "a.toml").write_text(ARM + held)
+    support = read_model_file(tmp_path / "a.toml").model.supports[1]
+    assert [support.ux(t) for t in (0.0, 1.0, 2.0, 3.0, 9.0)] == [0.0, 0.0, 1.5, 3.0, 3.0]
+    h = 1e-4  # no jump of rate and acceleration at either end
+    for t in (1.0, 3.0):
+        assert (support.ux(t + h) - 2 * support.ux(t) + support.ux(t - h)) / h**2 == pytest.approx(0.0, abs=1e-2)
+    assert support.uy(0.5) == pytest.approx(3.0)
+
+
+def test_a_tapered_cantilever_bends_as_the_integrals_of_bending_and_shear(tmp_path):
+    height = '{ kind = "table", points = [[0, 0.02], [1, 0.01]] }'
+    text = ARM.replace("height = 0.01", f"height = {height}").replace("[0, 100]", "[0, -1e-3]")
+    tip = run(text + '[[outputs]]\npoint = "arm.end"\nquantities = ["uy"]\n', tmp_path)["outputs"][0]["rows"][0]
+    x = np.linspace(0.0, 1.0, 20001)
+    heights = 0.02 - 0.01 * x
+    shear, bending = 5 / 6 * 2e11 / 2.6 * 0.01 * heights, 2e11 * 0.01 * heights**3 / 12
+    assert tip["uy"] == pytest.approx(-1e-3 * np.trapezoid((1 - x) ** 2 / bending + 1 / shear, x), rel=1e-6)
+    assert read_model_file(tmp_path / "model.toml").model.beams[0].section.kinks == (0.0, 1.0)
+
+
+def test_parts_by_name_and_in_place_are_those_of_python(tmp_path):
+    text = """
+    [materials.steel]
+    youngs_modulus = 2e11
+    poisson_ratio = 0.3
+    density = 7800
+    [beams.hook]
+    elements = { kind = "graded", elements = 4, ratio = 2 }
+    element = { kind = "ANCFCRBF", forces = { kind = "continuum", plane_stress = true }, integration = "reduced" }
+    section.kind = "layered"
+    section.width = 0.1
+    section.layers = [{ material = "steel", thickness = 0.01 }, { material = "steel", thickness = 0.02 }]
+    curve.kind = "chain"
+    curve.curves = [
+      { kind = "line", start = [0, 0], end = [1, 0] },
+      { kind = "arc", center = [1, 0.5], radius = 0.5, start_angle = -1.5707963267948966, end_angle = 0 },
+    ]
+    [[supports]]
+    kind = "clamp"
+    points = ["hook.start", "hook.at(0.5)"]
+    [analysis]
+    kind = "static"
+    newton = { tolerance = 1e-9 }
+    """
+    (tmp_path / "a.toml").write_text(text)
+    job = read_model_file(tmp_path / "a.toml")
+    (beam,) = job.model.beams
+    assert beam.element.forces == bf.ContinuumMechanics(plane_stress=True)
+    assert beam.element.integration == "reduced"
+    assert beam.curve.length == pytest.approx(1.0 + np.pi / 4)
+    assert beam.section.height == pytest.approx(0.03)
+    assert np.diff(beam.elements).max() / np.diff(beam.elements).min() == pytest.approx(2.0)
+    assert [support.point.fraction for support in job.model.supports] == [0.0, 0.5]
+    assert job.analysis.keys == {"newton": bf.Newton(tolerance=1e-9)}
+
+
+def test_quantities_are_those_of_python(tmp_path):
+    at_point = ["x", "vy", "shear_angle", "strain_xx", "stress_xy", "rotation"]
+    of_beam, of_model = ["moment", "shear_stress", "von_mises"], ["kinetic", "py", "angular_momentum"]
+    outputs = [("arm.at(0.3)", at_point), (None, of_beam), ("", of_model)]
+    text = ARM + MOTION
+    for place, names in outputs:
+        where = f'point = "{place}"\n' if place else 'beam = "arm"\n' if place is None else ""
+        text += f'[[outputs]]\n{where}quantities = {json.dumps(names)}\nat = "all"\n'
+    (tmp_path / "a.toml").write_text(text)
+    job = read_model_file(tmp_path / "a.toml")
+    solution = job.solve().solution
+    beam = solution.model.beams[0]
+    point, fields = beam.at(0.3), solution.fields(beam.at(0.3))
+    expected = [
+        [solution.position(point)[:, 0], solution.velocity(point)[:, 1], fields.shear_angle,
+         fields.green_strain.xx, fields.stress.xy, solution.rotation(point)],
+        [solution.section_forces(beam).moment, solution.stresses(beam).shear, solution.stresses(beam).von_mises],
+        [solution.energy().kinetic, solution.linear_momentum()[:, 1], solution.angular_momentum()],
+    ]  # fmt: skip
+    for output, columns in zip(job.outputs, expected, strict=True):
+        rows = output.rows(solution)
+        for name, column in zip(output.quantities, columns, strict=True):
+            np.testing.assert_array_equal([row[name] for row in rows], column)
+
+
+FILES = {
+    "results": 'file = "a.h5"',
+    "vtk": 'file = "a.vtkhdf"\ngeometry = "reference"\nfields = ["displacement"]\nsingle = true',
+    "plot": 'file = "a.svg"\ncolour = "moment"\nshapes = 3\nundeformed = false\nsupports = false\nloads = false',
+    "film": 'file = "a.gif"\nfps = 5\nseconds = 1\ncolour = "speed"\ndpi = 50',
+    "page": 'file = "a.html"\ntitle = "How it moves"\nframes = 4',
+    "body": 'file = "a.png"\nrow = 3\ncolour = "moment"\nsize = [160, 120]',
+    "history": 'file = "a.svg"\npoint = ["arm.end", "arm.at(0.5)"]\nquantity = "velocity"',
+    "load-displacement": 'file = "a.svg"\npoint = "arm.end"\nquantity = "ux"',
+    "mode-shapes": 'file = "a.svg"\nmost = 2',
+    "model": 'file = "a.pdf"',
+}
+
+
+@pytest.mark.filterwarnings("ignore:VTK cannot render here:UserWarning")  # then it is drawn flat
+@pytest.mark.parametrize("kind", FILES)
+def test_a_file_is_written_with_its_options(kind, tmp_path):
+    analysis = {"load-displacement": "", "mode-shapes": MODES}.get(kind, MOTION)
+    text = f'{ARM}{analysis}[[files]]\nkind = "{kind}"\n{FILES[kind]}\n'
+    (written,) = run(text, tmp_path)["written"]
+    assert Path(written).stat().st_size > 1000
+    assert Path(written).parent == tmp_path
+
+
+@pytest.mark.parametrize("name", ["/tmp/other/a.html", "../a.html", "out/../../a.html"])
+def test_a_model_file_writes_only_below_its_folder_unless_that_is_allowed(tmp_path, name):
+    """A model file from somebody else could replace any .h5, .png or .html of the one who runs it."""
+    file = tmp_path / "below" / "a.toml"
+    file.parent.mkdir()
+    file.write_text(f'{ARM}{MOTION}[[files]]\nkind = "page"\nfile = "{name}"\n')
+    with pytest.raises(ModelFileError, match="is not below the folder of the model file") as caught:
+        read_model_file(file)
+    assert caught.value.key == "files[1].file"
+    assert read_model_file(file, files_anywhere=True).files[0].file == file.parent / name
+
+
+def test_the_same_results_as_python_saves(tmp_path):
+    run(ARM, tmp_path, "--out", str(tmp_path / "a.h5"))
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(3), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0, 100))])
+    np.testing.assert_array_equal(bf.load(tmp_path / "a.h5").p, bf.solve_static(model).p)

@@ -4,16 +4,14 @@ from typing import Annotated
 
 import typer
 
-from beamfem.cli import files, study
+from beamfem.cli import results_files
 from beamfem.cli.doctor import doctor
-from beamfem.cli.examples import examples
-from beamfem.cli.flags import Command, Group
-from beamfem.cli.new import new
+from beamfem.cli.examples import examples, new
 from beamfem.cli.run import run
+from beamfem.cli.studies import study
 
 app = typer.Typer(
     name="beamfem",
-    cls=Group,
     help="Planar beams under large deflections: run model files and studies, inspect results.",
     epilog="Exit codes: 0 success, 1 a solve failed, 2 the input is wrong.",
     no_args_is_help=True,
@@ -40,14 +38,16 @@ def _root(
     pass
 
 
-app.command(cls=Command)(new)
-app.command(cls=Command)(run)
-app.command(cls=Command, context_settings={"allow_interspersed_args": False, "allow_extra_args": True})(study.study)
-app.command(cls=Command)(examples)
-app.command(cls=Command)(files.info)
-app.command(cls=Command)(files.export)
-app.command(cls=Command)(files.plot)
-app.command(cls=Command)(doctor)
+app.command()(new)
+app.command()(run)
+app.command(
+    context_settings={"allow_interspersed_args": False, "allow_extra_args": True, "ignore_unknown_options": True}
+)(study)
+app.command()(examples)
+app.command()(results_files.info)
+app.command()(results_files.export)
+app.command()(results_files.plot)
+app.command()(doctor)
 
 
 def main() -> None:

@@ -1,14 +1,16 @@
 """`beamfem doctor`: check of the installation."""
 
+import platform
 import re
 import subprocess
 import sys
 import time
+from importlib.metadata import PackageNotFoundError, requires, version
 from typing import Any
 
 import typer
 
-from beamfem.cli.report import FAILED, AsJson, print_json, reported
+from beamfem.cli.report import FAILED, AsJson, print_json, reported, writable
 
 _RENDER = """
 import pyvista
@@ -17,151 +19,87 @@ plotter.add_mesh(pyvista.Sphere())
 picture = plotter.screenshot(None, return_img=True)
 assert picture.min() < picture.max()
 """
-_NOT_SHOWN = ("all", "test", "bench", "docs")
+_TIP = 0.71385896416  # tip deflection over the length of the geometrically exact beam, P L^2 / (E I) = 5, L / h = 100
+_NO_EXTRAS = ("all", "test", "bench", "docs")
 
 
 def doctor(as_json: AsJson = False) -> None:
     """Check the installation: versions, compiled kernels, a first solve, pictures of bodies and missing extras."""
     with reported(as_json):
-        start = time.perf_counter()
-        from beamfem.cli import targets
         from beamfem.kernels.cache import cache_folder, kept
 
-        cache = cache_folder()
+        folder = cache_folder()
+        needed = [re.match(r"([\w.-]+)(?:.*extra\s*==\s*['\"](\w+))?", line) for line in requires("beamfem") or ()]
+        packages = [(match[1], match[2]) for match in needed if match]
+        extras = sorted({extra for _, extra in packages if extra and extra not in _NO_EXTRAS})
         report: dict[str, Any] = {
-            "versions": versions(),
-            "cache": {
-                "folder": cache,
-                "writable": cache is not None and targets.writable(cache),
-                "compiled_kernels": kept(),
-                "import_seconds": time.perf_counter() - start,
+            "versions": {
+                "python": platform.python_version(),
+                "system": platform.platform(),
+                **{name: _version(name) for name in ("beamfem", *(name for name, extra in packages if not extra))},
             },
-            "first_solve": first_solve(),
-            "rendering": rendering(),
-            "extras": extras(),
+            "cache": {
+                "folder": folder,
+                "writable": folder is not None and writable(folder),
+                "compiled_kernels": kept(),
+            },
+            "first_solve": _first_solve(),
+            "rendering": _rendering(),
+            "missing": {
+                extra: [name for name, of in packages if of == extra and _version(name) is None] for extra in extras
+            },
         }
         print_json(report) if as_json else _print(report)
         if not report["first_solve"]["right"]:
             raise typer.Exit(FAILED)
 
 
-def versions() -> dict[str, str]:
-    """Return the versions of Python, of beamfem and of the packages that it needs."""
-    import platform
-    from importlib.metadata import version
+def _first_solve() -> dict[str, Any]:
+    """Solve a cantilever twice: seconds of each solve, and whether the result is right."""
+    import beamfem as bf
 
-    names = [name for name, extra in _requirements() if not extra]
-    return {
-        "python": platform.python_version(),
-        "system": platform.platform(),
-        "beamfem": version("beamfem"),
-        **{name: version(name) for name in names if _installed(name)},
-    }
-
-
-def first_solve() -> dict[str, Any]:
-    """Solve a cantilever twice: seconds of each solve, kernels compiled for it, and whether the result is right.
-
-    P L^2 / (E I) = 5 of the geometrically exact beam with L / h = 100: tip deflection 0.71385896416 L.
-    """
-    from beamfem.assembly.compiled import compiled_here
-    from beamfem.curves import Line
-    from beamfem.element.presets import CRBF
-    from beamfem.material import Material
-    from beamfem.model.beam import Beam
-    from beamfem.model.loads import PointForce
-    from beamfem.model.model import Model
-    from beamfem.model.supports import Clamp
-    from beamfem.section import Rectangle
-    from beamfem.solve.statics.statics import solve_static
-
-    section, material = Rectangle(0.01, 0.01), Material(2e11, 0.3, 7800.0)
-    beam = Beam(Line((0, 0), (1, 0)), 4, CRBF(4), section, material)
+    section, material = bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(4), section, material)
     force = 5.0 * material.youngs_modulus * section.second_moment
-    model = Model([beam], [Clamp(beam.start)], [PointForce(beam.end, (0.0, force))])
-    before = len(compiled_here())
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, force))])
     seconds = []
     for _ in range(2):
         start = time.perf_counter()
-        deflection = float(solve_static(model).displacement(beam.end)[-1, 1])
+        deflection = float(bf.solve_static(model).displacement(beam.end)[-1, 1])
         seconds.append(time.perf_counter() - start)
-    return {
-        "seconds": seconds[0],
-        "again_seconds": seconds[1],
-        "kernels_compiled_now": len(compiled_here()) - before,
-        "deflection": deflection,
-        "right": abs(deflection - 0.71385896416) < 1e-6,
-    }
+    return {"seconds": seconds, "deflection": deflection, "right": abs(deflection - _TIP) < 1e-6}
 
 
-def rendering() -> dict[str, Any]:
-    """Return whether VTK can draw, tested in a separate process because a missing library may crash it."""
+def _rendering() -> str:
+    """Return why VTK cannot draw, empty if it can; tested in a process, because a missing library may crash it."""
+    command = [sys.executable, "-c", _RENDER]
     try:
-        process = subprocess.run(
-            [sys.executable, "-c", _RENDER], capture_output=True, text=True, timeout=120, check=False
-        )
+        process = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     except subprocess.TimeoutExpired:
-        return {"possible": False, "reason": "no picture within 120 s"}
-    if process.returncode == 0:
-        return {"possible": True, "reason": ""}
+        return "no picture within 120 s"
     if process.returncode < 0:
-        reason = f"VTK was killed by signal {-process.returncode}; on Debian: apt-get install libegl1 libgl1-mesa-dri"
-    else:
-        reason = (process.stderr.strip().splitlines() or ["no reason given"])[-1]
-    return {"possible": False, "reason": reason}
+        return f"VTK was killed by signal {-process.returncode}; on Debian: apt-get install libegl1 libgl1-mesa-dri"
+    return (process.stderr.strip().splitlines() or ["no reason given"])[-1] if process.returncode else ""
 
 
-def extras() -> list[dict[str, Any]]:
-    """Return for each optional extra its missing packages and how to install them."""
-    packages: dict[str, list[str]] = {}
-    for name, extra in _requirements():
-        if extra and extra not in _NOT_SHOWN:
-            packages.setdefault(extra, []).append(name)
-    return [
-        {
-            "extra": extra,
-            "packages": names,
-            "missing": [name for name in names if not _installed(name)],
-            "install": f'pip install "beamfem[{extra}]"',
-        }
-        for extra, names in sorted(packages.items())
-    ]
-
-
-def _requirements() -> list[tuple[str, str]]:
-    """Return the requirements of beamfem, each with the extra it belongs to, or ""."""
-    from importlib.metadata import requires
-
-    requirements = []
-    for line in requires("beamfem") or ():
-        name = re.match(r"[A-Za-z0-9._-]+", line)
-        extra = re.search(r"extra\s*==\s*['\"]([^'\"]+)['\"]", line)
-        requirements.append((name[0] if name else line, extra[1] if extra else ""))
-    return requirements
-
-
-def _installed(name: str) -> bool:
-    from importlib.metadata import PackageNotFoundError, version
-
+def _version(name: str) -> str | None:
     try:
-        version(name)
+        return version(name)
     except PackageNotFoundError:
-        return False
-    return True
+        return None
 
 
 def _print(found: dict[str, Any]) -> None:
-    cache, solve, drawing = found["cache"], found["first_solve"], found["rendering"]
-    print("versions")
-    for name, version in found["versions"].items():
-        print(f"  {name:14s} {version}")
-    where = cache["folder"] or "nowhere: set BEAMFEM_CACHE_DIR to a folder that can be written to"
-    print(f"\nkernels kept in {where}{'' if cache['writable'] else ', which cannot be written to'}")
-    print(f"  {cache['compiled_kernels']} were compiled before, {solve['kernels_compiled_now']} just now")
-    verdict = "right" if solve["right"] else f"WRONG: tip deflection {solve['deflection']:.8f} instead of 0.71385896"
-    print(f"\nfirst solve {solve['seconds']:.2f} s, again {1e3 * solve['again_seconds']:.1f} ms: {verdict}")
-    print(f"\npictures of bodies: {'work' if drawing['possible'] else 'do not work, ' + drawing['reason']}")
-    print("\nextras")
-    for item in found["extras"]:
-        state = f"missing {', '.join(item['missing'])}: {item['install']}" if item["missing"] else "installed"
-        print(f"  {item['extra']:14s} {state}")
+    cache, solve = found["cache"], found["first_solve"]
+    print("versions\n" + "\n".join(f"  {name:14s} {version}" for name, version in found["versions"].items()))
+    folder = cache["folder"] or "nowhere: set BEAMFEM_CACHE_DIR to a folder that can be written to"
+    print(
+        f"\n{cache['compiled_kernels']} kernels in {folder}{'' if cache['writable'] else ', which cannot be written to'}"
+    )
+    verdict = "right" if solve["right"] else f"WRONG: tip deflection {solve['deflection']:.8f} instead of {_TIP:.8f}"
+    first, again = solve["seconds"]
+    print(f"first solve {first:.2f} s, again {1e3 * again:.1f} ms: {verdict}")
+    print(f"pictures of bodies: {found['rendering'] or 'work'}\n\nextras")
+    for extra, missing in found["missing"].items():
+        need = f'missing {", ".join(missing)}: pip install "beamfem[{extra}]"'
+        print(f"  {extra:14s} {need if missing else 'installed'}")

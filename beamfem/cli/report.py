@@ -1,24 +1,31 @@
 """Output of commands: results on stdout as text or JSON, errors without a traceback, an exit code."""
 
 import json
+import math
 import sys
+import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from typing import Annotated, Any
+from contextlib import contextmanager, nullcontext
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
 
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print the result, or an error, as JSON on stdout.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
+_PACKAGES = {".h5": "h5py", ".hdf5": "h5py", ".pvd": "vtkmodules", ".vtkhdf": "vtkmodules", ".mp4": "imageio_ffmpeg"}
 
 
 @contextmanager
 def reported(as_json: bool, quiet: bool = False) -> Iterator[None]:
     """Turn the errors of the library into a message and an exit code; quiet: show no progress either."""
-    from contextlib import nullcontext
-
     from beamfem.errors import BeamfemError, ConvergenceError
     from beamfem.progress import no_progress
 
@@ -39,43 +46,109 @@ def _fail(error: BaseException, code: int, as_json: bool) -> None:
     notes = list(getattr(error, "__notes__", ()))
     message = "interrupted" if isinstance(error, KeyboardInterrupt) else str(error)
     if as_json:
-        details = {name: getattr(error, name) for name in ("message", "file", "line", "key") if hasattr(error, name)}
-        fields = {"type": type(error).__name__, "message": message} | details
-        print_json({"error": fields | ({"notes": notes} if notes else {}), "exit_code": code})
+        names = ("message", "remedy", "file", "line", "key")
+        details = {name: getattr(error, name) for name in names if getattr(error, name, None)}
+        content = {"type": type(error).__name__, "message": message} | details
+        print_json({"error": content | ({"notes": notes} if notes else {}), "exit_code": code})
     else:
         print("\n".join([f"error: {message}", *notes]), file=sys.stderr)
     raise typer.Exit(code) from None
 
 
+def wrote(paths: Sequence[Path], as_json: bool, quiet: bool) -> None:
+    """Print the files that a command has written."""
+    if as_json:
+        print_json({"written": paths})
+    elif not quiet:
+        print("\n".join(f"wrote {path}" for path in paths))
+
+
 def print_json(value: Any) -> None:
     """Print a value as one JSON document; numbers that are not finite become null."""
-    from beamfem.cli.plain import plain
-
     print(json.dumps(plain(value), indent=2, allow_nan=False))
 
 
-def print_table(title: str, rows: Sequence[Mapping[str, Any]], units: Mapping[str, str] | None = None) -> None:
-    """Print rows with the same keys as a table; lists in them become several lines, side by side.
+def plain(value: Any) -> Any:
+    """Return a value as types of JSON; a solution as its summary, numbers that are not finite as None."""
+    import numpy as np
 
-    units: of columns, by name.
-    """
-    lines = [line for row in rows for line in _lines(row)]
-    if not lines:
-        return
+    from beamfem.results.solution import Solution
+
+    if isinstance(value, Solution):
+        return summary(value)
+    if isinstance(value, Enum):
+        return value.name.lower().replace("_", " ")
+    if isinstance(value, Mapping):
+        return {
+            ", ".join(map(str, key)) if isinstance(key, tuple) else str(key): plain(item) for key, item in value.items()
+        }
+    if is_dataclass(value) and not isinstance(value, type):
+        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
+    if isinstance(value, np.generic | np.ndarray):
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, complex):
+        return [plain(value.real), plain(value.imag)]
+    return value if value is None or isinstance(value, bool | int) else str(value)
+
+
+def summary(solution: "Solution") -> dict[str, Any]:
+    """Return the number of states of a solution, its first and last time or load factor, and its statistics."""
+    return {
+        "kind": "static" if solution.static else "motion",
+        "coordinates": solution.model.size,
+        "states": len(solution),
+        "load_factor" if solution.static else "time": [float(solution.at[0]), float(solution.at[-1])],
+        "statistics": plain(solution.statistics),
+    }
+
+
+def print_table(title: str, rows: Sequence[Mapping[str, Any]], units: Mapping[str, str] | None = None) -> None:
+    """Print rows with the same keys as a table; lists in them become several lines. units: of columns, by name."""
     from beamfem.tabulate import as_text
 
-    print(f"\n{title}" if title else "")
-    heads = [f"{name} [{units[name]}]" if units and name in units else name for name in lines[0]]
-    print(as_text(heads, [[_text(value) for value in line.values()] for line in lines]))
+    lines = [
+        [value[number] if isinstance(value, list) else value for value in row.values()]
+        for row in rows
+        for number in range(max(len(value) if isinstance(value, list) else 1 for value in row.values()))
+    ]
+    if lines:
+        heads = [f"{name} [{units[name]}]" if units and name in units else name for name in rows[0]]
+        print(f"\n{title}" if title else "")
+        print(as_text(heads, [[_cell(value) for value in line] for line in lines]))
 
 
-def _lines(row: Mapping[str, Any]) -> list[dict[str, Any]]:
-    lists = {name: value for name, value in row.items() if isinstance(value, list)}
-    if not lists:
-        return [dict(row)]
-    longest = max(len(value) for value in lists.values())
-    return [{name: value[i] if name in lists else value for name, value in row.items()} for i in range(longest)]
-
-
-def _text(value: Any) -> str:
+def _cell(value: Any) -> str:
     return f"{value:.8g}" if isinstance(value, float) else str(value)
+
+
+def require_target(path: Path | None, suffixes: Sequence[str]) -> None:
+    """Raise InputError for a file that cannot be written: wrong suffix, a folder, a missing package."""
+    from beamfem.errors import InputError
+    from beamfem.extras import require_package
+
+    if path is None:
+        return
+    if (suffix := path.suffix.lower()) not in suffixes:
+        right = f"{path.with_suffix(suffixes[0])} would be right" if path.name else ""
+        raise InputError(f"{path} must end in {' or '.join(', '.join(suffixes).rsplit(', ', 1))}; {right}")
+    if path.is_dir():
+        raise InputError(f"{path} is a folder; give the name of a file")
+    if not writable(path.parent):
+        raise InputError(f"{path} cannot be written: no files can be created in {path.parent}")
+    if suffix != ".html":
+        require_package(_PACKAGES.get(suffix, "matplotlib"), f"writing {path}")
+
+
+def writable(folder: Path) -> bool:
+    """Return whether a file can be created in a folder, or in its nearest existing parent."""
+    while not folder.exists():
+        folder = folder.parent
+    try:
+        with tempfile.NamedTemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False

@@ -1,0 +1,185 @@
+"""Model files: a model, an analysis and what to print, in TOML."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from beamfem.assembly.system import System
+from beamfem.cli.analyses import ANALYSES, Analysis, Found, Imperfection
+from beamfem.cli.kinds import ACTING, NAMED, TYPES, BeamTable, in_keys
+from beamfem.cli.outputs import FILES, Output, OutputFile
+from beamfem.cli.schema import KeyFault, Kinds, Names, build, named_first, part, require_table, shown
+from beamfem.cli.toml_source import ModelFileError, Source, read_source
+from beamfem.errors import FileError, InputError
+from beamfem.model.beam import Beam
+from beamfem.model.model import Model
+from beamfem.validation import nearest
+
+_TEXTS, _TABLES = ("title", "units"), ("beams", "imperfection", "analysis", "outputs", "files")
+
+
+@dataclass(frozen=True)
+class Job:
+    """Contents of a model file: the model, the analysis, the outputs to print and the files to write."""
+
+    source: Source
+    names: Names
+    title: str
+    model: Model
+    analysis: Analysis
+    outputs: Sequence[Output]
+    files: Sequence[OutputFile]
+    imperfection: Imperfection | None = None
+
+    def imperfect(self) -> "Job":
+        """Return the job of the model with the imperfection, if there is one. Raises ModelFileError, ConvergenceError.
+
+        Its mode has to be solved for, so this comes after all checks of the file.
+        """
+        if self.imperfection is None:
+            return self
+        with _within(self.source, "imperfection"):
+            model = self.imperfection.of_model(self.model)
+        self.names.move(self.model, model)
+        return _job(self.source, self.names, model, None)
+
+    def solve(self) -> Found:
+        """Run the analysis and return what it finds. Raises ModelFileError, ConvergenceError."""
+        with _within(self.source, "analysis"):
+            return self.analysis.run(self.model, [at for output in self.outputs for at in output.asked])
+
+
+def read_model_file(path: str | PathLike[str], files_anywhere: bool = False) -> Job:
+    """Return the contents of a model file (TOML). Raises ModelFileError with file, line and key.
+
+    files_anywhere: whether the file may name files to write that are not below its folder.
+    """
+    source = read_source(Path(path))
+    known = [*_TEXTS, *NAMED, *_TABLES, *(name for name, kinds in ACTING.items() if kinds)]
+    for key in source.values:
+        if key not in known:
+            raise source.error(f"unknown key; {nearest(key, known)}", key)
+    names = Names(source.file.parent, files_anywhere, TYPES)
+    for section, kinds in NAMED.items():
+        names.parts[section] = {}
+        for name, table in _named_tables(source, section).items():
+            with _within(source, section, name):
+                read = build if callable(kinds) else part
+                names.parts[section][name] = read(kinds, table, names)
+    for name, table in _named_tables(source, "beams").items():
+        with _within(source, "beams", name):
+            names.beams[name] = build(BeamTable, table, names).beam(name)
+    if not names.beams:
+        raise source.error("a model needs at least one beam, a table headed [beams.NAME]")
+    acting = {
+        section: _tables(source, section, lambda table, kinds=kinds: _each_place(kinds, table, names))
+        for section, kinds in ACTING.items()
+    }
+    model = _model(source, list(names.beams.values()), acting)
+    if "units" in source.values:
+        with _within(source, "units"):
+            model = replace(model, units=_text(source, "units"))
+    imperfection = None
+    if "imperfection" in source.values:
+        with _within(source, "imperfection"):
+            imperfection = build(Imperfection, source.values["imperfection"], names)
+    return _job(source, names, model, imperfection)
+
+
+def _job(source: Source, names: Names, model: Model, imperfection: Imperfection | None) -> Job:
+    with _within(source, "analysis"):
+        analysis = part(ANALYSES, source.values.get("analysis", {}), names, default="static")
+    outputs = _tables(source, "outputs", lambda table: build(Output, table, names))
+    files = _tables(source, "files", lambda table: part(FILES, table, names))
+    for section, items in (("outputs", outputs), ("files", files)):
+        for number, item in enumerate(items):
+            with _within(source, section, number):
+                item.require(model, analysis)
+    for number, file in enumerate(files):
+        if file.file in [other.file for other in files[:number]]:
+            raise source.error(f"{file.file} is written twice", "files", number, "file")
+    title = _text(source, "title", source.file.stem)
+    return Job(source, names, title, model, analysis, outputs, files, imperfection)
+
+
+def _each_place(kinds: Kinds, table: Any, names: Names) -> list[Any]:
+    """Return the part of a table, or one for each of its `points` or `beams`. Raises KeyFault."""
+    require_table(table)
+    for plural in ("points", "beams"):
+        if isinstance(places := table.get(plural), list):
+            rest = {key: value for key, value in table.items() if key != plural}
+            tables = [{**rest, plural.removesuffix("s"): place} for place in places]
+            return [part(kinds, each, names) for each in tables]
+    return [part(kinds, table, names)]
+
+
+def _model(source: Source, beams: list[Beam], acting: dict[str, list[list[Any]]]) -> Model:
+    """Return the model, or raise the error of the first part that it refuses."""
+    items = {section: [item for found in parts for item in found] for section, parts in acting.items()}
+    try:
+        model = Model(beams, items["supports"], items["loads"], items["joints"], items["connectors"])
+        _require_compatible(model)
+    except InputError:
+        for section, parts in acting.items():
+            before: list[Any] = []
+            for number, found in enumerate(parts):
+                with _within(source, section, number):
+                    before += found
+                    alone = before if section == "supports" else found
+                    _require_compatible(Model(beams, **{section: alone}))
+        raise
+    return model
+
+
+def _require_compatible(model: Model) -> None:
+    """Raise InputError for a support that constrains what another one constrains already."""
+    system = System(Model(model.beams, model.supports, joints=model.joints), static=True)
+    _ = system.prescribed, system.inclined
+
+
+@contextmanager
+def _within(source: Source, *path: str | int) -> Iterator[None]:
+    """Raise what is wrong with the value at a path as a ModelFileError with its place."""
+    try:
+        yield
+    except ModelFileError:
+        raise
+    except (KeyFault, InputError, FileError) as error:
+        fault = error
+        if not isinstance(error, KeyFault):
+            value: Any = source.values
+            for key in path:
+                value = value[key] if isinstance(value, list) or key in value else {}
+            fault = KeyFault.of(error, *(named_first(str(error), value) if isinstance(value, dict) else ()))
+        message = f"{fault.message}; {fault.remedy}" if fault.remedy else fault.message
+        raise source.error(in_keys(message), *path, *fault.path) from error
+
+
+def _tables(source: Source, section: str, read: Callable[[Any], Any]) -> list[Any]:
+    """Return what is read from each of the tables [[section]]. Raises ModelFileError."""
+    tables = source.values.get(section, [])
+    if not isinstance(tables, list):
+        raise source.error(f"must be an array of tables, each headed [[{section}]], got {shown(tables)}", section)
+    found = []
+    for number, table in enumerate(tables):
+        with _within(source, section, number):
+            found.append(read(table))
+    return found
+
+
+def _named_tables(source: Source, section: str) -> dict[str, Any]:
+    """Return the tables [section.NAME] by name. Raises ModelFileError."""
+    tables = source.values.get(section, {})
+    if not isinstance(tables, dict):
+        raise source.error(f"must be tables with a name, each headed [{section}.NAME], got {shown(tables)}", section)
+    return tables
+
+
+def _text(source: Source, key: str, default: str = "") -> str:
+    value = source.values.get(key, default)
+    if not isinstance(value, str):
+        raise source.error(f"must be a text, got {shown(value)}", key)
+    return value

@@ -1,0 +1,259 @@
+"""Tables of model files, read by the type hints of what they describe.
+
+The parameters of a class or function are the keys of its table; pydantic checks their values. Points, beams and named
+parts are found by name in the `Names` of the file, the context of pydantic.
+"""
+
+import inspect
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, is_dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from types import NoneType
+from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, PlainValidator, Strict, ValidationError, ValidationInfo, create_model
+
+from beamfem.errors import InputError
+from beamfem.model.beam import Beam, Point
+from beamfem.model.model import Model
+from beamfem.validation import nearest, require_known
+
+Kinds = Mapping[str, Callable[..., Any]]
+Made = TypeVar("Made")
+
+_POINT = re.compile(r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\(\s*(?P<fraction>[-+.\deE]+)\s*\))")
+_NO_KEYS = ("self", "model", "asked", "path")  # parameters that are no keys
+_RULES = {
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "bool_type": "true or false",
+    "string_type": "a text",
+    "list_type": "an array",
+    "path_type": "a text",
+}
+
+
+class KeyFault(ValueError):
+    """A wrong value in a table, with its path below the table that is read; remedy: as that of a `BeamfemError`."""
+
+    def __init__(self, message: str, *path: str | int, remedy: str = "") -> None:
+        super().__init__(message)
+        self.message, self.path, self.remedy = message, path, remedy
+
+    @classmethod
+    def of(cls, error: "KeyFault | InputError", *path: str | int) -> "KeyFault":
+        """Return an error as that of the key at a path."""
+        if isinstance(error, KeyFault):
+            return cls(error.message, *path, *error.path, remedy=error.remedy)
+        return cls(error.reason, *path, remedy=error.remedy)
+
+
+@dataclass
+class Names:
+    """What the keys of a model file may name; types: how pydantic reads values, by type hint."""
+
+    folder: Path
+    anywhere: bool  # whether files to write may be outside the folder
+    types: Mapping[Any, Any]
+    parts: dict[str, dict[str, Any]] = field(default_factory=dict)  # by section: materials, sections ...
+    beams: dict[str, Beam] = field(default_factory=dict)
+    moved: dict[Beam | Point, Any] = field(default_factory=dict)  # what replaces beams and points in an imperfect model
+    schemas: dict[Callable[..., Any], type[BaseModel]] = field(default_factory=dict)
+
+    def move(self, old: Model, new: Model) -> None:
+        """Let names stand for the beams and points of an imperfect model."""
+        self.moved.update(zip((*old.beams, *_points(old)), (*new.beams, *_points(new)), strict=True))
+
+    def beam(self, name: Any) -> Beam:
+        """Return the beam of a name. Raises InputError."""
+        require_known(f"there is no beam {name!r}", name, self.beams)
+        return self.moved.get(self.beams[name], self.beams[name])
+
+    def point(self, text: Any) -> Point:
+        """Return the point NAME.start, NAME.end or NAME.at(fraction). Raises InputError."""
+        match = _POINT.fullmatch(text) if isinstance(text, str) else None
+        if match is None:
+            prefix = str(text).partition(".")[0]
+            name = prefix if prefix in self.beams else next(iter(self.beams), "NAME")
+            such = f'"{name}.start", "{name}.end" or "{name}.at(0.5)"'
+            raise InputError(f"must be a point such as {such}, got {shown(text)}")
+        require_known(f"there is no beam {match['beam']!r}", match["beam"], self.beams)
+        fraction = float(match["fraction"]) if match["fraction"] else float(match["end"] == "end")
+        point = Point(self.beams[match["beam"]], fraction)
+        return self.moved.get(point) or Point(self.moved.get(point.beam, point.beam), fraction)
+
+    def points(self, places: Any) -> list[Point]:
+        """Return the points of a list, or a list of one point. Raises InputError, KeyFault."""
+        return (
+            [at_key(number, self.point, item) for number, item in enumerate(places)]
+            if isinstance(places, list)
+            else [self.point(places)]
+        )
+
+
+def _points(model: Model) -> list[Point]:
+    """Return all points with supports, loads, joints or connectors."""
+    points = [item.point for item in (*model.point_supports, *model.point_loads)]
+    points += [point for joint in model.joints for point in (joint.a, joint.b)]
+    return points + [point for connector in model.connectors for point in connector.points]
+
+
+def at_key(key: str | int, read: Callable[..., Made], *values: Any) -> Made:
+    """Return what is read, errors with the key that it is read from. Raises KeyFault."""
+    try:
+        return read(*values)
+    except (KeyFault, InputError) as error:
+        raise KeyFault.of(error, key) from None
+
+
+def part(kinds: Kinds, table: Any, names: Names, default: str | None = None) -> Any:
+    """Return the part that a table describes by its `kind`. Raises KeyFault."""
+    require_table(table)
+    kind = table.get("kind", default)
+    if kind is None:
+        raise KeyFault(f"the key kind is missing; it is one of {', '.join(kinds)}")
+    if not isinstance(kind, str):
+        raise KeyFault(f"must be a text, got {shown(kind)}", "kind")
+    if kind not in kinds:
+        raise KeyFault(f"there is no kind {kind!r}; {nearest(kind, kinds)}", "kind")
+    return build(kinds[kind], {key: value for key, value in table.items() if key != "kind"}, names)
+
+
+def build(make: Callable[..., Made], table: Any, names: Names) -> Made:
+    """Return what `make` makes of the keys of a table. Raises KeyFault."""
+    require_table(table)
+    schema = names.schemas.get(make) or names.schemas.setdefault(make, _schema(make, names.types))
+    try:
+        given = schema.model_validate(table, context=names)
+    except ValidationError as error:
+        raise _fault(error, schema) from None
+    try:
+        return make(**{key: getattr(given, key) for key in schema.model_fields if key in given.model_fields_set})
+    except InputError as error:
+        raise KeyFault.of(error, *named_first(str(error), table)) from None
+
+
+def named_first(message: str, table: Mapping[str, Any]) -> list[str]:
+    """Return the key of a table that a message names first, in a list that is empty if there is none."""
+    found = {key: re.search(rf"\b{re.escape(key)}\b", message) for key in table}
+    return sorted((key for key, match in found.items() if match), key=lambda key: found[key].start())[:1]
+
+
+def _schema(make: Callable[..., Any], types: Mapping[Any, Any]) -> type[BaseModel]:
+    """Return a pydantic model whose fields are the parameters of a class or function."""
+    hints = get_type_hints(make, include_extras=True)
+    parameters = {key: item for key, item in inspect.signature(make).parameters.items() if key not in _NO_KEYS}
+    fields: Any = {
+        key: (_type(hints.get(key, item.annotation), types), ... if item.default is item.empty else item.default)
+        for key, item in parameters.items()
+    }
+    return create_model("Table", __config__=ConfigDict(extra="forbid", arbitrary_types_allowed=True), **fields)
+
+
+def _type(hint: Any, types: Mapping[Any, Any]) -> Any:
+    """Return the type with which pydantic checks a value in a model file."""
+    if get_origin(hint) is Annotated:
+        return hint
+    if hint is inspect.Parameter.empty:
+        return Any
+    options = get_args(hint) if get_origin(hint) not in (Literal, tuple, list, Sequence, Callable, dict) else ()
+    options = [option for option in options or (hint,) if option not in (NoneType, np.ndarray)]
+    for option in reversed(options):
+        if option in types:
+            return types[option]
+    if any(option is Callable or get_origin(option) is Callable for option in options):
+        kinds = {option: get_origin(option) or option for option in options}
+        scalar, vector = float in kinds.values(), tuple in kinds.values()
+        return types["number" if scalar else "vector" if vector else "function"]
+    hint = options[0]
+    if get_origin(hint) is tuple and Ellipsis not in get_args(hint):
+        return Any  # the library checks vectors
+    if get_origin(hint) in (tuple, list, Sequence):
+        return list[_type(get_args(hint)[0], types)]  # type: ignore[misc]
+    if is_dataclass(hint):
+        return reader(lambda value, names: build(hint, value, names))
+    return Annotated[hint, Strict()] if hint in (float, int, bool, str) else hint
+
+
+def reader(read: Callable[[Any, Names], Any]) -> Any:
+    """Return a type whose values a function reads."""
+
+    def validate(value: Any, info: ValidationInfo) -> Any:
+        return read(value, info.context)
+
+    return Annotated[Any, PlainValidator(validate)]
+
+
+def named(section: str, kinds: Kinds | Callable[..., Any]) -> Callable[[Any, Names], Any]:
+    """Return what reads a part: its name in a section of the file, a table, or a kind that needs no other key."""
+    single = section.removesuffix("s")
+    article = "an" if single[0] in "aeiou" else "a"
+
+    def read(value: Any, names: Names) -> Any:
+        known = names.parts.get(section, {})
+        short = [kind for kind, make in kinds.items() if not _needed(make)] if isinstance(kinds, Mapping) else []
+        if isinstance(value, dict):
+            return part(kinds, value, names) if isinstance(kinds, Mapping) else build(kinds, value, names)
+        if not isinstance(value, str):
+            raise InputError(f"must be the name of {article} {single}, or a table, got {shown(value)}")
+        if value in known:
+            return known[value]
+        if value in short:
+            return part(kinds, {"kind": value}, names)
+        if isinstance(kinds, Mapping) and value in kinds:
+            raise InputError(f"the kind {value!r} needs further keys: {in_braces(value, kinds[value])}")
+        listed = [*known, *short]
+        hint = nearest(value, listed) if listed else f"the file has none; they are headed [{section}.NAME]"
+        raise InputError(f"there is no {single} {value!r}; {hint}")
+
+    return read
+
+
+def require_table(value: Any) -> None:
+    """Raise KeyFault for a value that is no table."""
+    if not isinstance(value, dict):
+        raise KeyFault(f"must be a table, got {shown(value)}")
+
+
+def _needed(make: Callable[..., Any]) -> list[str]:
+    parameters = inspect.signature(make).parameters.values()
+    return [item.name for item in parameters if item.default is item.empty and item.name not in _NO_KEYS]
+
+
+def in_braces(kind: str, make: Callable[..., Any]) -> str:
+    return f'{{ kind = "{kind}"{"".join(f", {name} = ..." for name in _needed(make))} }}'
+
+
+def _fault(error: ValidationError, schema: type[BaseModel]) -> KeyFault:
+    """Return the first error that pydantic found."""
+    first = min(error.errors(), key=lambda item: item["type"] == "missing")
+    path, given = first["loc"], first["input"]
+    cause = first.get("ctx", {}).get("error")
+    if isinstance(cause, KeyFault | InputError):
+        return KeyFault.of(cause, *path)
+    if first["type"] == "missing":
+        needed = [name for name, info in schema.model_fields.items() if info.is_required()]
+        return KeyFault(f"the key {path[-1]} is missing; needed are {', '.join(needed)}", *path[:-1])
+    if first["type"] == "extra_forbidden":
+        return KeyFault(f"unknown key; {nearest(path[-1], schema.model_fields)}", *path)
+    if first["type"] == "literal_error":
+        rule = first["ctx"]["expected"].replace("'", '"')
+        near = get_close_matches(str(given), re.findall(r'"(.*?)"', rule), 1)
+        hint = f"; did you mean {near[0]}?" if near else ""
+        return KeyFault(f"must be {rule}, got {shown(given)}{hint}", *path)
+    return KeyFault(f"must be {_RULES.get(first['type'], first['msg'])}, got {shown(given)}", *path)
+
+
+def shown(value: Any) -> str:
+    """Return a value as written in the file."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return f'the text "{value}"'
+    if isinstance(value, dict):
+        return "a table"
+    return f"the array {value}" if isinstance(value, list) else str(value)

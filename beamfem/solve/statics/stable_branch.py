@@ -1,0 +1,31 @@
+"""The stable branch on which a static solve continues where its path loses stability at a bifurcation."""
+
+import numpy as np
+
+from beamfem.assembly.system import System
+from beamfem.errors import ConvergenceError
+from beamfem.solve.newton.iteration import Newton, Termination
+from beamfem.solve.statics.load_path import BifurcatesError
+from beamfem.solve.statics.snap import rest_state
+from beamfem.solve.statics.static_record import StaticRecord
+
+BESIDE = 1e-4  # of the load factor of a critical point, which is located to about 1e-8
+_ASIDE = 1e-3  # lengths of the model, radians: push along the modes
+_RATIO = 0.6  # of the pushes along modes that become soft at once, so that none of their symmetries remains
+
+
+def leave(system: System, done: StaticRecord, at: BifurcatesError, end: float, newton: Newton) -> None:
+    """Add a row at a bifurcation, and the stable equilibrium just beyond it to which its modes lead.
+
+    end: the largest load factor allowed. Raises ConvergenceError.
+    """
+    load_factor = float(at.y[-1])
+    done.add(load_factor, at.y[:-1], 0, Termination.CONVERGED)
+    start = np.append(at.y[:-1], min((1.0 + BESIDE) * load_factor, end))
+    way = _RATIO ** np.arange(len(at.modes)) @ at.modes
+    way *= _ASIDE / float(np.max(np.abs(way[:-1]) / system.scale))
+    result = rest_state(system, start, start + way, newton)
+    done.iterations += result.iterations
+    if not result.ended.good:
+        raise ConvergenceError(f"{at}, and no state of rest was found beyond it", done.solution())
+    done.add(float(start[-1]), result.state, result.negative_pivots, result.ended, result.digits)

@@ -14,6 +14,7 @@ from beamfem.solve.continuation.continuation import Continuation, PathPoint, beg
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 from beamfem.solve.continuation.steps import Step, longest_step, take_step, too_small
 from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.statics.static_record import is_unstable
 
 _FIRST_STEP = 1e-2  # along the path, see Continuation
 _PACE = 40  # steps, rejected ones included, from which the number of further steps is estimated
@@ -116,7 +117,7 @@ class PathFollower:
             self.size = step.next_size
             point = step.segment.after
             extrema = sorted([*step.limits, *step.segment.turned])
-            if self.leaves and before.negative_pivots == 0:
+            if self.leaves and not is_unstable(self.system.symmetric, before.negative_pivots):
                 _require_stable(step, min(extrema, default=np.inf), end, iterations, cuts)
             limit = step.segment.critical(extrema[0]) if extrema else None
             if limit is not None and limit[-1] > end and extrema[0] in step.segment.found:

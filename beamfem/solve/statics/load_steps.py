@@ -22,9 +22,10 @@ from beamfem.solve.statics.load_path import (
 from beamfem.solve.statics.skipped import is_short, skips_limit_points
 from beamfem.solve.statics.snap import rest_state, same_point
 from beamfem.solve.statics.stable_branch import BESIDE, leave
-from beamfem.solve.statics.static_record import StaticRecord
+from beamfem.solve.statics.static_record import StaticRecord, is_unstable
 
 Snap = Literal["error", "jump"]
+Unstable = Literal["keep", "leave"]
 
 _CUTS = 4  # in succession, before the path is followed by arc length
 _SHORTEST_OF_PAST = 2.0**-16  # of a requested step, for models with history, whose path is not followed
@@ -190,9 +191,14 @@ def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap
     where = f"a limit point at load factor {load_factor:.6g}: beyond it there is no equilibrium nearby"
     if snap == "error":
         loaded = follower.system.loads_at(1.0).any
+        unstable = [at for at, _, count in done.rows if is_unstable(done.symmetric, count)]
+        if unstable:
+            where += f"; the path is unstable from load factor {unstable[0]:.6g} on"
         instead = "; or prescribe a displacement (Prescribed) instead of the load" if loaded else ""
         raise LimitPointError(
-            f'{where}. trace_equilibrium follows the path around it; snap="jump" goes to the state in which the '
+            f'{where}. unstable="leave" follows the stable branch instead'
+            if unstable
+            else f'{where}. trace_equilibrium follows the path around it; snap="jump" goes to the state in which the '
             f"structure comes to rest{instead}",
             load_factor,
             done.solution(),
@@ -202,6 +208,7 @@ def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap
             f"{where}, and the structure comes back to it each time it leaves it", load_factor, done.solution()
         )
     follower.left = turn.limit
+    done.add(load_factor, turn.limit[:-1], 0, Termination.CONVERGED)
     result = rest_state(follower.system, turn.limit, turn.beyond, follower.newton)
     done.iterations += result.iterations
     if not result.ended.good:

@@ -17,6 +17,8 @@ _RATIO = 0.6  # of the pushes along modes that become soft at once, so that none
 def leave(system: System, done: StaticRecord, at: BifurcatesError, end: float, newton: Newton) -> None:
     """Add a row at a bifurcation, and the stable equilibrium just beyond it to which its modes lead.
 
+    The record tells the side by the point that moves farthest.
+
     end: the largest load factor allowed. Raises ConvergenceError.
     """
     load_factor = float(at.y[-1])
@@ -28,4 +30,13 @@ def leave(system: System, done: StaticRecord, at: BifurcatesError, end: float, n
     done.iterations += result.iterations
     if not result.ended.good:
         raise ConvergenceError(f"{at}, and no state of rest was found beyond it", done.solution())
-    done.add(float(start[-1]), result.state, result.negative_pivots, result.ended, result.digits)
+    done.add(float(start[-1]), result.state, 0, result.ended, result.digits)
+    done.left.append(f"{at}, which it leaves to the side where {_farthest(system, result.state - start[:-1])}")
+
+
+def _farthest(system: System, change: np.ndarray) -> str:
+    """Return the node that a change (n,) moves farthest, by its place in the reference, and its displacement."""
+    nodes = np.concatenate([block.dof[:, :2] for block in system.blocks])
+    x, y = nodes[np.argmax(np.hypot(*change[nodes].T))]
+    place, moved = (f"({a[x]:.4g}, {a[y]:.4g})" for a in (system.reference, change))
+    return f"the node at {place} {system.model.unit('m')} moves by {moved} {system.model.unit('m')}"

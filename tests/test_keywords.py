@@ -114,7 +114,7 @@ def test_what_is_checked_keeps_its_name_signature_and_place():
     for name in bf.__all__:
         item = getattr(bf, name)
         assert pickle.loads(pickle.dumps(item)) is item
-    assert list(inspect.signature(bf.solve_static).parameters) == ["model", "steps", "newton", "at", "snap"]
+    assert list(inspect.signature(bf.solve_static).parameters) == ["model", "steps", "newton", "at", "snap", "unstable"]
     assert list(inspect.signature(bf.Material).parameters)[:3] == ["youngs_modulus", "poisson_ratio", "density"]
     assert list(inspect.signature(bf.Solution.save).parameters) == ["self", "path"]
     assert typing.get_type_hints(bf.Solution.save)["return"] is type(None)

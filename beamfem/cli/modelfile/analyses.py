@@ -23,7 +23,7 @@ from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, is_scheme
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.stability.buckling import solve_buckling
-from beamfem.solve.statics.load_steps import SAME, Snap
+from beamfem.solve.statics.load_steps import SAME, Snap, Unstable
 from beamfem.solve.statics.statics import solve_static, solve_through
 from beamfem.validation import count, finite, items, one_of, optional, positive
 
@@ -35,6 +35,7 @@ class Static:
     steps: int = 1
     newton: Newton | None = None
     snap: Snap = "error"
+    unstable: Unstable = "keep"
     at: Sequence[float] | None = None
     states: bool = field(default=True, init=False)
     moving: bool = field(default=False, init=False)
@@ -42,6 +43,7 @@ class Static:
     def __post_init__(self) -> None:
         count("steps", self.steps)
         one_of("snap", self.snap, ("error", "jump"))
+        one_of("unstable", self.unstable, ("keep", "leave"))
         if self.at is not None:
             _check_load_factors(self.at)
 
@@ -51,11 +53,12 @@ class Static:
         return (0.0, 1.0) if self.at is None else (self.at[0], self.at[-1])
 
     def run(self, model: Model, at: Sequence[float]) -> Found:
+        snap, unstable = self.snap, self.unstable
         if self.at is None:
-            return Found(warned(solve_through(model, at, self.steps, self.newton, snap=self.snap)))
+            return Found(warned(solve_through(model, at, self.steps, self.newton, snap=snap, unstable=unstable)))
         further = [value for value in at if all(abs(value - other) > SAME for other in self.at)]
         load_factors = sorted({*self.at, *further})
-        return Found(solve_static(model, self.steps, self.newton, at=load_factors, snap=self.snap))
+        return Found(solve_static(model, self.steps, self.newton, at=load_factors, snap=snap, unstable=unstable))
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from beamfem.errors import BeamfemError
 _PHRASES = (
     ("trace_equilibrium follows the path around it", '`kind = "path"` in [analysis] follows the path around it'),
     ('snap="jump" goes', '`snap = "jump"` beside `kind = "static"` goes'),
+    ('unstable="leave" follows', '`unstable = "leave"` beside `kind = "static"` follows'),
     ("prescribe a displacement (Prescribed)", 'prescribe a displacement (`kind = "prescribed"` in [[supports]])'),
     ("use a Prescribed support with", 'use a support of kind "prescribed" with'),
     ("start from what solve_static finds with this support", 'take `start = "static"` with this support'),

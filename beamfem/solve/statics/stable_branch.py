@@ -3,7 +3,7 @@
 import numpy as np
 
 from beamfem.assembly.system import System
-from beamfem.errors import ConvergenceError
+from beamfem.errors import LimitPointError
 from beamfem.solve.newton.iteration import Newton, Termination
 from beamfem.solve.statics.load_path import BifurcatesError
 from beamfem.solve.statics.snap import rest_state
@@ -17,9 +17,9 @@ _RATIO = 0.6  # of the pushes along modes that become soft at once, so that none
 def leave(system: System, done: StaticRecord, at: BifurcatesError, end: float, newton: Newton) -> None:
     """Add a row at a bifurcation, and the stable equilibrium just beyond it to which its modes lead.
 
-    The record tells the side by the point that moves farthest.
+    The record describes that state by the node that moves farthest.
 
-    end: the largest load factor allowed. Raises ConvergenceError.
+    end: the largest load factor allowed. Raises LimitPointError.
     """
     load_factor = float(at.y[-1])
     done.add(load_factor, at.y[:-1], 0, Termination.CONVERGED)
@@ -29,9 +29,9 @@ def leave(system: System, done: StaticRecord, at: BifurcatesError, end: float, n
     result = rest_state(system, start, start + way, newton)
     done.iterations += result.iterations
     if not result.ended.good:
-        raise ConvergenceError(f"{at}, and no state of rest was found beyond it", done.solution())
+        raise LimitPointError(f"{at}, and no state of rest was found beyond it", load_factor, done.solution())
     done.add(float(start[-1]), result.state, 0, result.ended, result.digits)
-    done.left.append(f"{at}, which it leaves to the side where {_farthest(system, result.state - start[:-1])}")
+    done.left.append(f"{at}, which it leaves for the stable state in which {_farthest(system, result.state - start[:-1])}")
 
 
 def _farthest(system: System, change: np.ndarray) -> str:
@@ -39,4 +39,4 @@ def _farthest(system: System, change: np.ndarray) -> str:
     nodes = np.concatenate([block.dof[:, :2] for block in system.blocks])
     x, y = nodes[np.argmax(np.hypot(*change[nodes].T))]
     place, moved = (f"({a[x]:.4g}, {a[y]:.4g})" for a in (system.reference, change))
-    return f"the node at {place} {system.model.unit('m')} moves by {moved} {system.model.unit('m')}"
+    return f"the node at {place} {system.model.unit('m')} is displaced by a further {moved} {system.model.unit('m')}"

@@ -102,5 +102,6 @@ def _describe(unstable: np.ndarray, load_factors: np.ndarray) -> str:
     where = f"at load factor {first:.6g}" if len(rows) == 1 else f"from load factor {first:.6g} to {last:.6g}"
     return (
         f"{len(rows)} of {len(unstable)} rows are unstable equilibria, {where}: the structure would leave them for "
-        "another path. solution.stable tells which; trace_equilibrium finds the bifurcations and follows their branches"
+        "another path. solution.stable tells which; trace_equilibrium finds the bifurcations and follows their "
+        'branches; unstable="leave" follows the stable branch instead'
     )

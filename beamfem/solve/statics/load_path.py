@@ -119,17 +119,15 @@ class PathFollower:
             extrema = sorted([*step.limits, *step.segment.turned])
             if self.leaves and not is_unstable(self.system.symmetric, before.negative_pivots):
                 _require_stable(step, min(extrema, default=np.inf), end, iterations, cuts)
-            limit = step.segment.critical(extrema[0]) if extrema else None
-            if limit is not None and limit[-1] > end and extrema[0] in step.segment.found:
-                # the path turns back within the step, but beyond the load factor asked for
-                rising = Segment(line, before, step.segment.at(extrema[0]))
+            above = [x for x, at in step.segment.found.items() if x <= min(extrema, default=1.0) and at.load_factor > end]
+            if above:
+                rising = Segment(line, before, step.segment.at(max(above)))
                 point = _at_load(rising, end, iterations, cuts)
-            elif limit is not None:
+            elif extrema:
+                limit = step.segment.critical(extrema[0])
                 if np.array_equal(limit, point.y):
                     point = _step(line, point, self.size)[0].segment.after
                 raise TurnsBackError(limit, point.y, iterations, cuts)
-            elif point.load_factor > end:
-                point = _at_load(step.segment, end, iterations, cuts)
             yield Followed(point, iterations, cuts)
 
     def _require_pace(self, load_factor: float) -> None:

@@ -53,3 +53,19 @@ def solved(conditions, guess):
     x, found, _, message = fsolve(conditions, guess, xtol=1e-13, full_output=True)
     assert np.abs(found["fvec"]).max() < 1e-9, message
     return x
+
+
+def swept(slope, span, state, axial=0.0):
+    """Return x, y, theta, nx, ny, M at the end of an axis y(x) of E I = 1 from the same at its start, where x = 0.
+
+    slope: y'(x) without stress; axial: 1 / E A. It does not shear.
+    """
+
+    def change(x, y):
+        phi = np.arctan(slope(x)) + y[2]
+        c, d = np.cos(phi), np.sin(phi)
+        stretched = 1.0 + axial * (y[3] * c + y[4] * d)
+        x_s, y_s = stretched * c, stretched * d
+        return np.array([x_s, y_s, y[5], 0.0, 0.0, x_s * -y[4] + y_s * y[3]]) * np.hypot(1.0, slope(x))
+
+    return solve_ivp(change, (0.0, span), state, method="DOP853", rtol=1e-12, atol=1e-14).y[:, -1]

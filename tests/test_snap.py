@@ -155,9 +155,8 @@ def test_standing_loads_that_had_to_grow_leave_the_state_as_unstable_as_it_is():
     assert not solution.stable.any()
 
 
-def test_a_structure_does_not_come_to_rest_where_it_is_unstable(monkeypatch):
-    """Beside a frame that snaps at a third of its load, a straight column is past its buckling load by then."""
-    monkeypatch.setattr(snap, "_STEPS", 60)
+def test_a_structure_does_not_come_to_rest_where_it_is_unstable():
+    """Beside a frame that snaps at a third of its load, a column is past its buckling load by then, and bent."""
     _, frame = toggle(95.2)
     column = bf.Beam(bf.Line((3, 0), (4, 0)), 4, bf.CRBF(3), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
     critical = np.pi**2 / 4.0 * 2e11 * 0.01**4 / 12.0
@@ -167,8 +166,10 @@ def test_a_structure_does_not_come_to_rest_where_it_is_unstable(monkeypatch):
         [*frame.loads, bf.PointForce(column.end, (-5.0 * critical, 0.0))],
         frame.joints,
     )
-    with pytest.raises(bf.LimitPointError, match="no state of rest was found beyond it"):
-        bf.solve_static(model, 10, snap="jump")
+    solution = bf.solve_static(model, 10, snap="jump")
+    assert solution.stable.all()
+    bent = np.abs(solution.displacement(column.end)[:, 1]) > 1e-3
+    assert np.array_equal(bent, solution.at > 0.19995)  # the column is shortened
 
 
 def test_rest_is_an_equilibrium_that_is_found_stable_and_close_to_where_the_motion_ends(monkeypatch):

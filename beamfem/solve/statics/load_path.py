@@ -14,6 +14,7 @@ from beamfem.solve.continuation.continuation import Continuation, PathPoint, beg
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 from beamfem.solve.continuation.steps import Step, longest_step, take_step, too_small
 from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.statics.static_record import is_unstable
 
 _FIRST_STEP = 1e-2  # along the path, see Continuation
 _PACE = 40  # steps, rejected ones included, from which the number of further steps is estimated
@@ -47,6 +48,17 @@ class OutOfReachError(PathLostError):
     """The path can be followed, but not to load factor 1 in a reasonable number of steps."""
 
 
+class BifurcatesError(BeamfemError):
+    """The path loses its stability at the bifurcation y (n + 1,); modes (k, n + 1): those that lose their stiffness."""
+
+    def __init__(self, y: np.ndarray, modes: np.ndarray, iterations: int, cuts: int) -> None:
+        super().__init__(f"the path loses its stability at a bifurcation at load factor {y[-1]:.6g}")
+        self.y = y
+        self.modes = modes
+        self.iterations = iterations
+        self.cuts = cuts
+
+
 class TurnsBackError(BeamfemError):
     """The path turns back at the limit point y (n + 1,); beyond (n + 1,): a point of the path after it."""
 
@@ -59,12 +71,16 @@ class TurnsBackError(BeamfemError):
 
 
 class PathFollower:
-    """The path of a system from the equilibrium p (n,), followed by arc length; step lengths carry over."""
+    """The path of a system from the equilibrium p (n,), followed by arc length; step lengths carry over.
 
-    def __init__(self, system: System, newton: Newton, p: np.ndarray, load_factor: float) -> None:
+    leaves: whether the path ends at the bifurcation at which it loses its stability.
+    """
+
+    def __init__(self, system: System, newton: Newton, p: np.ndarray, load_factor: float, leaves: bool = False) -> None:
         self.system = system
         self.newton = newton
         self.start = p, load_factor
+        self.leaves = leaves
         self.size = _FIRST_STEP
         self.left: np.ndarray | None = None  # limit point (n + 1,) of the last jump
         self.passed: deque[float] = deque(maxlen=_PACE)
@@ -77,7 +93,7 @@ class PathFollower:
     def follow(self, p: np.ndarray, load_factor: float, beyond: float, end: float) -> Iterator[Followed]:
         """Yield the points from the equilibrium p (n,) to the first one at or above the load factor `beyond`.
 
-        end: the largest load factor allowed. Raises TurnsBackError at a limit point; PathLostError if no step along the
+        end: the largest load factor allowed. Raises TurnsBackError at a limit point; BifurcatesError; PathLostError if no step along the
         path is accepted elsewhere, OutOfReachError if load factor 1 is too far at the present step length.
         """
         growing = np.zeros(len(p) + 1)
@@ -101,17 +117,17 @@ class PathFollower:
             self.size = step.next_size
             point = step.segment.after
             extrema = sorted([*step.limits, *step.segment.turned])
-            limit = step.segment.critical(extrema[0]) if extrema else None
-            if limit is not None and limit[-1] > end and extrema[0] in step.segment.found:
-                # the path turns back within the step, but beyond the load factor asked for
-                rising = Segment(line, before, step.segment.at(extrema[0]))
+            if self.leaves and not is_unstable(self.system.symmetric, before.negative_pivots):
+                _require_stable(step, min(extrema, default=np.inf), end, iterations, cuts)
+            above = [x for x, at in step.segment.found.items() if x <= min(extrema, default=1.0) and at.load_factor > end]
+            if above:
+                rising = Segment(line, before, step.segment.at(max(above)))
                 point = _at_load(rising, end, iterations, cuts)
-            elif limit is not None:
+            elif extrema:
+                limit = step.segment.critical(extrema[0])
                 if np.array_equal(limit, point.y):
                     point = _step(line, point, self.size)[0].segment.after
                 raise TurnsBackError(limit, point.y, iterations, cuts)
-            elif point.load_factor > end:
-                point = _at_load(step.segment, end, iterations, cuts)
             yield Followed(point, iterations, cuts)
 
     def _require_pace(self, load_factor: float) -> None:
@@ -126,6 +142,18 @@ class PathFollower:
                     0,
                     0,
                 )
+
+
+def _require_stable(step: Step, limit: float, end: float, iterations: int, cuts: int) -> None:
+    """Raise BifurcatesError if a step from a stable point loses its stability at a bifurcation up to `end`.
+
+    limit: fraction of the first extremum of the load factor.
+    """
+    first = next((crossing for crossing in step.crossings if crossing.fraction not in step.segment.turned), None)
+    if first is None or first.fraction > limit or first.y[-1] > end:
+        return
+    modes = [crossing.mode for crossing in step.crossings if crossing.fraction == first.fraction]
+    raise BifurcatesError(first.y, np.array(modes), iterations, cuts)
 
 
 def _at_maximum(line: Continuation, before: PathPoint, point: PathPoint) -> bool:

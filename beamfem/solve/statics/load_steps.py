@@ -12,19 +12,26 @@ from beamfem.progress import progress
 from beamfem.results.bent import advice
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
-from beamfem.solve.statics.load_path import OutOfReachError, PathFollower, PathLostError, TurnsBackError
+from beamfem.solve.statics.load_path import (
+    BifurcatesError,
+    OutOfReachError,
+    PathFollower,
+    PathLostError,
+    TurnsBackError,
+)
 from beamfem.solve.statics.skipped import is_short, skips_limit_points
 from beamfem.solve.statics.snap import rest_state, same_point
-from beamfem.solve.statics.static_record import StaticRecord
+from beamfem.solve.statics.stable_branch import BESIDE, leave
+from beamfem.solve.statics.static_record import StaticRecord, is_unstable
 
 Snap = Literal["error", "jump"]
+Unstable = Literal["keep", "leave"]
 
 _CUTS = 4  # in succession, before the path is followed by arc length
 _SHORTEST_OF_PAST = 2.0**-16  # of a requested step, for models with history, whose path is not followed
 _EASY_ITERATIONS = 8
 _LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
 SAME = 1e-12  # of the load factor: smaller differences count as zero
-_BESIDE = 1e-4  # of the load factor of a limit point, which is located to about 1e-8
 _SHORTEST_TURN = 1e-9  # of the load factor: a larger rotation within this is a jump
 
 
@@ -46,7 +53,7 @@ def reach(
     # with history, the result depends on the steps, so the end of each requested step is a stop, even if it is cut
     requested = [*stops, *(step * np.arange(1, round(1.0 / step))).tolist()] if remembers else stops
     ahead = sorted({stop for stop in requested if SAME < stop < end - SAME} | {end})
-    follower = PathFollower(system, newton, done.state, done.reached)
+    follower = PathFollower(system, newton, done.state, done.reached, leaves=snap == "jump")
     cuts, refused = 0, done.reached
     longest = step if remembers else 1.0
     with progress("load factor", end) as report:
@@ -134,6 +141,10 @@ def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float],
             done.cuts += followed.cuts
             point = followed.point
             done.add(point.load_factor, point.y[:-1], point.negative_pivots, Termination.CONVERGED)
+    except BifurcatesError as bifurcation:
+        done.iterations += bifurcation.iterations
+        done.cuts += bifurcation.cuts
+        leave(follower.system, done, bifurcation, to[1], follower.newton)
     except TurnsBackError as turn:
         done.iterations += turn.iterations
         done.cuts += turn.cuts
@@ -160,7 +171,7 @@ def _merges(follower: PathFollower, done: StaticRecord, point: np.ndarray, beyon
     a limit point it moves far.
     """
     load_factor = float(point[-1])
-    target = min((1.0 + _BESIDE) * load_factor, end)
+    target = min((1.0 + BESIDE) * load_factor, end)
     below = [(state, count) for at, state, count in done.rows if at <= 2.0 * load_factor - target]
     if not below or below[-1][1] != 0 or target <= load_factor:
         return False
@@ -180,9 +191,14 @@ def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap
     where = f"a limit point at load factor {load_factor:.6g}: beyond it there is no equilibrium nearby"
     if snap == "error":
         loaded = follower.system.loads_at(1.0).any
+        unstable = [at for at, _, count in done.rows if is_unstable(done.symmetric, count)]
+        if unstable:
+            where += f"; the path is unstable from load factor {unstable[0]:.6g} on"
         instead = "; or prescribe a displacement (Prescribed) instead of the load" if loaded else ""
         raise LimitPointError(
-            f'{where}. trace_equilibrium follows the path around it; snap="jump" goes to the state in which the '
+            f'{where}. unstable="leave" follows the stable branch instead'
+            if unstable
+            else f'{where}. trace_equilibrium follows the path around it; snap="jump" goes to the state in which the '
             f"structure comes to rest{instead}",
             load_factor,
             done.solution(),
@@ -192,6 +208,7 @@ def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap
             f"{where}, and the structure comes back to it each time it leaves it", load_factor, done.solution()
         )
     follower.left = turn.limit
+    done.add(load_factor, turn.limit[:-1], 0, Termination.CONVERGED)
     result = rest_state(follower.system, turn.limit, turn.beyond, follower.newton)
     done.iterations += result.iterations
     if not result.ended.good:

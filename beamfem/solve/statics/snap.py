@@ -39,6 +39,7 @@ def rest_state(
     aside[free] = (beyond - limit)[:-1][free]
     aside *= min(1.0, min(_LARGEST_MOVE, 0.5 * farthest) / _size(system, aside))
     p = limit[:-1] + aside
+    p[system.prescribed_dofs] = system.prescribed_values(load_factor)
     mass = _mass(system, p, load_factor)
     pull = abs(float(aside[free] @ _unbalanced(system, p, load_factor)[free]))
     time = float(aside[free] @ (mass @ aside[free])) / max(pull, np.finfo(float).tiny)

@@ -24,6 +24,7 @@ class StaticRecord:
         self.cuts = 0
         self.ended = Termination.CONVERGED
         self.digits = np.nan
+        self.left: list[str] = []  # bifurcations at which the path was left, and to which side
 
     @property
     def reached(self) -> float:
@@ -51,12 +52,11 @@ class StaticRecord:
         """
         load_factors, states = np.array([row[0] for row in self.rows]), np.array([row[1] for row in self.rows])
         counts = [count for _, _, count in self.rows]
-        # follower loads: an odd count, a negative determinant, means that a motion grows; an even one proves nothing
-        unstable = [count > 0 if self.symmetric else count % 2 == 1 for count in counts]
+        unstable = [is_unstable(self.symmetric, count) for count in counts]
         status = Status.STOPPED if not complete else Status.COMPLETED
         if complete and self.ended is Termination.ROUND_OFF:
             status = Status.ROUND_OFF
-        ended = self.ended.value
+        ended = "; ".join([*self.left, self.ended.value])
         messages: tuple[str, ...] = ()
         if any(unstable):
             status = Status.UNSTABLE if complete else status
@@ -88,11 +88,20 @@ class StaticRecord:
         )
 
 
+def is_unstable(symmetric: bool, negative_pivots: int) -> bool:
+    """Return whether the negative pivots of a tangent show that a motion grows.
+
+    Under follower loads an odd count, a negative determinant, does; an even one proves nothing.
+    """
+    return negative_pivots > 0 if symmetric else negative_pivots % 2 == 1
+
+
 def _describe(unstable: np.ndarray, load_factors: np.ndarray) -> str:
     rows = np.flatnonzero(unstable)
     first, last = load_factors[rows[0]], load_factors[rows[-1]]
     where = f"at load factor {first:.6g}" if len(rows) == 1 else f"from load factor {first:.6g} to {last:.6g}"
     return (
         f"{len(rows)} of {len(unstable)} rows are unstable equilibria, {where}: the structure would leave them for "
-        "another path. solution.stable tells which; trace_equilibrium finds the bifurcations and follows their branches"
+        "another path. solution.stable tells which; trace_equilibrium finds the bifurcations and follows their "
+        'branches; unstable="leave" follows the stable branch instead'
     )

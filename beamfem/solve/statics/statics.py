@@ -19,11 +19,11 @@ from beamfem.solve.start.functions_of_time import functions_of_time
 from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.kinks import kinks_and_turning_points
 from beamfem.solve.start.mechanisms import require_support
-from beamfem.solve.start.multipliers import require_independent
+from beamfem.solve.start.multipliers import refuse_memory, require_independent
 from beamfem.solve.start.unresolved import warn_between_rows
-from beamfem.solve.statics.load_steps import SAME, Snap, reach
+from beamfem.solve.statics.load_steps import SAME, Snap, Unstable, reach
 from beamfem.solve.statics.preload import first_equilibrium, nothing_acts
-from beamfem.solve.statics.static_record import StaticRecord
+from beamfem.solve.statics.static_record import StaticRecord, is_unstable
 from beamfem.validation import count, finite, items, one_of, shown
 
 _NEWTON = Newton()
@@ -37,12 +37,13 @@ def solve_static(
     *,
     at: Sequence[float] | np.ndarray | None = None,
     snap: Snap = "error",
+    unstable: Unstable = "keep",
 ) -> Solution:
     """Find the static equilibria from load factor 0 to 1, along the path that starts at 0.
 
     A load step is accepted if the number of negative pivots of the tangent stays the same over its iterations;
     otherwise the path is followed by arc length. At a bifurcation the primary path is continued, and a warning reports
-    unstable rows.
+    unstable rows, unless jumps are allowed or unstable paths are left.
 
     Parameters
     ----------
@@ -58,7 +59,11 @@ def solve_static(
         loads with scale=False) to 1, with rows where amplitudes and prescribed motions have kinks or turn.
     snap : {"error", "jump"}, default "error"
         What to do at a limit point: raise an error, or jump to the state in which a slow, damped structure comes to
-        rest under the same load, and continue from there.
+        rest under the same load, and continue from there. Jumps start at bifurcations, too.
+    unstable : {"keep", "leave"}, default "keep"
+        What to do where the path loses its stability: keep to it, or leave it for the stable branch as a slow, damped
+        structure does, at limit points by a jump. There is a row at the critical point. At a symmetric bifurcation
+        either side is taken; `statistics.ended` names it, and a small imperfection chooses it.
 
     Returns
     -------
@@ -68,7 +73,7 @@ def solve_static(
     Raises
     ------
     InputError
-        Before the solve, for invalid arguments.
+        Before the solve, for invalid arguments, and for unstable="leave" and laws or connectors with history.
     FreeMotionError
         If the model can move without resistance, and loads with scale=False do not stiffen it.
     LimitPointError
@@ -96,9 +101,9 @@ def solve_static(
     """
     if at is None:
         equal = [k / steps for k in range(1, count("steps", steps))]
-        return warned(solve_through(model, equal, steps, newton, snap=snap, resolved=True))
+        return warned(solve_through(model, equal, steps, newton, snap=snap, unstable=unstable, resolved=True))
     load_factors = _ascending(at)
-    through = solve_through(model, load_factors, steps, newton, snap=snap, end=load_factors[-1])
+    through = solve_through(model, load_factors, steps, newton, snap=snap, unstable=unstable, end=load_factors[-1])
     return warned(_rows_at(through, load_factors))
 
 
@@ -131,6 +136,7 @@ def solve_through(
     newton: Newton | None = None,
     *,
     snap: Snap = "error",
+    unstable: Unstable = "keep",
     end: float = 1.0,
     resolved: bool = False,
 ) -> Solution:
@@ -141,7 +147,11 @@ def solve_through(
     """
     steps = count("steps", steps)
     one_of("snap", snap, ("error", "jump"))
+    one_of("unstable", unstable, ("keep", "leave"))
     system = system_of(model, static=True)
+    if unstable == "leave":
+        refuse_memory(system, 'unstable="leave"')
+        snap = "jump"
     tell_of_compilation()
     if nothing_acts(system):
         require_support(system)
@@ -157,6 +167,12 @@ def solve_through(
         )
     state = system.history.in_equilibrium(first.state, 0.0, system.imposing(0.0))
     record.add(0.0, state, first.negative_pivots, first.ended, first.digits)
+    if unstable == "leave" and is_unstable(system.symmetric, first.negative_pivots):
+        raise ConvergenceError(
+            'unstable="leave" starts from a stable state, but that under the loads that do not scale is unstable; '
+            "let them scale",
+            record.solution(),
+        )
     functions = functions_of_time(system)
     with kept(record.solution):
         try:

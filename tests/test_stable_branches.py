@@ -1,0 +1,219 @@
+"""Statics that leave an unstable path for the stable branch, as a slow, damped structure does."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from connectors import RigidLink
+from history_laws import LAWS
+from shooting import solved, swept
+from test_multistable_chains import bars, random_chain
+
+import beamfem as bf
+
+MATERIAL = bf.Material(1.0, 0.0, 1.0)
+
+
+def bistable(rise, thickness, supports=(), loads=(), half=False, elements=20):
+    """The beam of Qiu, Lang and Slocum (2004), y = rise / 2 (1 - cos 2 pi x), clamped at its ends; or its left half.
+
+    supports, loads: functions of the centre. Returns the beam, its centre, the model, and the unit E I h / L^3 [N].
+    """
+    curve = bf.Parametric(lambda x: (x, 0.5 * rise * (1.0 - np.cos(2.0 * np.pi * x))), 0.0, 0.5 if half else 1.0)
+    beam = bf.Beam(curve, elements, bf.CRBF(3), bf.Rectangle(1.0, thickness), MATERIAL)
+    centre = beam.end if half else beam.at(0.5)
+    clamps = [bf.Clamp(beam.start)] if half else [bf.Clamp(beam.start), bf.Clamp(beam.end)]
+    model = bf.Model([beam], [*clamps, *(make(centre) for make in supports)], [make(centre) for make in loads])
+    return beam, centre, model, thickness**3 / 12.0 * rise
+
+
+def led(rise, held=True, **guided):
+    down = {"uy": -2.0 * rise, **guided}
+    return lambda centre: bf.Prescribed(centre, **down, rotation=0.0) if held else bf.Prescribed(centre, **down)
+
+
+@pytest.mark.parametrize("steps", [1, 20, 80])
+def test_the_bistable_beam_of_compliant_mechanisms(steps):
+    """Published: 740 E I h / L^3 at 0.16 h and -370 at 1.92 h; half of the beam is integrated by shooting."""
+    rise, thickness = 0.02, 0.002
+    beam, centre, model, unit = bistable(rise, thickness, [led(rise, ux=0.0)], half=True, elements=16)
+    solution = bf.solve_static(model, steps, unstable="leave")
+    assert solution.stable.all()
+    force, down = -2.0 * solution.reaction(centre)[:, 1] / unit, -solution.displacement(centre)[:, 1] / rise
+    assert (force.max(), down[force.argmax()]) == pytest.approx((740.0, 0.16), rel=0.03)
+    assert (force.min(), down[force.argmin()]) == pytest.approx((-370.0, 1.92), rel=0.01)
+    bending = thickness**3 / 12.0
+
+    def slope(x):
+        return np.pi * rise * np.sin(2.0 * np.pi * x)
+
+    for row in np.flatnonzero((down > 0.17) & (down < 1.9))[:: max(steps // 8, 1)]:
+
+        def conditions(start):
+            x, y, turned = swept(slope, 0.5, [0.0, 0.0, 0.0, *start], bending / thickness)[:3]
+            return np.array([x - 0.5, y - rise * (1.0 - down[row]), turned])  # noqa: B023
+
+        # the branch is found beside, and the root of the independent equations is compared
+        nx, ny, moment = solved(conditions, -solution.reaction(beam.start)[row] / bending)
+        assert 2.0 * ny / rise == pytest.approx(force[row], rel=1e-3, abs=0.05)
+        assert np.hypot(nx, moment) > 1.0
+
+
+@pytest.mark.parametrize("held", [True, False])
+def test_a_path_that_turns_back_where_it_has_long_been_unstable_advises_to_leave_it(held):
+    _, centre, model, _ = bistable(0.1, 0.01, [led(0.1, held)])
+    with pytest.raises(bf.LimitPointError, match='unstable from load factor .*unstable="leave" follows the stable'):
+        bf.solve_static(model, 50)
+    traced = bf.trace_equilibrium(model, until=0.1)
+    solution = bf.solve_static(model, 50, unstable="leave")
+    assert solution.stable.all()
+    assert "loses its stability at a bifurcation" in solution.statistics.ended
+    assert np.abs(solution.load_factor - traced.bifurcations[0].load_factor).min() < 1e-8
+    assert solution.reaction(centre)[-1, 1] / solution.reaction(centre)[:, 1].min() < 0.02
+
+
+@pytest.mark.parametrize(("rise", "half"), [(0.1, False), (0.02, True), (0.002, True)])
+def test_a_branch_is_followed_across_the_point_where_it_merges_into_the_primary_path(rise, half):
+    """Both halves of the whole beam buckle at once; the branch returned to the path and ended there."""
+    support = led(rise, ux=0.0) if half else led(rise)
+    _, _, model, _ = bistable(rise, rise / 10.0, [support], half=half, elements=10 if half else 20)
+    primary = bf.trace_equilibrium(model, until=1.0)
+    branch = bf.trace_equilibrium(model, until=1.0, start=primary.bifurcations[0])
+    assert "the branch is closed" in branch.statistics.ended
+    merging, start = (point.load_factor for point in branch.bifurcations)
+    assert start == pytest.approx(primary.bifurcations[0].load_factor, rel=1e-7)
+    assert min(abs(merging - point.load_factor) for point in primary.bifurcations) < 1e-7
+
+
+@pytest.mark.parametrize("options", [{"snap": "jump"}, {"unstable": "leave"}])
+@pytest.mark.parametrize("held", [True, False])
+def test_a_jump_starts_at_the_bifurcation_and_rests_in_a_stable_state(held, options):
+    """Found in review: under 800 E I h / L^3 the beam rested on the unstable path, with a warning."""
+    rise = 0.1
+    unit = bistable(rise, 0.01)[3]
+    hold = [lambda centre: bf.Prescribed(centre, rotation=0.0)] if held else []
+    _, centre, model, _ = bistable(rise, 0.01, hold, [lambda centre: bf.PointForce(centre, (0.0, -800.0 * unit))])
+    solution = bf.solve_static(model, **options)
+    assert solution.stable.all()
+    final = solution.displacement(centre)[-1, 1]
+    assert final < -2.0 * rise
+    # the straightened beam led to the same place from its other shape
+    _, led_centre, led_model, _ = bistable(rise, 0.01, [lambda centre: bf.Prescribed(centre, uy=final, rotation=0.0)])
+    led_there = bf.solve_static(led_model, unstable="leave")
+    assert -led_there.reaction(led_centre)[-1, 1] / unit == pytest.approx(800.0, rel=1e-6)
+
+
+def member(seed, disturbed=0.0):
+    """A random arch, led or pushed at its centre out and back; disturbed: a force that none of its symmetries has."""
+    rng = np.random.default_rng(seed)
+    rise = 10 ** rng.uniform(-2.0, -0.8)
+    thickness = rise / rng.uniform(1.5, 14.0)
+    shape, pinned, held, forced = (int(rng.integers(k)) for k in (3, 2, 2, 2))
+    heights = [
+        lambda x: 0.5 * rise * (1.0 - np.cos(2.0 * np.pi * x)),
+        lambda x: rise * np.sin(np.pi * x),
+        lambda x: 4.0 * rise * x * (1.0 - x),
+    ]
+    curve = bf.Parametric(lambda x: (x, heights[shape](x)), 0.0, 1.0)
+    beam = bf.Beam(curve, 16, bf.CRBF(3), bf.Rectangle(1.0, thickness), MATERIAL)
+    centre, unit = beam.at(0.5), thickness**3 / 12.0 * rise
+    end = bf.Pin if pinned and shape else bf.Clamp
+    supports, turn = [end(beam.start), end(beam.end)], {"rotation": 0.0} if held else {}
+    loads = [bf.PointForce(beam.at(0.3), (0.0, disturbed * rise / thickness * unit), scale=False)] if disturbed else []
+    if forced:
+        supports += [bf.Prescribed(centre, **turn)] if held else []
+        push = bf.PointForce(centre, (0.0, -1500.0 * unit), amplitude=lambda factor: np.sin(2.0 * np.pi * factor))
+        loads.append(push)
+    else:
+        down = lambda factor: -2.2 * rise * (1.0 - abs(1.0 - 2.0 * factor))  # noqa: E731
+        supports.append(bf.Prescribed(centre, uy=down, **turn))
+    return centre, bool(forced), bf.Model([beam], supports, loads)
+
+
+@pytest.mark.parametrize(
+    "seed", [*range(4), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(4, 54))]
+)
+def test_bistable_members_go_out_and_back_like_slightly_imperfect_ones(seed):
+    found = []
+    for disturbed, options in ((0.0, {"unstable": "leave"}), (0.01, {"snap": "jump"})):
+        centre, forced, model = member(seed, disturbed)
+        solution = bf.solve_static(model, at=np.linspace(0.0, 1.0, 41), **options)
+        assert solution.stable.all()
+        found.append((solution.displacement(centre) if forced else solution.reaction(centre))[:, 1])
+    assert found[0] == pytest.approx(found[1], abs=2e-3 * np.abs(found[1]).max())
+
+
+@pytest.mark.parametrize("equal", [True, False])
+@pytest.mark.parametrize("forced", [True, False])
+@pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 14))])
+def test_multistable_chains_go_out_and_back_over_stable_states(seed, forced, equal):
+    """Bars in series: their forces, and the stability of the whole, follow in closed form from their shortenings."""
+    chain = random_chain(seed)
+    end, model, units = bars([chain[0]] * len(chain) if equal else chain)
+    if forced:
+        size = 1.3 * max(unit.force(unit.peak) for unit in units)
+        push = bf.PointForce(end, (0.0, -size), amplitude=lambda factor: np.sin(2.0 * np.pi * factor))
+        model = replace(model, loads=[push])
+    else:
+        size = 2.2 * sum(height for _, _, height in chain)
+        lead = bf.Prescribed(end, ux=0.0, uy=lambda factor: -size * (1.0 - abs(1.0 - 2.0 * factor)))
+        model = replace(model, supports=[*model.supports[:-1], lead], loads=[])
+    solution = bf.solve_static(model, 40, unstable="leave")
+    assert solution.stable.all()
+    at = solution.load_factor
+    load = size * np.sin(2.0 * np.pi * at) if forced else -solution.reaction(end)[:, 1]
+    places = np.array([np.zeros(len(at)), *(solution.displacement(beam.end)[:, 1] for beam in model.beams)])
+    shortened = -np.diff(places, axis=0)
+    forces = np.array([[unit.force(d) for d in row] for unit, row in zip(units, shortened, strict=True)])
+    assert np.abs(forces - load).max() < 1e-9 * np.abs(forces).max()
+    slopes = np.array(
+        [
+            [(unit.force(d + 1e-6) - unit.force(d - 1e-6)) / 2e-6 for d in row]
+            for unit, row in zip(units, shortened, strict=True)
+        ]
+    )
+    falling = np.sum(slopes < 0.0, axis=0)
+    stable = (falling == 0) if forced else (falling == 0) | (falling == 1) & (np.sum(1.0 / slopes, axis=0) < 0.0)
+    critical = np.append(np.diff(at) <= 1.01e-4 * at[1:], False)
+    assert (stable | critical).all()
+    assert critical.any()
+
+
+@pytest.mark.parametrize("apart", [0.0, 1e-7, 1e-5, 1e-3])
+def test_columns_that_buckle_at_nearly_one_load_all_buckle_and_keep_their_side(apart):
+    """Elastica at 1.3 times Euler's load: the tip is 0.7229 L aside."""
+    section, euler = bf.Rectangle(0.01, 0.01), np.pi**2 / 4.0 * 1e-8 / 12.0
+    beams = [bf.Beam(bf.Line((3 * k, 0), (3 * k + 1, 0)), 6, bf.CRBF(3), section, MATERIAL) for k in range(3)]
+    loads = [bf.PointForce(b.end, (-1.3 * euler * (1.0 - k * apart), 0.0)) for k, b in enumerate(beams)]
+    solution = bf.solve_static(bf.Model(beams, [bf.Clamp(b.start) for b in beams], loads), 7, unstable="leave")
+    assert solution.stable.all()
+    aside = np.array([solution.displacement(beam.end)[:, 1] for beam in beams])
+    assert np.abs(aside[:, -1]) == pytest.approx(0.7229 * np.ones(3), abs=1e-4 + 2.0 * apart)
+    beyond = solution.load_factor > 0.8
+    assert (np.sign(aside[:, beyond]) == np.sign(aside[:, -1:])).all()
+
+
+def test_a_column_pulled_through_its_base_by_a_rigid_link_leaves_at_its_own_critical_load():
+    """A load that always points at the base of a cantilever: pi^2 E I / L^2, here with a Lagrange multiplier."""
+    column = bf.Beam(bf.Line((0, 0), (1, 0)), 8, bf.CRBF(3), bf.Rectangle(0.01, 0.01), MATERIAL)
+    slider = bf.Beam(bf.Line((0, 0), (-0.1, 0)), 1, bf.CRBF(3), bf.Rectangle(0.01, 0.01), MATERIAL)
+    critical = np.pi**2 * 1e-8 / 12.0
+    model = bf.Model(
+        [column, slider],
+        [bf.Clamp(column.start), bf.Prescribed(slider.start, uy=0.0, rotation=0.0)],
+        [bf.PointForce(slider.start, (-1.2 * critical, 0.0))],
+        connectors=[RigidLink(column.end, slider.start)],
+    )
+    solution = bf.solve_static(model, 12, unstable="leave")
+    assert solution.stable.all()
+    aside = np.abs(solution.displacement(column.at(0.5))[:, 1])
+    assert np.array_equal(aside > 1e-6, solution.load_factor > (1.0 - 1e-3) / 1.2 + 0.0)
+
+
+def test_what_cannot_be_left_is_refused():
+    column = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(3), bf.Rectangle(0.01, 0.01), MATERIAL)
+    push = bf.PointForce(column.end, (-np.pi**2 * 1e-8 / 12.0, 0.0), scale=False)
+    with pytest.raises(bf.ConvergenceError, match="under the loads that do not scale is unstable"):
+        bf.solve_static(bf.Model([column], [bf.Clamp(column.start)], [push]), unstable="leave")
+    with pytest.raises(bf.InputError, match='unstable must be "keep" or "leave"'):
+        bf.solve_static(bf.Model([column], [bf.Clamp(column.start)], [push]), unstable="yes")

@@ -18,6 +18,7 @@ ROOMS = (
     "cli",
     "__init__",
     "public",
+    "testing",
     "convergence",
     "sweeps",
     "view",

@@ -10,7 +10,7 @@ import numpy as np
 from beamfem.alike import whole
 from beamfem.element import lobatto
 from beamfem.element.coordinates import Coordinates, Gradients, ShearFree, labels
-from beamfem.element.field_checks import require_field
+from beamfem.element.field_shapes import require_field
 from beamfem.element.fields import Cubic, Field, Lagrange
 from beamfem.element.forces import ElasticLine, Forces
 from beamfem.errors import InputError

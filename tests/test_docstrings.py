@@ -10,12 +10,14 @@ import matplotlib
 import pytest
 
 import beamfem as bf
+import beamfem.testing
 from beamfem.convergence.result import Convergence
 from beamfem.section.protocol import CrossSection, HasParts
 from beamfem.sweeps.result import Sweep
 
 RETURNED = {"Convergence": Convergence, "Sweep": Sweep}  # by public functions
 EXTENDED = {"CrossSection": CrossSection, "HasParts": HasParts}  # by user-defined sections, see docs/extending.md
+CHECKS = {name: getattr(beamfem.testing, name) for name in beamfem.testing.__all__}
 PROTOCOLS = (bf.Curve,)  # of public classes that do not derive from them
 WITHOUT_RETURNS = ("to_vtk", "to_csv", "save")
 
@@ -23,7 +25,7 @@ WITHOUT_RETURNS = ("to_vtk", "to_csv", "save")
 def public() -> dict[str, Any]:
     """Return the public functions and classes, and the public methods of classes, by name."""
     found: dict[str, Any] = {}
-    for name, thing in ({name: getattr(bf, name) for name in bf.__all__} | RETURNED | EXTENDED).items():
+    for name, thing in ({name: getattr(bf, name) for name in bf.__all__} | RETURNED | EXTENDED | CHECKS).items():
         found[name] = thing
         if inspect.isclass(thing) and not issubclass(thing, Exception):
             methods = inspect.getmembers(thing, lambda own: inspect.isfunction(own) or isinstance(own, property))
@@ -86,7 +88,7 @@ def test_every_parameter_is_described_and_no_other(name):
     found = sections(thing.__doc__)
     assert sorted(described(found.get("Parameters", []))) == sorted(taken(thing))
     if inspect.isfunction(thing):
-        assert {"Returns", "Examples"} <= set(found)
+        assert {"Raises" if name in CHECKS else "Returns", "Examples"} <= set(found)
 
 
 def documented_above(name: str) -> bool:

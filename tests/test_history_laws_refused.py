@@ -8,6 +8,7 @@ from history_laws import SECTION, YIELDING, Plastic, arm
 from section_laws import LinearLaw
 
 import beamfem as bf
+from beamfem.testing import check_law
 
 
 def test_what_remembers_is_refused_where_it_cannot_be_taken():
@@ -65,19 +66,29 @@ class Changed(Plastic):
 @pytest.mark.parametrize(
     ("mistake", "said"),
     [
-        ("shape", r"resultants of Changed must return numbers of the shape \(\d+, 3\)"),
         ("abs", "resultants of Changed are not analytic"),
         ("nan", "resultants of Changed must be finite and real"),
         ("time", "resultants of Changed change .* after 0.001 s when history is committed"),
-        ("length", r"remember of Changed must return numbers of the shape \(\d+, 2\)"),
-        ("unknown", "remember of Changed must return finite numbers"),
         ("forgets", "energy of Changed does not belong to its resultants"),
-        ("one", r"energy of Changed must return numbers of the shape \(\d+, 2\)"),
         ("energy", "energy of Changed does not belong to its resultants"),
         ("edge", "Changed is not elastic .* at the history that remember has just returned"),
     ],
 )
-def test_a_law_with_a_mistake_is_refused(mistake, said):
+def test_a_law_with_a_mistake_is_found(mistake, said):
+    with pytest.raises(AssertionError, match=said):
+        check_law(Changed(**SECTION, limit=1e-2, hardening=25.0, mistake=mistake))
+
+
+@pytest.mark.parametrize(
+    ("mistake", "said"),
+    [
+        ("shape", r"resultants of Changed must return numbers of the shape \(\d+, 3\)"),
+        ("length", r"remember of Changed must return numbers of the shape \(\d+, 2\)"),
+        ("unknown", "remember of Changed must return finite numbers"),
+        ("one", r"energy of Changed must return numbers of the shape \(\d+, 2\)"),
+    ],
+)
+def test_a_law_that_returns_another_shape_is_refused(mistake, said):
     with pytest.raises(bf.InputError, match=said):
         arm(Changed(**SECTION, limit=1e-2, hardening=25.0, mistake=mistake))
 

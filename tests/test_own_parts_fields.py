@@ -9,6 +9,7 @@ import pytest
 import beamfem as bf
 from beamfem.element.coordinates import Gradients, Rotation
 from beamfem.element.fields import Lagrange
+from beamfem.testing import check_field
 from tests import fields
 from tests.fields import Equidistant, Quintic
 
@@ -33,7 +34,7 @@ def test_equidistant_nodes_are_those_of_the_package_at_low_orders(order):
 
 @pytest.mark.parametrize("order", range(1, 13))
 def test_round_off_of_high_orders_is_no_fault_of_a_field(order):
-    assert bf.Element(Equidistant(order), Rotation(), bf.Structural()).coordinates_per_node == 3
+    check_field(Equidistant(order))
 
 
 @pytest.mark.parametrize("coordinates", [Gradients(), Rotation()])
@@ -51,9 +52,6 @@ def test_slopes_at_three_nodes_are_a_field_but_not_the_cubic_one(coordinates):
     [
         ("Scaled", "centreline(xi)[:, 0] must be 1 at its node and 0 at the others, got 1.01 at node 0, xi = 0"),
         ("DirectorScaled", "director(xi)[:, 0] must be 1 at its node and 0 at the others, got 1.01 at node 0"),
-        ("Inside", "nodes must begin at 0 and end at 1, the ends of an element, got 0.1 to 0.9"),
-        ("Downward", "nodes must be an array of two or more increasing numbers"),
-        ("DirectorFirst", "vectors must be ('r', 'r_y') or ('r', 'r_x', 'r_y'), got ('r_y', 'r')"),
         ("Bumps", "the sum of centreline(xi) must be 1, got "),
         ("Bent", "the sum of the nodes times centreline(xi) must be xi, as in a constant stretch, got "),
         (
@@ -62,14 +60,28 @@ def test_slopes_at_three_nodes_are_a_field_but_not_the_cubic_one(coordinates):
         ),
         ("FlatCurvature", "is no derivative of centreline(xi, derivative=1)[:, "),
         ("SlopesPerNothing", "centreline(xi, derivative=1)[:, 1] must be 1 at its node and 0 at the others, got 2"),
-        ("OneColumnLess", "must be an array (3, 3) of finite numbers, got float64 (3, 2)"),
         ("HeavyRule", "on [0, 1]: its integral of xi^0 must be 1, got 3"),
         ("RuleElsewhere", "director_rule() must return the nodes (3,) and weights (3,)"),
+    ],
+)
+def test_what_is_wrong_with_shape_functions_is_named(kind, said):
+    with pytest.raises(AssertionError, match=re.escape(said)) as caught:
+        check_field(getattr(fields, kind)())
+    assert f"field {kind}" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("kind", "said"),
+    [
+        ("Inside", "nodes must begin at 0 and end at 1, the ends of an element, got 0.1 to 0.9"),
+        ("Downward", "nodes must be an array of two or more increasing numbers"),
+        ("DirectorFirst", "vectors must be ('r', 'r_y') or ('r', 'r_x', 'r_y'), got ('r_y', 'r')"),
+        ("OneColumnLess", "must be an array (3, 3) of finite numbers, got float64 (3, 2)"),
         ("Raising", "director of the field Raising(array([0. , 0.5, 1. ]), 0) cannot be computed: KeyError"),
         ("Fractional", "degree of the field Fractional must be a whole number"),
     ],
 )
-def test_what_is_wrong_with_a_field_is_named(kind, said):
+def test_fields_of_another_shape_are_refused(kind, said):
     with pytest.raises(bf.InputError, match=re.escape(said)) as caught:
         bf.Element(getattr(fields, kind)(), Rotation(), bf.Structural())
     assert f"field {kind}" in str(caught.value)

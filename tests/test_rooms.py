@@ -13,6 +13,7 @@ ROOT = Path(bf.__file__).parent
 ROOMS = (
     "__main__",
     "cli",
+    "testing",
     "convergence",
     "sweeps",
     "__init__",

@@ -10,6 +10,7 @@ import beamfem as bf
 from beamfem.assembly.equations import STATICS, linearise, residual
 from beamfem.assembly.system import system_of
 from beamfem.section.stiffness import StiffnessSection
+from beamfem.testing import check_law
 
 SECTION = {"axial": 1e6, "shear": 4e5, "bending": 100.0, "mass": 1.0, "rotary_inertia": 1e-4}
 COUPLED = {**SECTION, "coupling": 3000.0}
@@ -209,14 +210,20 @@ class Changed(LinearLaw):
     [
         ("abs", "not analytic"),
         ("prestress", "must be zero at zero strain"),
-        ("shape", "must return numbers of the shape"),
         ("unsymmetric", "not symmetric"),
         ("stiffer", "stiffness at zero strain"),
-        ("raises", "resultants of Changed"),
         ("energy", "energy of Changed does not belong"),
     ],
 )
-def test_a_law_with_a_mistake_is_refused(mistake, said):
+def test_a_law_with_a_mistake_is_found(mistake, said):
+    with pytest.raises(AssertionError, match=said):
+        check_law(Changed(**SECTION, mistake=mistake))
+
+
+@pytest.mark.parametrize(
+    ("mistake", "said"), [("shape", "must return numbers of the shape"), ("raises", "resultants of Changed")]
+)
+def test_a_law_that_returns_no_resultants_is_refused(mistake, said):
     with pytest.raises(bf.InputError, match=said):
         arm(Changed(**SECTION, mistake=mistake))
 

@@ -1,20 +1,13 @@
 """Contributions of all connectors of a model to residual and tangent, energies and momenta."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from beamfem.assembly.connector import COMPLEX_STEP, Connector, Motion
-from beamfem.assembly.connector_checks import (
-    follows_time,
-    require_analytic,
-    require_energies,
-    require_no_rotations,
-    resists_rates,
-)
-from beamfem.assembly.connector_conditions import require_workless
-from beamfem.assembly.connector_directions import passes
+from beamfem.assembly.connector_rates import TIMES, follows_time, gravity_of, resists_rates, somewhere_near
+from beamfem.errors import InputError
 from beamfem.model.contribution import remembered, uses_rotations
 from beamfem.model.load import factor
 from beamfem.model.model import Model
@@ -22,6 +15,7 @@ from beamfem.once import cached_property
 
 _ROUND_OFF = 1e-13  # relative to the largest stiffness of a contribution
 _COORDINATES = ("r^x", "r^y", "theta")
+_TURNED = np.array([0.0, 0.0, 0.1])  # arbitrary
 _NO_NUMBERS, _NOTHING = np.empty(0, dtype=np.int64), np.empty(0)
 
 
@@ -156,7 +150,7 @@ class Connectors:
 
 
 def connectors_of(model: Model, static: bool) -> Connectors:
-    """Return the connectors of a model with their coordinates. Raises InputError for inconsistent ones."""
+    """Return the connectors of a model with their coordinates. Raises InputError for wrong shapes."""
     if not model.connectors:
         return Connectors(model, static, ())
     if "connectors" not in model.tables:  # checked once for statics and motions
@@ -165,7 +159,7 @@ def connectors_of(model: Model, static: bool) -> Connectors:
 
 
 def _checked_connectors(model: Model) -> tuple[Connector, ...]:
-    """Return the connectors of a model. Raises InputError for inconsistent ones."""
+    """Return the connectors of a model, evaluated once to check shapes and finite values."""
     first, connectors = model.coordinates, []
     behind = first + sum(item.unknowns for item in model.connectors)
     for item in model.connectors:
@@ -181,20 +175,18 @@ def _checked_connectors(model: Model) -> tuple[Connector, ...]:
         memory = np.arange(behind, behind + len(remembered(item)))
         behind += len(memory)
         connectors.append(Connector(item, np.array(dofs, dtype=np.int64), multipliers, memory, np.array(positions)))
-    known: set[type] = set()
     for connector in connectors:
-        _require_right(connector.alone, known)
+        _require_finite(connector.alone)
     return tuple(connectors)
 
 
-def _require_right(item: Connector, known: set[type]) -> None:
-    """Raise InputError for an inconsistent connector; known: classes of which one has passed all checks."""
-    require_no_rotations(item)
-    kind = type(item.item)
-    if kind in known and passes(item):
-        require_workless(item)
-        return
-    require_analytic(item)
-    require_workless(item)
-    require_energies(item)
-    known.add(kind)
+def _require_finite(item: Connector) -> None:
+    """Raise InputError if the force of a connector is not finite near the reference, or a shape is wrong.
+
+    Points are turned even without rotations, so that moments which rotations would cause are refused too.
+    """
+    at = item.at(somewhere_near(item), TIMES[0], gravity_of(item))
+    if item.per_point == 2:
+        at = replace(at, q=at.q + _TURNED, v=at.v + _TURNED, a=at.a + _TURNED)
+    if not (np.isfinite(item.force(at)).all() and np.isfinite(item.energy(at)).all()):
+        raise InputError(f"force or energy of {item.name} is not finite near the reference")

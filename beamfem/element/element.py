@@ -8,7 +8,7 @@ import numpy as np
 
 from beamfem.element import lobatto
 from beamfem.element.coordinates import Coordinates, Gradients, ShearFree, labels
-from beamfem.element.field_checks import require_field
+from beamfem.element.field_shapes import require_field
 from beamfem.element.fields import Cubic, Field
 from beamfem.element.forces import ElasticLine, Forces
 from beamfem.element.tables import Tables, tables_of

@@ -55,8 +55,8 @@ class Contribution(Protocol):
     `Model(connectors=[...])`.
 
     Tangents are complex-step derivatives of `force`, exact to round-off, so it must consist of analytic functions:
-    `x**2` and `np.sqrt`, not `abs`, `np.hypot` or `np.linalg.norm`. This is tested when a model is solved. Cases such
-    as contact are distinguished by real parts, `np.where(gap.real < 0.0, ...)`.
+    `x**2` and `np.sqrt`, not `abs`, `np.hypot` or `np.linalg.norm`. `beamfem.testing.check_connector` tests this. Cases
+    such as contact are distinguished by real parts, `np.where(gap.real < 0.0, ...)`.
 
     A class attribute or field `rotations = False` is optional. The force then must not depend on rotations, and its
     moments must be zero. Otherwise each point has an angle as a coordinate, which keeps the thickness of elements with

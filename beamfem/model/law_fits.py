@@ -2,11 +2,13 @@
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from beamfem.element.coordinates import ShearFree
 from beamfem.element.structural import Structural
 from beamfem.errors import InputError
-from beamfem.section.law import SectionLaw
-from beamfem.section.law_checks import require_law
+from beamfem.section.law import ConstitutiveLaw, SectionLaw
+from beamfem.section.protocol import CrossSection
 from beamfem.validation import fulfils, members
 
 if TYPE_CHECKING:
@@ -14,7 +16,8 @@ if TYPE_CHECKING:
 
 
 def require_law_fits(beam: "Beam") -> None:
-    """Raise InputError if the section has a law but the element assumes a linear one, or if the law is inconsistent.
+    """Raise InputError if the section has a law but the element assumes a linear one, or if the law returns
+    arrays of another shape or numbers that are not finite.
 
     A law is a function of all strains at one point. Elements that evaluate some strains at other points, or scale them
     there, are defined for quadratic energies only. A shear that is zero at the nodes, for example, is 3/2 of its mean
@@ -47,7 +50,19 @@ def require_law_fits(beam: "Beam") -> None:
             "CRBF(order=3), ANCF(Structural()), ANCFCRBF(Structural()) or, without shear at the nodes, "
             'ShearRigid(stretchable=False, integration="reduced")'
         )
-    require_law(beam.law)
+    require_shapes(beam.law)
+
+
+def require_shapes(law: ConstitutiveLaw) -> None:
+    """Raise InputError if a law returns arrays of another shape, or numbers that are not finite, at zero strain."""
+    if not fulfils(law.section, CrossSection):
+        raise InputError(f"{law.name} has resultants, but is no section: it lacks members of CrossSection")
+    zero, start = np.zeros((2, 3)), law.at_start(2)
+    values = [*law.linearised(zero, start), law.energy(zero, start)]
+    if law.remembers:
+        values.append(law.remember(zero, start))
+    if not all(np.isfinite(each).all() for each in values):
+        raise InputError(f"resultants, tangent and energy of {law.name} must be finite at zero strain")
 
 
 def _require_whole(section: object) -> None:

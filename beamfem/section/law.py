@@ -21,7 +21,7 @@ class SectionLaw(Protocol):
     Its `rigidity` is its stiffness at zero strain. Tangents are complex-step derivatives of `resultants`, exact to
     round-off. Both methods must therefore consist of analytic functions and evaluate many strains at once:
     `np.tanh` and `x**2`, not `abs`. Cases are distinguished by real parts, `np.where(strain[:, 0].real < 0.0, ...)`.
-    This is tested when a beam is made.
+    `beamfem.testing.check_law` tests this.
     """
 
     def resultants(self, strain: np.ndarray, material: Material | None) -> np.ndarray:
@@ -66,7 +66,7 @@ class RememberingLaw(Protocol):
     The history variables are part of the state: a rejected step restores them, and a solution has them in every row.
     A state must therefore determine its section forces: with the history that `remember` returns and dt = 0, these are
     the section forces of the step and the derivative of the stored energy at this history, and the tangent is the
-    second derivative of that energy. This is tested when a beam is made.
+    second derivative of that energy. `beamfem.testing.check_law` tests this.
 
     References
     ----------

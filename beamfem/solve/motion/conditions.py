@@ -5,7 +5,7 @@ from scipy.linalg import LinAlgError
 from scipy.sparse import block_array, csc_array
 
 from beamfem.assembly.connector import Motion
-from beamfem.assembly.connector_checks import follows_time
+from beamfem.assembly.connector_rates import follows_time
 from beamfem.assembly.equations import INERTIA, STATICS, linearise
 from beamfem.assembly.system import System
 from beamfem.errors import InputError

@@ -1,14 +1,13 @@
-"""Checks of section laws: analytic, with an energy, and determined by the committed history."""
+"""Check of a section law: analytic, with an energy, and determined by the committed history."""
 
 from collections.abc import Callable
-from typing import Any, cast
 
 import numpy as np
 
-from beamfem.errors import InputError
-from beamfem.section.law import COMPLEX_STEP, ConstitutiveLaw
+from beamfem.material import Material
+from beamfem.model.law_fits import require_shapes
+from beamfem.section.law import COMPLEX_STEP, ConstitutiveLaw, law_of
 from beamfem.section.protocol import CrossSection, Rigidity
-from beamfem.validation import fulfils
 
 _STEP = 1e-4  # of a sample: differences of fourth order are then accurate to about 1e-11
 _AGREE = 1e-6  # of the largest entry of a stiffness
@@ -18,26 +17,62 @@ _SIZES = (1e-5, 1e-3, 3e-2)  # strains of the outer fibre at which a law is chec
 _TIMES = (0.0, 1e-3, 1.0)  # time steps [s] at which a law with history is checked
 
 
-def require_law(law: ConstitutiveLaw) -> None:
-    """Raise InputError if a law does not meet the requirements of `SectionLaw` or `RememberingLaw`."""
+def check_law(section: CrossSection, material: Material | None = None) -> None:
+    """Check that a user-defined section law is consistent, at arbitrary strains.
+
+    Resultants are zero at zero strain and analytic: derivatives by complex steps are those by differences, and
+    symmetric. They are the derivatives of the energy, and the stiffness at zero strain is the rigidity of the section.
+    With history, a state determines its section forces, and it is elastic at the history that `remember` has just
+    returned, see `RememberingLaw`.
+
+    Parameters
+    ----------
+    section : CrossSection
+        Section with `resultants` and `energy`, see `SectionLaw` and `RememberingLaw`.
+    material : Material, optional
+        Material of the beam, passed to the section.
+
+    Raises
+    ------
+    AssertionError
+        If the law is inconsistent; the message names what is wrong.
+    InputError
+        If it returns arrays of another shape or numbers that are not finite.
+
+    Examples
+    --------
+    >>> from beamfem.testing import check_law
+    >>> class Softening(bf.Section):
+    ...     def resultants(self, strain, material):
+    ...         stiffness = self.rigidity(material)
+    ...         return strain * [stiffness.axial, stiffness.shear, stiffness.bending]
+    ...     def energy(self, strain, material):
+    ...         return np.sum(strain * self.resultants(strain, material), axis=1)
+    >>> try:
+    ...     check_law(Softening(area=5e-3, second_moment=4e-6, height=0.1), steel)
+    ... except AssertionError as error:
+    ...     print(str(error).partition(" at strains")[0])
+    energy of Softening does not belong to its resultants
+    """
+    law = law_of(section, material)
+    if law is None:
+        raise AssertionError(f"{type(section).__name__} has no resultants and energy: it is no section law")
+    require_shapes(law)
     zero, start = np.zeros((1, 3)), law.at_start(1)
-    section = cast(Any, law.section)
-    if not fulfils(section, CrossSection):
-        raise InputError(f"{law.name} has resultants, but is no section: it lacks members of CrossSection")
     if np.any(law.resultants(zero, start) != 0.0) or np.any(law.energy(zero, start) != 0.0):
-        raise InputError(
+        raise AssertionError(
             f"resultants and energy of {law.name} must be zero at zero strain: a beam is free of stress along its curve"
         )
     low, high = section.bounds
     lengths = np.array([1.0, 1.0, 2.0 / (high - low)])
     for size in _SIZES:
         for dt in _TIMES if law.remembers else _TIMES[:1]:
-            _require_consistent(law, size * lengths * _SAMPLES, size * lengths, dt)
-    _require_rigidity(law, section.rigidity(law.material), lengths)
+            _check_consistent(law, size * lengths * _SAMPLES, size * lengths, dt)
+    _check_rigidity(law, section.rigidity(law.material), lengths)
 
 
-def _require_consistent(law: ConstitutiveLaw, strain: np.ndarray, unit: np.ndarray, dt: float) -> None:
-    """Raise InputError if complex steps, differences and energy of a law disagree, or committing history changes it."""
+def _check_consistent(law: ConstitutiveLaw, strain: np.ndarray, unit: np.ndarray, dt: float) -> None:
+    """Compare complex steps, differences and energy of a law, before and after history is committed."""
     history = law.at_start(len(strain))
     forces, tangent = law.linearised(strain, history, dt)
     moved = law.resultants(strain.astype(complex), history, dt).imag
@@ -45,10 +80,10 @@ def _require_consistent(law: ConstitutiveLaw, strain: np.ndarray, unit: np.ndarr
     largest = np.abs(whole).max(initial=0.0)
     where = f"at strains such as {strain[0].tolist()}" + (f" after {dt:g} s" if law.remembers else "")
     if not np.isfinite(whole).all() or not np.isfinite(work).all() or np.any(moved != 0.0):
-        raise InputError(f"resultants of {law.name} must be finite and real {where}")
+        raise AssertionError(f"resultants of {law.name} must be finite and real {where}")
     slopes = _slopes(lambda at: law.resultants(at, history, dt).real, strain, unit) * unit
     if not np.abs(np.moveaxis(slopes, 0, -1) - whole).max() <= _AGREE * largest:
-        raise InputError(
+        raise AssertionError(
             f"resultants of {law.name} are not analytic, or not symmetric, {where}: their derivatives by complex steps "
             f"and by differences disagree (abs, hypot, linalg.norm or conj lose complex steps)"
         )
@@ -57,21 +92,21 @@ def _require_consistent(law: ConstitutiveLaw, strain: np.ndarray, unit: np.ndarr
         history = law.remember(strain, history, dt)
         again, elastic = law.linearised(strain, history)
         if not np.abs((again - forces) * unit).max() <= least:
-            raise InputError(
+            raise AssertionError(
                 f"resultants of {law.name} change {where} when history is committed: with the history that remember "
                 f"returns and dt = 0 they must be those of the step"
             )
     if dt > 0.0:
         return
     if not np.abs(_force(law, strain, history, unit) - work).max() <= least:
-        raise InputError(
+        raise AssertionError(
             f"energy of {law.name} does not belong to its resultants {where}: they must be its derivatives by stretch, "
             f"shear and curvature"
         )
     if law.remembers:
         second = np.moveaxis(_slopes(lambda at: _force(law, at, history, unit), strain, unit), 0, -1)
         if not np.abs(second - elastic * unit[:, None] * unit).max() <= _AGREE * largest:
-            raise InputError(
+            raise AssertionError(
                 f"{law.name} is not elastic {where} at the history that remember has just returned: the tangent there "
                 f"must be the second derivative of the stored energy. Let a step yield beyond a limit with a tolerance "
                 f"only, such as 1e-9 of it, so that round-off decides nothing"
@@ -95,13 +130,13 @@ def _slopes(function: Callable[[np.ndarray], np.ndarray], at: np.ndarray, unit: 
     return np.array(slopes)
 
 
-def _require_rigidity(law: ConstitutiveLaw, rigidity: Rigidity, lengths: np.ndarray) -> None:
-    """Raise InputError if the stiffness of a law at zero strain is not the rigidity of its section."""
+def _check_rigidity(law: ConstitutiveLaw, rigidity: Rigidity, lengths: np.ndarray) -> None:
+    """Raise AssertionError if the stiffness of a law at zero strain is not the rigidity of its section."""
     stiffness = np.diag([rigidity.axial, rigidity.shear, rigidity.bending])
     stiffness[0, 2] = stiffness[2, 0] = rigidity.coupling
     units = lengths[:, None] * lengths
     if np.abs((law.stiffness - stiffness) * units).max() > _AGREE * np.abs(stiffness * units).max():
-        raise InputError(
+        raise AssertionError(
             f"the law of {law.name} begins with the stiffness {law.stiffness.tolist()}, but its rigidity is "
             f"{stiffness.tolist()}: rigidity(material) must be the stiffness at zero strain"
         )

@@ -1,4 +1,4 @@
-"""Check of connectors with conditions: what holds a condition does no work in the motions that the condition allows."""
+"""Check that constraint forces of a connector do no work in the motions that its conditions allow."""
 
 from collections.abc import Iterator
 
@@ -20,8 +20,8 @@ _TIME, _GRAVITY = 0.5, np.zeros(2)  # arbitrary
 _BY_Q, _BY_V = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
 
 
-def require_workless(item: Connector) -> None:
-    """Raise InputError if the forces of multipliers are nowhere combinations of the derivatives of the conditions.
+def check_constraint_forces(item: Connector) -> None:
+    """Raise AssertionError if the forces of multipliers are nowhere combinations of the derivatives of the conditions.
 
     Friction that grows with a multiplier has forces besides: it takes its direction from velocities or from the past,
     or vanishes where nothing has slid, and passes. So do forces that are right only where the conditions are met, and
@@ -42,14 +42,14 @@ def require_workless(item: Connector) -> None:
             if size < least:
                 least, least_row = size, row
     if wrong >= 0:
-        raise InputError(
+        raise AssertionError(
             f"force of {item.name}: multiplier {wrong} does not act along the derivative of its condition by q; the "
             "force must contain each multiplier times the derivative of its own condition, with this sign"
         )
     if least == np.inf or _knows_what_slides(item):
         return
     point, direction = divmod(least_row, item.per_point)
-    raise InputError(
+    raise AssertionError(
         f"force of {item.name}: the forces of its multipliers do work in motions that its conditions allow; "
         f"{('fx', 'fy', 'the moment')[direction]} at points[{point}] is not the multipliers times the derivatives of "
         "the conditions by q there. A friction that grows with a multiplier takes its direction from at.v or at.memory"

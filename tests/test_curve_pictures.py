@@ -52,14 +52,6 @@ def test_what_is_no_quantity_is_refused(x, said):
         solution.plot_curve(x, ("fx", OWN.start))
 
 
-def test_an_option_that_is_misspelt_is_named_with_the_right_one():
-    solution = bf.solve_static(PUSHED)
-    with pytest.raises(bf.InputError, match=r"Solution\.plot has no parameter 'color'; did you mean colour"):
-        solution.plot(color="moment")
-    with pytest.raises(bf.InputError, match="animate has no parameter 'fsp'"):
-        solution.animate("film.gif", fsp=3)
-
-
 STIFF = bf.Model([OWN], [bf.Clamp(OWN.start)], [bf.PointForce(OWN.at(0.5), (0.0, -30.0))])
 SOLVED = {
     "statics": lambda: bf.solve_static(STIFF, steps=3),

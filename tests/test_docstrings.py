@@ -18,8 +18,6 @@ from beamfem.sweeps.result import Sweep
 RETURNED = {"Convergence": Convergence, "Sweep": Sweep}  # by public functions
 EXTENDED = {"CrossSection": CrossSection, "HasParts": HasParts}  # by user-defined sections, see docs/extending.md
 CHECKS = {name: getattr(beamfem.testing, name) for name in beamfem.testing.__all__}
-PROTOCOLS = (bf.Curve,)  # of public classes that do not derive from them
-WITHOUT_RETURNS = ("to_vtk", "to_csv", "save")
 
 
 def public() -> dict[str, Any]:
@@ -91,40 +89,11 @@ def test_every_parameter_is_described_and_no_other(name):
         assert {"Raises" if name in CHECKS else "Returns", "Examples"} <= set(found)
 
 
-def documented_above(name: str) -> bool:
-    """Return whether a method refers to that of a base class or protocol, which has the sections for its parameters."""
-    owner, own = name.split(".")
-    kind, method = PUBLIC[owner], PUBLIC[name]
-    protocols = [each for each in PROTOCOLS if all(hasattr(kind, member) for member in members(each))]
-    for base in (*kind.__mro__, *protocols):
-        above = vars(base).get(own)
-        if inspect.isfunction(above) and above is not method and taken(above) == taken(method):
-            complete = sorted(described(sections(above.__doc__ or "").get("Parameters", []))) == sorted(taken(above))
-            if complete and f"`{base.__name__}.{own}`" in method.__doc__:
-                return True
-    return False
-
-
-def members(protocol: type) -> list[str]:
-    """Return the names that a class needs to fulfil a protocol."""
-    return [name for name in vars(protocol) if not name.startswith("_")]
-
-
 @pytest.mark.parametrize("name", WITH_PARAMETERS)
-def test_methods_with_parameters_have_sections_for_all_of_them(name):
+def test_a_method_that_describes_parameters_describes_all_of_them(name):
     found = sections(PUBLIC[name].__doc__ or "")
-    if "Parameters" not in found and documented_above(name):
-        return
-    assert sorted(described(found.get("Parameters", []))) == sorted(taken(PUBLIC[name]))
-    assert "Returns" in found or name.split(".")[1] in WITHOUT_RETURNS
-
-
-@pytest.mark.parametrize(
-    "name",
-    [f"Solution.{own}" for own in ("plot", "animate", "to_vtk", "save", "section_forces", "reaction", "position")],
-)
-def test_methods_that_are_used_most_have_sections(name):
-    assert {"Parameters", "Examples"} <= set(sections(PUBLIC[name].__doc__))
+    if "Parameters" in found:
+        assert sorted(described(found["Parameters"])) == sorted(taken(PUBLIC[name]))
 
 
 @pytest.mark.parametrize("name", [name for name in PUBLIC if "." in name])

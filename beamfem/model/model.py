@@ -234,17 +234,9 @@ class Model:
         return units_of(self.units)
 
     def unit(self, unit: str) -> str:
-        """Return the name of the model's unit for an SI unit.
+        """Return the model's unit for an SI unit such as "Pa", "N m" or "kg".
 
-        Parameters
-        ----------
-        unit : str
-            SI unit, such as "Pa", "N m" or "kg".
-
-        Returns
-        -------
-        str
-            The unit of the model; a name that is no SI unit is returned as it is.
+        A name that is no SI unit is returned as it is.
 
         Examples
         --------
@@ -297,22 +289,7 @@ class Model:
     def number_of(self, beam: Beam) -> int:
         """Return the number of a beam, counted from 0.
 
-        Parameters
-        ----------
-        beam : Beam
-            A beam of the model.
-
-        Returns
-        -------
-        int
-            Its place among `beams`.
-
-        Raises
-        ------
-        InputError
-            For anything but a beam.
-        UnknownPointError
-            For a beam that is not in the model.
+        Raises InputError for anything but a beam, UnknownPointError for a beam that is not in the model.
 
         Examples
         --------
@@ -329,24 +306,9 @@ class Model:
         return UnknownPointError("; ".join(filter(None, (message, beam_like(self.beams, beam)))))
 
     def mesh_of(self, point: Point) -> BeamMesh:
-        """Return the mesh that a point lies on.
+        """Return the mesh that a point lies on, which is that of its beam.
 
-        Parameters
-        ----------
-        point : Point
-            A point of a beam of the model.
-
-        Returns
-        -------
-        BeamMesh
-            The mesh of its beam.
-
-        Raises
-        ------
-        InputError
-            For anything but a point.
-        UnknownPointError
-            For a point on a beam that is not in the model.
+        Raises InputError for anything but a point, UnknownPointError for a point on a beam that is not in the model.
 
         Examples
         --------
@@ -405,6 +367,8 @@ class Model:
     def with_imperfection(self, modes: Any, size: float, mode: int = 0) -> "Model":
         """Return the model with its axes displaced by a mode and stress-free in the new shape.
 
+        Raises InputError if the modes do not fit the model or move no axis.
+
         Parameters
         ----------
         modes : Buckling, Modes or array
@@ -413,16 +377,6 @@ class Model:
             Largest displacement.
         mode : int, default 0
             Index of the mode.
-
-        Returns
-        -------
-        Model
-            The model with the imperfection.
-
-        Raises
-        ------
-        InputError
-            If the modes do not fit the model or move no axis.
 
         Examples
         --------
@@ -434,24 +388,10 @@ class Model:
         return with_imperfection(self, modes, size, mode)
 
     def plot(self, path: str | PathLike[str] | None = None) -> Any:
-        """Draw the undeformed model with its supports and loads.
+        """Draw the undeformed model with its supports and loads and return the figure.
 
-        Nothing is solved, so mechanisms and overloaded models can be drawn too.
-
-        Parameters
-        ----------
-        path : path, optional
-            File to write (PNG, SVG, PDF).
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The figure.
-
-        Raises
-        ------
-        MissingPackageError
-            Without matplotlib.
+        Nothing is solved, so mechanisms and overloaded models can be drawn too. path: file to write (PNG, SVG, PDF).
+        Raises MissingPackageError without matplotlib.
 
         Examples
         --------

@@ -227,19 +227,9 @@ class Solution:
         return self.statistics.iterations
 
     def fields(self, point: Point) -> Fields:
-        """Return position, gradients, rotation, shear angle, strain and stress at a point.
+        """Return position, gradients, rotation, shear angle, strain and stress at a point over the steps.
 
         Where two elements meet or a load acts, strain and stress are those on the side towards the beam's end.
-
-        Parameters
-        ----------
-        point : Point
-            A point of a beam, such as `beam.end` or `beam.at(0.5)`.
-
-        Returns
-        -------
-        Fields
-            The fields over the steps.
 
         Examples
         --------
@@ -255,17 +245,7 @@ class Solution:
         return Fields(*(postprocess.at_single_point(getattr(result, name)) for name in Fields.__dataclass_fields__))
 
     def position(self, point: Point) -> np.ndarray:
-        """Return the position of a point.
-
-        Parameters
-        ----------
-        point : Point
-            A point of a beam.
-
-        Returns
-        -------
-        array, [m], (steps, 2)
-            Position (x, y).
+        """Return the position (x, y) of a point (steps, 2) [m].
 
         Examples
         --------
@@ -275,17 +255,7 @@ class Solution:
         return postprocess.position(self.model.mesh_of(point), self.p, point.fraction)
 
     def displacement(self, point: Point) -> np.ndarray:
-        """Return the displacement of a point from the reference configuration.
-
-        Parameters
-        ----------
-        point : Point
-            A point of a beam.
-
-        Returns
-        -------
-        array, [m], (steps, 2)
-            Displacement (ux, uy).
+        """Return the displacement (ux, uy) of a point from the reference configuration (steps, 2) [m].
 
         Examples
         --------
@@ -296,17 +266,7 @@ class Solution:
         return self.position(point) - postprocess.start(mesh, point.fraction)
 
     def velocity(self, point: Point) -> np.ndarray:
-        """Return the velocity of a point.
-
-        Parameters
-        ----------
-        point : Point
-            A point of a beam.
-
-        Returns
-        -------
-        array, [m/s], (steps, 2)
-            Velocity (vx, vy).
+        """Return the velocity (vx, vy) of a point (steps, 2) [m/s].
 
         Examples
         --------
@@ -319,17 +279,9 @@ class Solution:
         return rate_at(mesh, self.p, self.v, element, xi).r[:, 0]
 
     def rotation(self, point: Point) -> np.ndarray:
-        """Return the rotation of the section, counter-clockwise positive, full turns included.
+        """Return the rotation of the section from the reference (steps,) [rad].
 
-        Parameters
-        ----------
-        point : Point
-            A point of a beam.
-
-        Returns
-        -------
-        array, [rad], (steps,)
-            Rotation from the reference.
+        Counter-clockwise positive, full turns included.
 
         Examples
         --------
@@ -340,24 +292,9 @@ class Solution:
         return rotations(self, [point])[:, 0]
 
     def reaction(self, point: Point) -> np.ndarray:
-        """Return the reaction of supports and springs on the beam at a point.
+        """Return fx, fy [N] and m [N m] of supports and springs on the beam at a point (steps, 3).
 
-        Supports at joined points of other beams are not included.
-
-        Parameters
-        ----------
-        point : Point
-            A supported point.
-
-        Returns
-        -------
-        array, (steps, 3)
-            fx, fy [N], m [N m].
-
-        Raises
-        ------
-        InputError
-            If the point has no support.
+        Supports at joined points of other beams are not included. Raises InputError if the point has no support.
 
         Examples
         --------
@@ -367,22 +304,9 @@ class Solution:
         return reaction(self, point)
 
     def connector_force(self, connector: Contribution) -> np.ndarray:
-        """Return the forces of a connector on its points.
+        """Return fx, fy [N] and m [N m] of a connector on each of its m points (steps, m, 3).
 
-        Parameters
-        ----------
-        connector : Contribution
-            One of `model.connectors`.
-
-        Returns
-        -------
-        array, (steps, m, 3)
-            fx, fy [N], m [N m] at each of its m points.
-
-        Raises
-        ------
-        InputError
-            For a connector that is not in the model.
+        Raises InputError for a connector that is not in the model.
 
         Examples
         --------
@@ -391,22 +315,9 @@ class Solution:
         return connector_force(self, connector)
 
     def multipliers(self, connector: Contribution) -> np.ndarray:
-        """Return the additional unknowns of a connector, such as multipliers.
+        """Return the k additional unknowns of a connector, such as multipliers (steps, k).
 
-        Parameters
-        ----------
-        connector : Contribution
-            One of `model.connectors`.
-
-        Returns
-        -------
-        array, (steps, k)
-            Its unknowns.
-
-        Raises
-        ------
-        InputError
-            For a connector that is not in the model.
+        Raises InputError for a connector that is not in the model.
 
         Examples
         --------
@@ -443,22 +354,9 @@ class Solution:
         return remainders(self)
 
     def section_forces(self, beam: Beam) -> SectionForces:
-        """Return normal force, shear force and moment along a beam.
+        """Return normal force, shear force and moment along a beam over the steps.
 
-        Parameters
-        ----------
-        beam : Beam
-            A beam of the model.
-
-        Returns
-        -------
-        SectionForces
-            The forces, (steps, stations).
-
-        Raises
-        ------
-        InputError
-            For a beam of another model.
+        Raises InputError for a beam of another model.
 
         Examples
         --------
@@ -470,22 +368,9 @@ class Solution:
         return section_forces(self, beam)
 
     def stresses(self, beam: Beam) -> BeamStress:
-        """Return the extreme stresses of the sections along a beam.
+        """Return the extreme stresses of the sections along a beam over the steps.
 
-        Parameters
-        ----------
-        beam : Beam
-            A beam of the model.
-
-        Returns
-        -------
-        BeamStress
-            The stresses, (steps, stations).
-
-        Raises
-        ------
-        InputError
-            For a beam of another model.
+        Raises InputError for a beam of another model.
 
         Examples
         --------
@@ -527,14 +412,9 @@ class Solution:
         return tuple(postprocess.momenta(mesh, self.p, self.v) for mesh in self.model.meshes)
 
     def energy(self) -> Energy:
-        """Return kinetic, strain, potential, total and dissipated energy, see `Energy`.
+        """Return kinetic, strain, potential, total and dissipated energy (steps,) [J], see `Energy`.
 
         The potential is zero in the reference configuration.
-
-        Returns
-        -------
-        Energy
-            Energies [J], (steps,).
 
         Examples
         --------
@@ -558,12 +438,7 @@ class Solution:
         return energy_drift(self) if len(self) else None
 
     def linear_momentum(self) -> np.ndarray:
-        """Return the linear momentum.
-
-        Returns
-        -------
-        array, [kg m/s], (steps, 2)
-            Momentum in x and y.
+        """Return the linear momentum in x and y (steps, 2) [kg m/s].
 
         Examples
         --------
@@ -574,12 +449,7 @@ class Solution:
         return np.asarray(sum(m.linear for m in self._momenta) + momenta_of_connectors(self)[:, :2])
 
     def angular_momentum(self) -> np.ndarray:
-        """Return the angular momentum about the origin.
-
-        Returns
-        -------
-        array, [kg m^2/s], (steps,)
-            Angular momentum.
+        """Return the angular momentum about the origin (steps,) [kg m^2/s].
 
         Examples
         --------
@@ -590,26 +460,9 @@ class Solution:
         return np.asarray(sum(m.angular for m in self._momenta) + momenta_of_connectors(self)[:, 2])
 
     def spline(self, beam: Beam, row: int = -1) -> BSpline:
-        """Return the exact deformed axis of a beam of cubic elements as a cubic B-spline.
+        """Return the exact deformed axis of a beam of cubic elements in a row as a cubic B-spline.
 
-        Its knots are those of the beam's own spline, or arc lengths.
-
-        Parameters
-        ----------
-        beam : Beam
-            A beam of cubic elements.
-        row : int, default -1
-            Row of the solution.
-
-        Returns
-        -------
-        BSpline
-            The deformed axis.
-
-        Raises
-        ------
-        InputError
-            For other elements.
+        Its knots are those of the beam's own spline, or arc lengths. Raises InputError for other elements.
 
         Examples
         --------
@@ -628,11 +481,12 @@ class Solution:
         return without_removable_knots(spline_through_hermite(mesh.parameter, e[:, 0], mesh.rate * e[:, 1]))
 
     def to_html(self, path: str | PathLike[str], *, title: str | None = None, frames: int = 60) -> Path:
-        """Write an HTML page with a slider over the steps: a single file that works offline.
+        """Write an HTML page with a slider over the steps and return the path; the file works offline.
 
         The body moves with its supports, optionally coloured by a section force [N, N m], rotation [rad], displacement
         [m] or speed [m/s]; a curve of the largest displacement and the statistics are shown beside it. The file is
-        smaller than 1 MB: for large models only the axes and fewer steps are drawn.
+        smaller than 1 MB: for large models only the axes and fewer steps are drawn. Raises InputError for another
+        suffix.
 
         Parameters
         ----------
@@ -642,16 +496,6 @@ class Solution:
             Heading of the page.
         frames : int, default 60
             Largest number of steps.
-
-        Returns
-        -------
-        Path
-            The file.
-
-        Raises
-        ------
-        InputError
-            For another suffix.
 
         Examples
         --------
@@ -671,7 +515,9 @@ class Solution:
         supports: bool = True,
         loads: bool = True,
     ) -> Any:
-        """Draw the deformed body, at several steps later ones darker.
+        """Draw the deformed body, at several steps later ones darker, and return the figure.
+
+        Raises InputError for an unknown option or value, MissingPackageError without matplotlib.
 
         Parameters
         ----------
@@ -690,18 +536,6 @@ class Solution:
         supports, loads : bool, default True
             Whether to draw their symbols, each load on the shape at which it is largest.
 
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The figure.
-
-        Raises
-        ------
-        InputError
-            For an unknown option or value.
-        MissingPackageError
-            Without matplotlib.
-
         Examples
         --------
         >>> figure = solution.plot("cantilever.png", colour="moment", loads=False)
@@ -718,7 +552,9 @@ class Solution:
         quantity: str = "displacement",
         path: str | PathLike[str] | None = None,
     ) -> Any:
-        """Plot a quantity at one or several points against time or load factor.
+        """Plot a quantity at one or several points against time or load factor and return the figure.
+
+        Raises InputError for an unknown quantity, or one that needs a point; MissingPackageError without matplotlib.
 
         Parameters
         ----------
@@ -729,18 +565,6 @@ class Solution:
             "reaction_moment" [N m]; without a point "energy" [J].
         path : path, optional
             File to write (PNG, SVG, PDF).
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The figure.
-
-        Raises
-        ------
-        InputError
-            For an unknown quantity, or one that needs a point.
-        MissingPackageError
-            Without matplotlib.
 
         Examples
         --------
@@ -789,9 +613,10 @@ class Solution:
     def plot_load_displacement(
         self, point: Point, quantity: str = "uy", path: str | PathLike[str] | None = None
     ) -> Any:
-        """Plot the load factor against a displacement or rotation of a point.
+        """Plot the load factor against a displacement or rotation of a point and return the figure.
 
-        Limit points (circles) and bifurcations (diamonds) of a `Path` are marked, each with its load factor.
+        Limit points (circles) and bifurcations (diamonds) of a `Path` are marked, each with its load factor. Raises
+        InputError for another quantity or a motion, MissingPackageError without matplotlib.
 
         Parameters
         ----------
@@ -801,18 +626,6 @@ class Solution:
             "ux", "uy" [m] or "rotation" [rad].
         path : path, optional
             File to write (PNG, SVG, PDF).
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The figure.
-
-        Raises
-        ------
-        InputError
-            For another quantity, or a motion.
-        MissingPackageError
-            Without matplotlib.
 
         Examples
         --------
@@ -834,10 +647,11 @@ class Solution:
         loads: bool = True,
         dpi: int = 100,
     ) -> Path:
-        """Write an animation as GIF or MP4, according to the suffix of `path`.
+        """Write an animation as GIF or MP4, according to the suffix of `path`, and return the path.
 
         About fps * seconds rows are shown, equally spaced in time (in statics by row); with fewer rows each is shown
-        longer. Loads are drawn in each frame with their current amplitude.
+        longer. Loads are drawn in each frame with their current amplitude. Raises InputError for another suffix;
+        MissingPackageError without matplotlib, for .mp4 without imageio-ffmpeg.
 
         Parameters
         ----------
@@ -855,18 +669,6 @@ class Solution:
             Whether to draw their symbols.
         dpi : int, default 100
             Pixels per inch, of a frame 4 to 8 inches wide.
-
-        Returns
-        -------
-        Path
-            The file.
-
-        Raises
-        ------
-        InputError
-            For another suffix.
-        MissingPackageError
-            Without matplotlib; for .mp4 without imageio-ffmpeg.
 
         Examples
         --------
@@ -890,6 +692,7 @@ class Solution:
         """Open a window with the solid body and a slider over the steps, and wait until it is closed.
 
         Without a display, or if VTK cannot render, a warning is given and a matplotlib figure is returned instead.
+        Raises InputError for an invalid option.
 
         Parameters
         ----------
@@ -902,11 +705,6 @@ class Solution:
         -------
         pyvista.Plotter or matplotlib.figure.Figure
             What was shown.
-
-        Raises
-        ------
-        InputError
-            For an invalid option.
 
         Examples
         --------
@@ -924,10 +722,10 @@ class Solution:
         size: tuple[int, int] = (1400, 900),
         row: int = -1,
     ) -> Path:
-        """Write a picture of the solid body in a row, without opening a window.
+        """Write a picture of the solid body in a row without opening a window, and return the path.
 
         Rendering is tried in a child process first; if VTK cannot render, matplotlib draws the same row in the plane
-        and a warning is given.
+        and a warning is given. Raises InputError for another suffix or an invalid option.
 
         Parameters
         ----------
@@ -939,16 +737,6 @@ class Solution:
             Width and height in pixels.
         row : int, default -1
             Row of the solution, the last by default.
-
-        Returns
-        -------
-        Path
-            The file.
-
-        Raises
-        ------
-        InputError
-            For another suffix or an invalid option.
 
         Examples
         --------
@@ -969,7 +757,8 @@ class Solution:
         """Write solids, centrelines, supports and loads for ParaView.
 
         The body is written into `path`; centrelines, and supports and loads, into <stem>_centreline and <stem>_boundary
-        beside it. Names and units of the fields are listed in docs/paraview.md.
+        beside it. Names and units of the fields are listed in docs/paraview.md. Raises InputError for another suffix
+        and for unknown fields, MissingPackageError without VTK, and for .vtkhdf without h5py.
 
         Parameters
         ----------
@@ -983,13 +772,6 @@ class Solution:
             at most 18 numbers at a point and drops what is more.
         single : bool, default False
             Whether to write numbers of four bytes: half the size, seven digits.
-
-        Raises
-        ------
-        InputError
-            For another suffix and for unknown fields.
-        BeamfemError
-            For .vtkhdf without h5py.
 
         Warns
         -----
@@ -1007,10 +789,7 @@ class Solution:
     def to_xarray(self, beam: Beam | None = None) -> Any:
         """Return the results along a beam, or along all beams, over the steps as a labelled dataset.
 
-        Parameters
-        ----------
-        beam : Beam, optional
-            A beam of the model, by default all beams in succession.
+        Raises InputError for a beam of another model, MissingPackageError without xarray.
 
         Returns
         -------
@@ -1018,13 +797,6 @@ class Solution:
             Positions, rotations, section forces, stresses if sections have them, and energies; the statistics are its
             attributes. Of one beam the arc length is a dimension: at an end that two elements share, the station before
             it stands one last digit lower, so that both sides are kept.
-
-        Raises
-        ------
-        InputError
-            For a beam of another model.
-        MissingPackageError
-            Without xarray.
 
         Examples
         --------
@@ -1039,10 +811,7 @@ class Solution:
     def to_pandas(self, beam: Beam | None = None) -> Any:
         """Return the results along a beam, or along all beams, over the steps as a table.
 
-        Parameters
-        ----------
-        beam : Beam, optional
-            A beam of the model, by default all beams.
+        Raises InputError for a beam of another model, MissingPackageError without pandas.
 
         Returns
         -------
@@ -1051,13 +820,6 @@ class Solution:
             index. Both sides of an end that two elements share have a row: the arc length of the one before it, like
             the load factor of the row before a jump, is smaller by one last digit, so that no row of the index is
             there twice.
-
-        Raises
-        ------
-        InputError
-            For a beam of another model.
-        MissingPackageError
-            Without pandas.
 
         Examples
         --------
@@ -1072,21 +834,9 @@ class Solution:
     def save(self, path: str | PathLike[str]) -> None:
         """Write model and states to one HDF5 file with checksums.
 
-        Folders in the path are created. An earlier file is replaced when the new one is complete.
-
-        Parameters
-        ----------
-        path : path
-            File to write; `load` reads it.
-
-        Raises
-        ------
-        InputError
-            For a model with parts that cannot be saved.
-        FileError
-            If the system refuses to write.
-        MissingPackageError
-            Without h5py.
+        Folders in the path are created. An earlier file is replaced when the new one is complete. `load` reads it.
+        Raises InputError for a model with parts that cannot be saved, FileError if the system refuses to write,
+        MissingPackageError without h5py.
 
         Examples
         --------

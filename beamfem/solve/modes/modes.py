@@ -156,17 +156,9 @@ class Modes:
         return Solution(self.model, False, at, self.state.p + p, v, a, statistics, loaded=loaded)
 
     def to_pandas(self) -> Any:
-        """Return frequency [Hz], growth [1/s] and rigid motion of the modes as a table.
+        """Return frequency [Hz], growth [1/s] and rigid motion of the modes as a table, one row per mode.
 
-        Returns
-        -------
-        pandas.DataFrame
-            One row per mode.
-
-        Raises
-        ------
-        MissingPackageError
-            Without pandas.
+        Raises MissingPackageError without pandas.
 
         Examples
         --------
@@ -180,23 +172,13 @@ class Modes:
     def to_xarray(self, beam: Beam | None = None) -> Any:
         """Return frequencies and shapes along a beam, or along all beams, over the modes.
 
-        Parameters
-        ----------
-        beam : Beam, optional
-            A beam of the model, by default all beams in succession.
+        Raises InputError for a beam of another model, MissingPackageError without xarray.
 
         Returns
         -------
         xarray.Dataset
             Frequency [Hz], growth [1/s] and rigid motion (mode,), and shapes ux, uy (mode, station),
             scaled as `modes`, the real part of complex ones.
-
-        Raises
-        ------
-        InputError
-            For a beam of another model.
-        MissingPackageError
-            Without xarray.
 
         Examples
         --------
@@ -208,28 +190,10 @@ class Modes:
         return modes_to_xarray(self, beam)
 
     def plot(self, path: str | PathLike[str] | None = None, *, most: int = 6) -> Any:
-        """Draw the modes, each with its frequency.
+        """Draw at most `most` modes, each with its frequency, and return the figure.
 
-        Dark: the mode at its largest; pale: half a period later; dashed: the reference.
-
-        Parameters
-        ----------
-        path : path, optional
-            File to write (PNG, SVG, PDF).
-        most : int, default 6
-            Largest number of modes to draw.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The figure.
-
-        Raises
-        ------
-        InputError
-            If there are no modes to draw.
-        MissingPackageError
-            Without matplotlib.
+        Dark: the mode at its largest; pale: half a period later; dashed: the reference. path: file to write (PNG, SVG,
+        PDF). Raises InputError if there are no modes to draw, MissingPackageError without matplotlib.
 
         Examples
         --------

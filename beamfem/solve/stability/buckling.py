@@ -130,17 +130,9 @@ class Buckling:
         return Solution(self.model, True, at, p, np.zeros_like(p), np.zeros_like(p), statistics)
 
     def to_pandas(self) -> Any:
-        """Return load factor, kind and uncertainty of the critical points as a table.
+        """Return load factor, kind and uncertainty of the critical points as a table, one row per point.
 
-        Returns
-        -------
-        pandas.DataFrame
-            One row per critical point.
-
-        Raises
-        ------
-        MissingPackageError
-            Without pandas.
+        Raises MissingPackageError without pandas.
 
         Examples
         --------
@@ -154,51 +146,23 @@ class Buckling:
     def to_xarray(self, beam: Beam | None = None) -> Any:
         """Return load factors and shapes along a beam, or along all beams, over the critical points.
 
-        Parameters
-        ----------
-        beam : Beam, optional
-            A beam of the model, by default all beams in succession.
+        Raises InputError for a beam of another model, MissingPackageError without xarray.
 
         Returns
         -------
         xarray.Dataset
             Load factor [-], kind and uncertainty [-] (mode,), and shapes ux, uy (mode, station),
             scaled as `modes`.
-
-        Raises
-        ------
-        InputError
-            For a beam of another model.
-        MissingPackageError
-            Without xarray.
         """
         from beamfem.io.mode_table import buckling_to_xarray
 
         return buckling_to_xarray(self, beam)
 
     def plot(self, path: str | PathLike[str] | None = None, *, most: int = 6) -> Any:
-        """Draw the modes, each with its load factor.
+        """Draw at most `most` modes, each with its load factor, and return the figure.
 
-        Pale: the critical state; dark: the same state plus the mode; dashed: the reference.
-
-        Parameters
-        ----------
-        path : path, optional
-            File to write (PNG, SVG, PDF).
-        most : int, default 6
-            Largest number of modes to draw.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The figure.
-
-        Raises
-        ------
-        InputError
-            If there are no modes to draw.
-        MissingPackageError
-            Without matplotlib.
+        Pale: the critical state; dark: the same state plus the mode; dashed: the reference. path: file to write (PNG,
+        SVG, PDF). Raises InputError if there are no modes to draw, MissingPackageError without matplotlib.
 
         Examples
         --------

@@ -39,7 +39,7 @@ def _continued(solution: "Solution") -> np.ndarray:
 
 
 def continued_rotations(model: Model, p: np.ndarray) -> np.ndarray:
-    """Return the rotations (steps, m) [rad] of such beams at their start, continued from state to state p (steps, n)."""
+    """Return the start rotations (steps, m) [rad] of such beams, continued from state to state p (steps, n)."""
     parts = [postprocess.nodal_rotations(mesh, p)[:, :1] for mesh in uncounted(model)]
     return np.concatenate([np.empty((len(p), 0)), *parts], axis=1)
 

@@ -11,6 +11,7 @@ from beamfem.solve.start.functions_of_time import FunctionOfTime
 _SAMPLES = 129
 _PARTS = 9  # of the two intervals beside a kink, into which they are divided again and again
 _REFINED = 12  # times: to 1e-9 of the range
+_DIVIDED = 3  # times, the first ones, at which several kinks are told apart
 _SHARP = 0.5  # of a jump of the slope that is left at a kink when its surroundings shrink; it would vanish elsewhere
 _NOTABLE = 1e-3  # of the largest slope: a smaller jump is none
 _NEAR = 1e-8  # of the range: distance from a kink within which a function jumps there, if at all
@@ -116,19 +117,32 @@ def _jumps_of_slope(function: FunctionOfTime, low: float, high: float) -> list[f
     notable = _NOTABLE * float(np.abs(slopes).max(initial=0.0))
     found = []
     for i in np.flatnonzero(jumps > notable).tolist():
-        left, right, first = float(at[i]), float(at[i + 2]), float(jumps[i])
-        last = first
-        for _ in range(_REFINED):
-            inner = np.linspace(left, right, _PARTS)
-            slope = np.diff(_values(function, inner)) / np.diff(inner)
-            jump = np.abs(np.diff(slope))
-            k = int(np.argmax(jump))
-            last = float(jump[k])
-            if last < _SHARP * first:
-                break
-            left, right = float(inner[k]), float(inner[k + 2])
-        else:
-            found.append(_meeting(function, left, right))
+        found += _kinks_within(function, float(at[i]), float(at[i + 2]), float(jumps[i]), notable, _REFINED)
+    return found
+
+
+def _kinks_within(
+    function: FunctionOfTime, left: float, right: float, first: float, notable: float, times: int
+) -> list[float]:
+    """Return the kinks of a narrow interval that is divided again and again, where its slope keeps its jump `first`.
+
+    Jumps of different sign are different kinks, as those of a narrow peak.
+    """
+    if times == 0:
+        return [_meeting(function, left, right)]
+    inner = np.linspace(left, right, _PARTS)
+    change = np.diff(np.diff(_values(function, inner)) / np.diff(inner))
+    size = np.abs(change)
+    if size.max() < _SHARP * first:
+        return []
+    kept = [int(np.argmax(size))]
+    if times > _REFINED - _DIVIDED:  # round-off makes signs of its own where intervals are narrow
+        runs = np.split(np.arange(len(change)), np.flatnonzero(np.diff(np.sign(change))) + 1)
+        kept = [k for k in (int(run[np.argmax(size[run])]) for run in runs) if size[k] > notable] or kept
+    found: list[float] = []
+    for k in kept:
+        own = first if len(kept) < 2 else float(size[k])
+        found += _kinks_within(function, float(inner[k]), float(inner[k + 2]), own, notable, times - 1)
     return found
 
 

@@ -174,8 +174,11 @@ def test_bad_input_is_named():
         bf.solve_buckling(bf.Model(model.beams, [bf.Pin(model.beams[0].start)], model.loads))
     with pytest.raises(bf.InputError, match="no load grows"):
         bf.solve_buckling(bf.Model(model.beams, model.supports))
-    with pytest.raises(bf.InputError, match="no positive load factor"):
+    with pytest.raises(bf.InputError, match=r"no load is critical at strains below 20%"):  # shear buckling in tension
         bf.solve_buckling(column(SUPPORTS["hinged-hinged"], 10, 8, load=1.0))
+    pulled = column(SUPPORTS["hinged-hinged"], 10, 8, bf.CRBF(4, bf.SplitContinuum()), load=1.0)
+    with pytest.raises(bf.InputError, match=r"no positive load factor is critical .* the loads stiffen the model"):
+        bf.solve_buckling(pulled)
     unstable = column(SUPPORTS["cantilever"], 10, 6, load=-3.0)
     with pytest.warns(bf.UnstableWarning):
         loaded = bf.solve_static(unstable)
@@ -194,3 +197,19 @@ def test_a_following_load_is_refused_in_any_unit_of_length(unit):
     loads = [bf.DistributedLoad(beam, (0.1 * size, 0.9 * size), follower=True)]
     with pytest.raises(bf.InputError, match="some load follows the beam"):
         bf.solve_buckling(bf.Model([beam], [bf.Clamp(beam.start)], loads))
+
+
+def test_a_column_that_buckles_at_large_strains_is_not_said_to_be_stiffened():
+    """It has a critical load, as paths find it: (P / E I) (1 + P / G A - P / E A) = (pi / L)^2, Reissner's column."""
+    section, material = bf.Rectangle(1.0 / 1.5, 1.0 / 1.5), bf.Material(1e6, 0.0, 1.0)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 8, bf.CRBF(3), section, material)
+    axial = 1e6 * section.area
+    load = bf.PointForce(beam.end, (-axial, 0.0))
+    model = bf.Model([beam], [bf.Pin(beam.start), bf.Roller(beam.end, (0, 1))], [load])
+    with pytest.raises(bf.InputError, match=r"lowest critical load strains the model by 23%\. trace_equilibrium finds"):
+        bf.solve_buckling(model, 1)
+    bending, shear = 1e6 * section.second_moment, section.shear_factor * 0.5e6 * section.area
+    exact = np.roots([(1.0 / shear - 1.0 / axial) / bending, 1.0 / bending, -(np.pi**2)]).max() / axial
+    with pytest.warns(bf.LargeStrainWarning):
+        path = bf.trace_equilibrium(model, 0.3)
+    assert [point.load_factor for point in path.bifurcations] == pytest.approx([exact], rel=1e-6)

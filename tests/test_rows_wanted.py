@@ -142,9 +142,21 @@ def test_kinks_and_turning_points_of_functions_are_found(function, expected):
 
 
 @pytest.mark.parametrize("steps", [1, 7, 10])
-def test_load_that_jumps_from_rest_is_solved_or_refused_by_its_place(steps):
+def test_load_that_jumps_from_rest_is_solved(steps):
     """A load that is zero until it jumps: the search beyond the jump divided by a movement of zero."""
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(order=4), SQUARE, STEEL)
     force = bf.PointForce(beam.end, (0, 2 * EI), amplitude=lambda factor: float(factor >= 0.437))
-    with pytest.raises(bf.ConvergenceError, match=r"beyond load factor 0\.437|0\.43"):
-        bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [force]), steps)
+    sudden = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [force]), steps)
+    steady = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0, 2 * EI))]))
+    np.testing.assert_allclose(sudden.p[-1], steady.p[-1], atol=1e-8)
+    assert sudden.load_factor[np.flatnonzero(np.diff(sudden.displacement(beam.end)[:, 1]))[0]] == pytest.approx(0.437)
+
+
+@pytest.mark.parametrize("width", [0.05, 0.012, 0.008])
+def test_all_three_kinks_of_a_narrow_peak_are_found(width):
+    """Of a peak narrower than two samples one kink was found where three are."""
+    for centre in np.linspace(0.1, 0.9, 23).tolist():
+        peak = FunctionOfTime("a peak", lambda at, c=centre: max(0.0, 1.0 - 2.0 * abs(at - c) / width), True)
+        found = kinks_and_turning_points([peak], 0.0, 1.0)
+        expected = [centre - 0.5 * width, centre, centre + 0.5 * width]
+        assert np.abs(np.subtract.outer(expected, found)).min(axis=1).max() < 1e-7

@@ -32,8 +32,13 @@ def start_rotations(solution: "Solution") -> np.ndarray:
 
 def _continued(solution: "Solution") -> np.ndarray:
     """Return the rotations of `start_rotations` from row to row."""
-    parts = [postprocess.nodal_rotations(mesh, solution.p)[:, :1] for mesh in solution.model.numbered.uncounted]
-    return np.concatenate([np.empty((len(solution), 0)), *parts], axis=1)
+    return continued_rotations(solution.model, solution.p)
+
+
+def continued_rotations(model: Model, p: np.ndarray) -> np.ndarray:
+    """Return the start rotations (steps, m) [rad] of such beams, continued from state to state p (steps, n)."""
+    parts = [postprocess.nodal_rotations(mesh, p)[:, :1] for mesh in model.numbered.uncounted]
+    return np.concatenate([np.empty((len(p), 0)), *parts], axis=1)
 
 
 def turned_of(solution: "Solution", mesh: BeamMesh) -> np.ndarray | None:

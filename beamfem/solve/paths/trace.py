@@ -23,7 +23,7 @@ from beamfem.solve.paths.branches import leave
 from beamfem.solve.paths.path_record import PathRecord
 from beamfem.solve.start.functions_of_time import functions_of_time
 from beamfem.solve.start.interrupted import kept
-from beamfem.solve.start.kinks import SAME, kinks_between
+from beamfem.solve.start.kinks import SAME, Jump, jumps_between, kinks_between
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import refuse_memory, refuse_multipliers
 from beamfem.solve.statics.preload import first_equilibrium, nothing_acts
@@ -138,6 +138,7 @@ def trace_equilibrium(
         if start is None:
             point = replace(point, tangent=direction * point.tangent)
             record.add(point.y, point.negative_pivots == 0)
+            _require_no_jump_at_start(line, direction, record)
         else:
             record.add(np.append(start.p, start.at), stable=False, turned=start.turned)
             if points > 1:
@@ -147,7 +148,7 @@ def trace_equilibrium(
             if len(record.rows) >= points:
                 record.end(f"the {points} points are used up")
                 break
-            line, kink = _piece(line, point, size, end)
+            line, kink, jump = _piece(line, point, size, end)
             taken, landing = _step(line, point, size, record, end, kink)
             size = taken.next_size
             landed = landing is not None
@@ -157,7 +158,9 @@ def trace_equilibrium(
             if start is not None and record.returns_to(line, start):
                 record.end("the branch is closed: it has come back to the bifurcation from which it starts")
                 break
-            if point.load_factor == kink:
+            if point.load_factor == kink and not landed:
+                if jump is not None:
+                    _end_at(jump, record)
                 line, point = _beyond(line, point)
             line, rescaled = line.rescaled(point)
             point, size = rescaled, size * line.length(point.tangent)
@@ -189,24 +192,55 @@ def _require_crossing(model: Model, start: Bifurcation | None) -> None:
         raise InputError("start is a bifurcation of another model; trace the path of this one first")
 
 
-def _piece(line: Continuation, point: PathPoint, size: float, end: float | None) -> tuple[Continuation, float | None]:
-    """Return the continuation up to the next kink of a function, and its load factor, if a step may reach it.
+def _piece(
+    line: Continuation, point: PathPoint, size: float, end: float | None
+) -> tuple[Continuation, float | None, Jump | None]:
+    """Return the continuation up to the next kink of a function, its load factor, and its jump, if a step may reach it.
 
     A kink that is found from samples at the end of the path is that end: a step between the two would be round-off.
     """
     if not line.functions_of_time:
-        return line, None
+        return line, None, None
     size = min(size, longest_step(line, point))
     ahead = point.load_factor + _AHEAD * size * float(point.tangent[-1])
-    kink = next(iter(kinks_between(line.functions_of_time, point.load_factor, ahead, jumps=False)), None)
-    if kink is not None and end is not None and abs(kink - end) <= SAME * abs(ahead - point.load_factor):
+    kink = next(iter(kinks_between(line.functions_of_time, point.load_factor, ahead)), None)
+    jump = None if kink is None else _jump_near(line, kink, point.load_factor, ahead)
+    if jump is not None:
+        kink = jump.before if ahead > point.load_factor else jump.after
+    elif kink is not None and end is not None and abs(kink - end) <= SAME * abs(ahead - point.load_factor):
         kink = end
     low, high = line.piece
     if kink is not None and kink > point.load_factor:
         high = kink
     elif kink is not None:
         low = kink
-    return replace(line, piece=(low, high)), kink
+    return replace(line, piece=(low, high)), kink, jump
+
+
+def _jump_near(line: Continuation, kink: float, begin: float, end: float) -> Jump | None:
+    """Return the jump of a function at a kink that was found between two load factors, if there is one."""
+    low, high = sorted((begin, end))
+    near = (jump for jump in jumps_between(line.functions_of_time, low, high) if jump.before > low)
+    return next((jump for jump in near if abs(jump.before - kink) <= SAME * (high - low)), None)
+
+
+def _require_no_jump_at_start(line: Continuation, direction: int, record: PathRecord) -> None:
+    """Raise ConvergenceError if a function jumps from its value at load factor 0."""
+    with suppress(InputError):  # from a function that is not defined so far
+        low, high = sorted((0.0, direction * _NEAR_START))
+        for jump in jumps_between(line.functions_of_time, low, high):
+            if 0.0 in (jump.before, jump.after):
+                _end_at(jump, record)
+
+
+def _end_at(jump: Jump, record: PathRecord) -> None:
+    """Raise ConvergenceError with the path up to a jump."""
+    (first, last), at = jump.values, round(jump.after, 12)
+    raise ConvergenceError(
+        f"the path ends at load factor {at:.6g}, where {jump.name} jumps from {first:.6g} to {last:.6g}; solve_static "
+        "continues behind a jump",
+        record.path(),
+    )
 
 
 def _beyond(line: Continuation, point: PathPoint) -> tuple[Continuation, PathPoint]:

@@ -62,10 +62,16 @@ def linear_reach(system: System, linear: LinearSolution, linearised: np.ndarray)
     with np.errstate(divide="ignore"):
         moved = float(_MOVEMENT / np.float64(largest_movement(system, linear.slope)))
         strained = float(_STRAIN / np.float64(linear.strain))
-    if strained < moved and not np.any(linearised <= strained):
+    if strained < moved and not len(linearised):
         raise InputError(
-            "no positive load factor is critical as the loading path starts: the loads stiffen the model, or would "
-            f"first have to strain it by more than {_STRAIN:.0%}. If they soften it later, trace_equilibrium finds it"
+            "no positive load factor is critical as the loading path starts: the loads stiffen the model. If they "
+            "soften it later, trace_equilibrium finds it"
+        )
+    if strained < moved and linearised[0] > strained:
+        raise InputError(
+            f"no load is critical at strains below {_STRAIN:.0%}, up to which linear analysis counts: its lowest "
+            f"critical load strains the model by {linear.strain * linearised[0]:.0%}. trace_equilibrium finds critical "
+            "points on the path itself, whatever its strains"
         )
     return min(float(linearised[-1]) if len(linearised) else np.inf, moved)
 

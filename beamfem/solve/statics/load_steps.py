@@ -122,12 +122,18 @@ def _within_a_turn(system: System, done: StaticRecord, step: float) -> float:
     while system.largest_turn(done.reached, min(done.reached + step, 1.0)) > _LARGEST_TURN:
         step *= 0.5
         if step < _SHORTEST_TURN:
-            raise ConvergenceError(
-                f"a prescribed rotation jumps by more than {_LARGEST_TURN:g} rad just after load factor "
-                f"{done.reached:.6g}; let it turn over a part of the load factor, so that turns can be counted",
-                done.solution(),
-            )
+            require_no_jump_of_rotations(system, done, min(done.reached + 2.0 * step, 1.0))
     return step
+
+
+def require_no_jump_of_rotations(system: System, done: StaticRecord, after: float) -> None:
+    """Raise ConvergenceError if a prescribed rotation changes too much up to a load factor just after the last row."""
+    if system.largest_turn(done.reached, after) > _LARGEST_TURN:
+        raise ConvergenceError(
+            f"a prescribed rotation jumps by more than {_LARGEST_TURN:g} rad just after load factor "
+            f"{done.reached:.6g}; let it turn over a part of the load factor, so that turns can be counted",
+            done.solution(),
+        )
 
 
 def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float], snap: Snap) -> None:

@@ -1,24 +1,18 @@
 """The equilibrium at load factor 0, under unscaled loads and prescribed values."""
 
-from copy import copy
-
 import numpy as np
 
 from beamfem.assembly.equations import residual
 from beamfem.assembly.round_off import row_floors
 from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, LimitPointError
-from beamfem.model.load import Load, factor
-from beamfem.model.model import Model
-from beamfem.model.support import DIRECTIONS, PointSupport
-from beamfem.model.supports import Prescribed, Roller, Spring
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
 from beamfem.solve.start.mechanisms import free_motion
+from beamfem.solve.statics.changing_loads import changing
 from beamfem.solve.statics.load_steps import reach
 from beamfem.solve.statics.prestressed import stiffened_start
 from beamfem.solve.statics.static_record import StaticRecord
-from beamfem.validation import function_value
 
 _AT_REST = "nothing acts at load factor 0"
 
@@ -69,7 +63,7 @@ def _free_of_force(system: System) -> bool:
 
 def _grown(system: System, newton: Newton, failed: NewtonResult) -> NewtonResult:
     """Return the end of the path along which the loads at load factor 0 increase from zero."""
-    growing = system_of(_growing(system.model), static=True)
+    growing = system_of(changing(system.model, None, 0.0), static=True)
     record = StaticRecord(growing.model, growing.symmetric)
     record.iterations = failed.iterations
     record.add(0.0, growing.reference, 0, Termination.CONVERGED)
@@ -80,41 +74,3 @@ def _grown(system: System, newton: Newton, failed: NewtonResult) -> NewtonResult
     except ConvergenceError:
         return failed._replace(iterations=record.iterations)
     return NewtonResult(record.state, record.iterations, record.ended, record.negative_pivots, record.digits)
-
-
-def _growing(model: Model) -> Model:
-    """Return the model with loads and prescribed values proportional to the load factor, those at 0 reached at 1."""
-    loads = [_in_proportion(load) for load in model.loads]
-    moved = {id(support): _in_step(support) for support in model.point_supports if _moves(support)}
-    supports = [part for support in model.supports for part in moved.get(id(support), (support,))]
-    return model.with_(supports=supports, loads=loads)
-
-
-def _moves(support: PointSupport) -> bool:
-    """Return whether a support prescribes nonzero values."""
-    return any(callable(value) or value != 0.0 for value in support.prescribed().values())
-
-
-def _in_step(support: PointSupport) -> tuple[PointSupport, ...]:
-    """Return equivalent supports with the values at load factor 0 in proportion to the load factor."""
-    values = {
-        name: function_value("motion prescribed", value, 0.0) if callable(value) else 0.0
-        for name, value in support.prescribed().items()
-        if name != "normal"
-    }
-    supports: tuple[PointSupport, ...] = (Prescribed(support.point, **values),)
-    if support.direction is not None:
-        supports = (*supports, Roller(support.point, tuple(support.direction)))
-    if springs := support.springs():
-        kx, ky, rotational = (springs.get(name, 0.0) for name in DIRECTIONS)
-        supports = (*supports, Spring(support.point, (kx, ky), rotational))
-    return supports
-
-
-def _in_proportion(load: Load) -> Load:
-    """Return a load whose factor is proportional to the load factor, with its value at load factor 0 reached at 1."""
-    weight = factor(load, 0.0, True)
-    result: Load = copy(load)
-    # whether or not it is a field of its class
-    object.__setattr__(result, "amplitude", lambda load_factor: weight * load_factor)
-    return result

@@ -7,6 +7,7 @@ from beamfem.errors import RoundOffWarning, UnstableWarning, warn
 from beamfem.model.model import Model
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics, Status
+from beamfem.results.turns import continued_rotations
 from beamfem.solve.newton.iteration import Termination
 
 
@@ -20,6 +21,8 @@ class StaticRecord:
         self.model = model
         self.symmetric = symmetric
         self.rows: list[tuple[float, np.ndarray, int]] = []
+        # number of a row behind a jump of the loads, and the states (n,) on the way to it, by which turns are counted
+        self.on_the_way: dict[int, list[np.ndarray]] = {}
         self.iterations = 0
         self.cuts = 0
         self.ended = Termination.CONVERGED
@@ -76,6 +79,7 @@ class StaticRecord:
         rates = np.zeros(states.shape)  # unlike zeros_like, it takes no memory until it is written to
         for values in (load_factors, states, rates):
             values.setflags(write=False)
+        turned = self._turned(states) if self.on_the_way else None
         return Solution(
             self.model,
             True,
@@ -85,7 +89,14 @@ class StaticRecord:
             rates,
             statistics,
             ~np.array(unstable) if self.symmetric else None,
+            turned,
         )
+
+    def _turned(self, states: np.ndarray) -> np.ndarray:
+        """Return the rotations (rows, m) [rad] of `start_rotations`, counted over the states on the way as well."""
+        parts = [np.array([*self.on_the_way.get(row, []), state]) for row, state in enumerate(states)]
+        rotations = continued_rotations(self.model, np.concatenate(parts))
+        return np.asarray(rotations[np.cumsum([len(part) for part in parts]) - 1])
 
 
 def is_unstable(symmetric: bool, negative_pivots: int) -> bool:

@@ -17,10 +17,12 @@ from beamfem.results.turns import start_rotations
 from beamfem.solve.newton.iteration import Newton, require_newton
 from beamfem.solve.start.functions_of_time import functions_of_time
 from beamfem.solve.start.interrupted import kept
-from beamfem.solve.start.kinks import kinks_and_turning_points
+from beamfem.solve.start.kinks import SAME as NEAR
+from beamfem.solve.start.kinks import jumps_between, kinks_and_turning_points
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import refuse_memory, require_independent
 from beamfem.solve.start.unresolved import warn_between_rows
+from beamfem.solve.statics.load_jumps import cross_jump
 from beamfem.solve.statics.load_steps import SAME, Snap, Unstable, reach
 from beamfem.solve.statics.preload import first_equilibrium, nothing_acts
 from beamfem.solve.statics.static_record import StaticRecord, is_unstable
@@ -56,7 +58,8 @@ def solve_static(
     at : sequence of float, optional
         Ascending load factors from 0 to 1 for the rows of the result, reached exactly, except those skipped by a jump;
         the last of them ends the solve. By default the rows are the accepted load steps, from load factor 0 (only the
-        loads with scale=False) to 1, with rows where amplitudes and prescribed motions have kinks or turn.
+        loads with scale=False) to 1, with rows where amplitudes and prescribed motions have kinks or turn, and on both
+        sides of their jumps.
     snap : {"error", "jump"}, default "error"
         What to do at a limit point: raise an error, or jump to the state in which a slow, damped structure comes to
         rest under the same load, and continue from there. Jumps start at bifurcations, too.
@@ -121,9 +124,10 @@ def _ascending(at: Sequence[float] | np.ndarray) -> list[float]:
 
 def _rows_at(solution: Solution, wanted: Sequence[float]) -> Solution:
     """Return the rows at some load factors, with the rotations counted over all rows."""
-    near = np.abs(solution.at - np.array(wanted)[:, None]) <= SAME
-    # after a jump, the last of several states at a load factor
-    rows = np.array([np.flatnonzero(mask)[-1] for mask in near if mask.any()], dtype=int)
+    distance = np.abs(solution.at - np.array(wanted)[:, None])
+    # after a jump, the last of several states at a load factor; loads may jump from one number to the next
+    close = np.where(np.any(distance == 0.0, axis=1)[:, None], distance == 0.0, distance <= SAME)
+    rows = np.array([np.flatnonzero(mask)[-1] for mask in close if mask.any()], dtype=int)
     stability = None if solution.stability is None else solution.stability[rows]
     states = {name: getattr(solution, name)[rows] for name in ("at", "p", "v", "a")}
     return replace(solution, **states, stability=stability, turned=start_rotations(solution)[rows])
@@ -176,8 +180,14 @@ def solve_through(
     functions = functions_of_time(system)
     with kept(record.solution):
         try:
+            jumps = jumps_between(functions, 0.0, end) if end > 0.0 else []
             if functions:
-                stops = [*stops, *kinks_and_turning_points(functions, 0.0, end)]
+                kinks = kinks_and_turning_points(functions, 0.0, end)
+                stops = [*stops, *(at for at in kinks if all(abs(at - jump.after) > NEAR for jump in jumps))]
+            for jump in jumps:
+                if jump.before > record.reached:
+                    reach(system, record, 1.0 / steps, newton, snap, stops, jump.before)
+                cross_jump(system, record, jump.after, newton, snap)
             reach(system, record, 1.0 / steps, newton, snap, stops, end)
         except LinAlgError as error:
             raise ConvergenceError(f"beyond load factor {record.reached:.6g}: {error}", record.solution()) from error

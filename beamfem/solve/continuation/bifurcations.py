@@ -72,8 +72,11 @@ def _require_no_hidden_pair(segment: Segment, found: int) -> None:
     A step that changes over from sheet to sheet where several modes are soft keeps the count of negative pivots if one
     mode gains the sign that another loses. The tangents at its ends, condensed onto the same modes, show them: between
     S and T, the matrix (1 - x) S + x T is singular once for each negative eigenvalue of S^-1 T. The number of modes is
-    doubled until some of them keep their sign.
+    doubled until some of them keep their sign. If the tangents are symmetric, no more modes change their sign than have
+    a negative stiffness at one end.
     """
+    if segment.symmetric and segment.before.negative_pivots + segment.after.negative_pivots < found + 2:
+        return
     line, count = segment.line, found + 3
     while True:
         modes = line.softest_modes(segment.before.factors, count)

@@ -93,8 +93,9 @@ class PathFollower:
     def follow(self, p: np.ndarray, load_factor: float, beyond: float, end: float) -> Iterator[Followed]:
         """Yield the points from the equilibrium p (n,) to the first one at or above the load factor `beyond`.
 
-        end: the largest load factor allowed. Raises TurnsBackError at a limit point; BifurcatesError; PathLostError if no step along the
-        path is accepted elsewhere, OutOfReachError if load factor 1 is too far at the present step length.
+        end: the largest load factor allowed. Raises TurnsBackError at a limit point; BifurcatesError where an unstable
+        path is to be left; PathLostError if no step along the path is accepted elsewhere, OutOfReachError if load
+        factor 1 is too far at the present step length.
         """
         growing = np.zeros(len(p) + 1)
         growing[-1] = 1.0

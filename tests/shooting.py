@@ -55,17 +55,17 @@ def solved(conditions, guess):
     return x
 
 
-def swept(slope, span, state, axial=0.0):
+def swept(slope, span, state, axial=0.0, shear=0.0):
     """Return x, y, theta, nx, ny, M at the end of an axis y(x) of E I = 1 from the same at its start, where x = 0.
 
-    slope: y'(x) without stress; axial: 1 / E A. It does not shear.
+    slope: y'(x) without stress; axial, shear: 1 / E A and 1 / k_s G A.
     """
 
     def change(x, y):
         phi = np.arctan(slope(x)) + y[2]
         c, d = np.cos(phi), np.sin(phi)
-        stretched = 1.0 + axial * (y[3] * c + y[4] * d)
-        x_s, y_s = stretched * c, stretched * d
+        e, g = 1.0 + axial * (y[3] * c + y[4] * d), shear * (y[4] * c - y[3] * d)
+        x_s, y_s = e * c - g * d, e * d + g * c
         return np.array([x_s, y_s, y[5], 0.0, 0.0, x_s * -y[4] + y_s * y[3]]) * np.hypot(1.0, slope(x))
 
     return solve_ivp(change, (0.0, span), state, method="DOP853", rtol=1e-12, atol=1e-14).y[:, -1]

@@ -169,7 +169,9 @@ def test_a_structure_does_not_come_to_rest_where_it_is_unstable():
     solution = bf.solve_static(model, 10, snap="jump")
     assert solution.stable.all()
     bent = np.abs(solution.displacement(column.end)[:, 1]) > 1e-3
-    assert np.array_equal(bent, solution.at > 0.19995)  # the column is shortened
+    straight = int(np.argmax(bent))
+    assert solution.at[straight - 1] == pytest.approx(0.2, rel=1e-4)
+    assert bent[straight:].all()
 
 
 def test_rest_is_an_equilibrium_that_is_found_stable_and_close_to_where_the_motion_ends(monkeypatch):

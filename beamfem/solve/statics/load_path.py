@@ -93,8 +93,9 @@ class PathFollower:
     def follow(self, p: np.ndarray, load_factor: float, beyond: float, end: float) -> Iterator[Followed]:
         """Yield the points from the equilibrium p (n,) to the first one at or above the load factor `beyond`.
 
-        end: the largest load factor allowed. Raises TurnsBackError at a limit point; BifurcatesError; PathLostError if no step along the
-        path is accepted elsewhere, OutOfReachError if load factor 1 is too far at the present step length.
+        end: the largest load factor allowed. Raises TurnsBackError at a limit point; BifurcatesError where an unstable
+        path is to be left; PathLostError if no step along the path is accepted elsewhere, OutOfReachError if load
+        factor 1 is too far at the present step length.
         """
         growing = np.zeros(len(p) + 1)
         growing[-1] = 1.0
@@ -117,9 +118,10 @@ class PathFollower:
             self.size = step.next_size
             point = step.segment.after
             extrema = sorted([*step.limits, *step.segment.turned])
+            turn = min(extrema, default=1.0)
             if self.leaves and not is_unstable(self.system.symmetric, before.negative_pivots):
-                _require_stable(step, min(extrema, default=np.inf), end, iterations, cuts)
-            above = [x for x, at in step.segment.found.items() if x <= min(extrema, default=1.0) and at.load_factor > end]
+                _require_stable(step, turn, end, iterations, cuts)
+            above = [x for x, at in step.segment.found.items() if x <= turn and at.load_factor > end]
             if above:
                 rising = Segment(line, before, step.segment.at(max(above)))
                 point = _at_load(rising, end, iterations, cuts)
@@ -147,7 +149,7 @@ class PathFollower:
 def _require_stable(step: Step, limit: float, end: float, iterations: int, cuts: int) -> None:
     """Raise BifurcatesError if a step from a stable point loses its stability at a bifurcation up to `end`.
 
-    limit: fraction of the first extremum of the load factor.
+    limit: fraction up to which the load factor grows.
     """
     first = next((crossing for crossing in step.crossings if crossing.fraction not in step.segment.turned), None)
     if first is None or first.fraction > limit or first.y[-1] > end:

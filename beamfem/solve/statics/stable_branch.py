@@ -31,7 +31,8 @@ def leave(system: System, done: StaticRecord, at: BifurcatesError, end: float, n
     if not result.ended.good:
         raise LimitPointError(f"{at}, and no state of rest was found beyond it", load_factor, done.solution())
     done.add(float(start[-1]), result.state, 0, result.ended, result.digits)
-    done.left.append(f"{at}, which it leaves for the stable state in which {_farthest(system, result.state - start[:-1])}")
+    moved = _farthest(system, result.state - start[:-1])
+    done.left.append(f"{at}, which it leaves for the stable state in which {moved}")
 
 
 def _farthest(system: System, change: np.ndarray) -> str:

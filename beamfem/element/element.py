@@ -1,7 +1,7 @@
 """The definition of an element: a field, nodal coordinates and elastic forces."""
 
 from collections.abc import Hashable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -146,6 +146,11 @@ class Element:
             return lobatto.energy_points(self.forces)
         rules = self.energy_rules()
         return np.concatenate([rule[0] for rule in rules]), np.concatenate([rule[1] for rule in rules])
+
+    @cached_property
+    def without_locking(self) -> "Element":
+        """The element with an integration rule that avoids locking."""
+        return replace(self, integration="lobatto" if has_stations(self.field) else "reduced")
 
     @cached_property
     def tables(self) -> Tables:

@@ -151,7 +151,7 @@ def _unlocked(model: Model) -> dict[int, Element]:
     """Return the element of each block that may lock, by its number, with an integration rule that avoids locking."""
     result, first = {}, {mesh.block: mesh for mesh in reversed(model.meshes)}
     for number, element in enumerate(model.groups):
-        other = replace(element, integration="lobatto" if has_stations(element.field) else "reduced")
+        other = element.without_locking
         # the history at the points of another rule is not known
         compared = first[number].beam.law is None or (other.law_points > 0 and not first[number].history.size)
         if (other != element or _resists_its_director(element)) and compared:

@@ -52,7 +52,9 @@ class Analysis:
 
     def run(self, model: Model, asked: Sequence[float]) -> Found:
         """Solve the model; asked: load factors at which outputs need a state. Raises InputError, ConvergenceError."""
-        keys = {name: state(model, value) if name in ("about", "start") else value for name, value in self.keys.items()}
+        keys: dict[str, Any] = {
+            name: state(model, value) if name in ("about", "start") else value for name, value in self.keys.items()
+        }
         if self.kind == "static":
             return Found(_static(model, asked, **keys))
         if self.kind == "path":
@@ -68,10 +70,10 @@ class Analysis:
         number = count("count", keys.get("count", signature(solve).parameters["count"].default))
         shown["mode"] = number_below("mode", shown.get("mode", 1), number + 1, lowest=1) - 1
         modes = solve(model, **keys)
-        names = (
+        listed = (
             ("load_factors", "kinds", "linearised") if self.kind == "buckling" else ("frequencies", "growth", "rigid")
         )
-        values = {name: list(getattr(modes, name)) for name in names if np.any(getattr(modes, name))}
+        values = {name: list(getattr(modes, name)) for name in listed if np.any(getattr(modes, name))}
         return Found(modes.solution(**shown), values, modes)
 
 

@@ -159,7 +159,9 @@ def draw(solution: Solution, path: Path, **options: Any) -> None:
     kind = path.suffix.lower()
     if kind == ".html" and options:
         raise InputError("a page has its own choice of colours; --colour is for pictures and films")
-    write = {".html": solution.to_html, ".gif": solution.animate, ".mp4": solution.animate}.get(kind, solution.plot)
+    write: Any = {".html": solution.to_html, ".gif": solution.animate, ".mp4": solution.animate}.get(
+        kind, solution.plot
+    )
     write(path, **options)
 
 

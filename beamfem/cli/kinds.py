@@ -205,5 +205,6 @@ _NAME = re.compile(rf"\b({'|'.join(_PYTHON)})\b")
 
 
 def in_keys(message: str) -> str:
-    """Return a message of the library with the kinds of model files in place of classes and functions."""
-    return _NAME.sub(lambda match: _PYTHON[match[0]], message)
+    """Return a message of the library with kinds and keys of model files in place of classes, functions and arguments."""
+    keys = re.sub(r"\b([a-z_]+)=(?=[\"\w])", r"\1 = ", _NAME.sub(lambda match: _PYTHON[match[0]], message))
+    return keys.replace(" = True", " = true").replace(" = False", " = false")

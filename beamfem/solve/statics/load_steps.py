@@ -182,10 +182,11 @@ def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap
         loaded = follower.system.loads_at(1.0).any
         instead = "; or prescribe a displacement (Prescribed) instead of the load" if loaded else ""
         raise LimitPointError(
-            f'{where}. trace_equilibrium follows the path around it; snap="jump" goes to the state in which the '
-            f"structure comes to rest{instead}",
+            where,
             load_factor,
             done.solution(),
+            remedy='trace_equilibrium follows the path around it; snap="jump" goes to the state in which the structure '
+            f"comes to rest{instead}",
         )
     if follower.left is not None and same_point(follower.system, follower.left, turn.limit):
         raise LimitPointError(

@@ -119,7 +119,7 @@ MISTAKES = {
     "point of no beam": ('"arm.start"', '"leg.start"', 24, "supports[1].point", "there is no beam 'leg'"),
     "no point": ('"arm.start"', '"arm"', 24, "supports[1].point", "arm.end"),
     "point beyond": ('"arm.start"', '"arm.at(1.5)"', 24, "supports[1].point", "between 0 and 1"),
-    "one of many points": ('point = "arm.start"', 'points = ["arm.start", "arm"]', 22, "supports[1].point", "arm.end"),
+    "one of several": ('point = "arm.start"', 'points = ["arm.start", "arm"]', 24, "supports[1].points[2]", "arm.end"),
     "one table of many": ("[[supports]]", "[supports]", 22, "supports", "array of tables"),
     "held twice": (
         "[[loads]]", '[[supports]]\nkind = "pin"\npoint = "arm.start"\n[[loads]]',
@@ -157,6 +157,7 @@ MISTAKES = {
         "[[loads]]", '[[files]]\nkind = "plot"\nfile = "a.svg"\ncolour = "momnet"\n[[loads]]',
         29, "files[1].colour", "mean moment",
     ),
+    "no file": ("[[loads]]", '[[files]]\nkind = "film"\n[[loads]]', 26, "files[1]", "file is missing; needed are file"),
     "suffix": (
         "[[loads]]", '[[files]]\nkind = "film"\nfile = "a.avi"\n[[loads]]',
         28, "files[1].file", "end in .gif or .mp4",

@@ -205,6 +205,7 @@ _NAME = re.compile(rf"\b({'|'.join(_PYTHON)})\b")
 
 
 def in_keys(message: str) -> str:
-    """Return a message of the library with kinds and keys of model files in place of classes, functions and arguments."""
+    """Return a message of the library with kinds and keys in place of classes, functions and arguments."""
     keys = re.sub(r"\b([a-z_]+)=(?=[\"\w])", r"\1 = ", _NAME.sub(lambda match: _PYTHON[match[0]], message))
+    keys = re.sub(r"np\.radians\(([\d.]+)\)", lambda match: f"{np.radians(float(match[1])):.12g}", keys)
     return keys.replace(" = True", " = true").replace(" = False", " = false")

@@ -107,11 +107,14 @@ def _job(source: Source, names: Names, model: Model, imperfection: Imperfection 
 def _each_place(kinds: Kinds, names: Names, table: Any) -> list[Any]:
     """Return the part of a table, or one for each of its `points` or `beams`. Raises KeyFault."""
     require_table(table)
-    for plural in ("points", "beams"):
+    for plural, single in (("points", "point"), ("beams", "beam")):
         if isinstance(places := table.get(plural), list):
             rest = {key: value for key, value in table.items() if key != plural}
-            tables = [{**rest, plural.removesuffix("s"): place} for place in places]
-            return [part(kinds, each, names) for each in tables]
+            try:
+                return [part(kinds, {**rest, single: (place := each)}, names) for each in places]
+            except KeyFault as fault:
+                path = (plural, places.index(place), *fault.path[1:]) if fault.path[:1] == (single,) else fault.path
+                raise KeyFault(fault.message, *path, remedy=fault.remedy) from None
     return [part(kinds, table, names)]
 
 

@@ -20,11 +20,12 @@ from beamfem.errors import BeamfemError, InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
 from beamfem.validation import nearest, require_known
+from beamfem.validation import shown as in_python
 
 Kinds = Mapping[str, Callable[..., Any]]
 Made = TypeVar("Made")
 
-_POINT = re.compile(r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\(\s*(?P<fraction>[-+.\deE]+)\s*\))")
+_POINT = re.compile(r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\(\s*(?P<fraction>[-+]?\d*\.?\d*(?:[eE][-+]?\d+)?)\s*\))")
 _NO_KEYS = ("self", "model", "asked", "path")  # parameters that are no keys
 _RULES = {
     "float_type": "a number",
@@ -168,6 +169,28 @@ def _type(hint: Any, types: Mapping[Any, Any]) -> Any:
     return Annotated[hint, Strict()] if hint in (float, int, bool, str) else hint
 
 
+def with_keys(
+    make: Callable[..., Any], sources: Sequence[Callable[..., Any]], needed: Sequence[str] = (), **hints: Any
+) -> Callable[..., Any]:
+    """Return a function whose keys are the parameters of others.
+
+    hints: types of further keys, None for parameters that are left out; needed: further keys without default.
+    """
+    key_only, without = inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.empty
+
+    def made(**keys: Any) -> Any:
+        return make(keys)
+
+    found = {key: item for source in sources for key, item in inspect.signature(source).parameters.items()}
+    own = {key: inspect.Parameter(key, key_only, default=without if key in needed else None) for key in hints}
+    kept = {key: item for key, item in (found | own).items() if hints.get(key, make) is not None}
+    types = {key: hint for source in sources for key, hint in get_type_hints(source).items()} | hints
+    parameters = [item.replace(kind=key_only) for item in kept.values()]
+    made.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    made.__annotations__ = {key: types.get(key, item.annotation) for key, item in kept.items()}
+    return made
+
+
 def reader(read: Callable[[Any, Names], Any]) -> Any:
     """Return a type whose values a function reads."""
 
@@ -246,4 +269,4 @@ def shown(value: Any) -> str:
         return f'the text "{value}"'
     if isinstance(value, dict):
         return "a table"
-    return f"the array {value}" if isinstance(value, list) else str(value)
+    return f"the array {in_python(value)}" if isinstance(value, list) else in_python(value)

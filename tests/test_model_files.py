@@ -118,6 +118,7 @@ MISTAKES = {
     "a kind of curve": ('{ kind = "line", start = [0, 0], end = [1, 0] }', '"line"', 16, "beams.arm.curve", "start ="),
     "point of no beam": ('"arm.start"', '"leg.start"', 24, "supports[1].point", "there is no beam 'leg'"),
     "no point": ('"arm.start"', '"arm"', 24, "supports[1].point", "arm.end"),
+    "point nowhere": ('"arm.start"', '"arm.at()"', 24, "supports[1].point", "arm.at(0.5)"),
     "point beyond": ('"arm.start"', '"arm.at(1.5)"', 24, "supports[1].point", "between 0 and 1"),
     "one of several": ('point = "arm.start"', 'points = ["arm.start", "arm"]', 24, "supports[1].points[2]", "arm.end"),
     "one table of many": ("[[supports]]", "[supports]", 22, "supports", "array of tables"),

@@ -114,7 +114,7 @@ def _each_place(kinds: Kinds, names: Names, table: Any) -> list[Any]:
                 return [part(kinds, {**rest, single: (place := each)}, names) for each in places]
             except KeyFault as fault:
                 path = (plural, places.index(place), *fault.path[1:]) if fault.path[:1] == (single,) else fault.path
-                raise KeyFault(fault.message, *path, remedy=fault.remedy) from None
+                raise KeyFault(fault.message, *path) from None
     return [part(kinds, table, names)]
 
 
@@ -158,8 +158,7 @@ def _within(source: Source, *path: str | int) -> Iterator[None]:
             named = named_first(str(error), value) if isinstance(value, dict) else []
             path = path if named or path != ("analysis",) else ()  # the model rather than a key of the analysis
             error = KeyFault.of(error, *named)
-        message = f"{error.message}; {error.remedy}" if error.remedy else error.message
-        raise source.error(in_keys(message), *path, *error.path) from error
+        raise source.error(in_keys(error.message), *path, *error.path) from error
 
 
 def _tables(source: Source, section: str, read: Callable[[Any], Any]) -> list[Any]:

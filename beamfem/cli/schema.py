@@ -25,7 +25,9 @@ from beamfem.validation import shown as in_python
 Kinds = Mapping[str, Callable[..., Any]]
 Made = TypeVar("Made")
 
-_POINT = re.compile(r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\(\s*(?P<fraction>[-+]?\d*\.?\d*(?:[eE][-+]?\d+)?)\s*\))")
+_POINT = re.compile(
+    r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\(\s*(?P<fraction>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*\))"
+)
 _NO_KEYS = ("self", "model", "asked", "path")  # parameters that are no keys
 _RULES = {
     "float_type": "a number",
@@ -39,18 +41,16 @@ _RULES = {
 
 
 class KeyFault(ValueError):
-    """A wrong value in a table, with its path below the table that is read; remedy: as that of a `BeamfemError`."""
+    """A wrong value in a table, with its path below the table that is read."""
 
-    def __init__(self, message: str, *path: str | int, remedy: str = "") -> None:
+    def __init__(self, message: str, *path: str | int) -> None:
         super().__init__(message)
-        self.message, self.path, self.remedy = message, path, remedy
+        self.message, self.path = message, path
 
     @classmethod
     def of(cls, error: "KeyFault | BeamfemError", *path: str | int) -> "KeyFault":
         """Return an error as that of the key at a path."""
-        if isinstance(error, KeyFault):
-            return cls(error.message, *path, *error.path, remedy=error.remedy)
-        return cls(error.reason, *path, remedy=error.remedy)
+        return cls(str(error), *path, *(error.path if isinstance(error, KeyFault) else ()))
 
 
 @dataclass

@@ -291,7 +291,7 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
         raise InputError(
             f"the state to vibrate about is not in equilibrium: at load factor {load_factor:g} a force of {force:.3g} "
             "is unbalanced",
-            remedy="give a state of solve_static with the same loads as about",
+            remedy="Give a state of solve_static with the same loads as about",
         )
     if count > pencil.size:
         raise InputError(f"count is {count}, but supports leave this model only {pencil.size} modes")

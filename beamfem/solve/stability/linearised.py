@@ -39,7 +39,7 @@ def linearised_loads(
         raise InputError(
             "some load follows the beam, so that its work depends on the motion: such loads can make a structure "
             "flutter before its tangent is singular",
-            remedy="look at the growth that solve_modes finds about a state",
+            remedy="Look at the growth that solve_modes finds about a state",
         )
     shapes = _softened(linear.geometric, linear.factors, count, _NONE * effect)
     modes = np.zeros((shapes.shape[1], len(p)))

@@ -57,7 +57,7 @@ def free_motion(system: System) -> FreeMotion | None:
     farthest = (start, end)[int(moved[1] > (1.0 + 1e-6) * moved[0])]
     x, y = farthest.reference
     unjoined = next((pair for pair in unjoined_ends(model) if _parts(rows, free, pair)), None)
-    missing = f"{in_words(model, unjoined)}: add a Rigid or a Hinge. Otherwise a" if unjoined else "a"
+    missing = f"{in_words(model, unjoined)}: add a Rigid or a Hinge. Otherwise a" if unjoined else "A"
     error = FreeMotionError(
         f"{beam_in_words(model.beams, number)} can move freely: {', '.join(described)}; its point ({x:g}, {y:g}) moves",
         remedy=f"{missing} static solve needs supports that hold it (a Clamp, or a Pin and a Roller) or joints that "

@@ -17,7 +17,8 @@ class BeamfemError(Exception):
     """
 
     def __init__(self, reason: str = "", *, remedy: str = "") -> None:
-        super().__init__(f"{reason}; {remedy}" if remedy else reason)
+        joint = ". " if remedy[:1].isupper() else "; "
+        super().__init__(f"{reason}{joint}{remedy}" if remedy else reason)
         self.reason, self.remedy = reason, remedy
 
 
@@ -42,6 +43,8 @@ class ConvergenceError(BeamfemError, RuntimeError):
         What went wrong.
     solution : Solution, optional
         Every state found before.
+    remedy : str, optional
+        What would be right, see `BeamfemError`.
     """
 
     def __init__(self, message: str, solution: Any = None, *, remedy: str = "") -> None:
@@ -60,6 +63,8 @@ class LimitPointError(ConvergenceError):
         Load factor of the limit point.
     solution : Solution, optional
         The states before it.
+    remedy : str, optional
+        What would be right, see `BeamfemError`.
     """
 
     def __init__(self, message: str, load_factor: float, solution: Any = None, *, remedy: str = "") -> None:

@@ -1,6 +1,7 @@
 """The command `beamfem`: what it prints, the files it writes, its exit codes."""
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -13,7 +14,7 @@ from typer.testing import CliRunner
 import beamfem as bf
 from beamfem.cli import doctor
 from beamfem.cli.app import app
-from beamfem.cli.plain import plain
+from beamfem.cli.report import plain
 
 ROOT = Path(__file__).parent.parent
 CANTILEVER = ROOT / "examples" / "cantilever.toml"
@@ -104,7 +105,7 @@ def test_a_free_model_is_bad_input_of_its_file(tmp_path):
     ],
 )
 def test_what_cannot_be_written_is_refused_before_the_solve(option, path, words, tmp_path, monkeypatch):
-    monkeypatch.setattr("beamfem.cli.modelfile.analyses.solve_static", lambda *_: pytest.fail("solved"))
+    monkeypatch.setattr("beamfem.cli.analyses.solve_through", lambda *_: pytest.fail("solved"))
     (tmp_path / "folder.png").mkdir()
     (tmp_path / "file.txt").touch()
     done = invoke("run", CANTILEVER, option, tmp_path / path)
@@ -148,15 +149,17 @@ def test_info_export_and_plot_of_a_results_file(results, tmp_path):
     found = json.loads(invoke("info", path, "--json").stdout)
     assert (found["kind"], found["states"], found["load_factor"]) == ("static", 2, [0.0, 1.0])
     assert found["statistics"]["iterations"] > 1
-    assert found["model"]["supports"] == ["Clamp: arm.start, at (0, 0) m"]
+    assert found["model"]["supports"] == ["Clamp: point arm.start"]
     assert "4 x CRBF-4 (structural)" in found["model"]["beams"][0]
     text = invoke("info", path).stdout
     assert "load factor  0 to 1\n" in text
-    assert "PointForce: arm.end, at (1, 0) m, vector (0, 833.333) N" in text
-    assert "solve        completed: the " in text
+    assert "PointForce: point arm.end, vector (0, 833.333) N" in text
+    assert "outcome      completed: the " in text
     assert "Newton iterations in 1 step\n" in text
     assert " digits of the forces are reliable\n" in text
-    assert "arm: Line, 1 m long, 4 x CRBF-4 (structural), rectangle 0.01 x 0.01 m, E = 2e+11 Pa, nu = 0.3" in text
+    assert (
+        "arm: Line, 1 m long, 4 x CRBF-4 (structural), rectangle 0.01 x 0.01 m, material E = 2e+11 Pa, nu = 0.3" in text
+    )
     for raw in ("Status.", "\niterations", "[]", "None", "Section("):
         assert raw not in text
     assert "joints: none" in text
@@ -185,13 +188,12 @@ def test_doctor(monkeypatch):
     assert json.loads(invoke("doctor", "--json").stdout)["cache"]["compiled_kernels"] > 0
     assert found["first_solve"]["deflection"] == pytest.approx(TIP, abs=5e-7)
     assert found["first_solve"]["right"]
-    assert isinstance(found["rendering"]["possible"], bool)
-    assert {"extra": "store", "packages": ["h5py"], "missing": [], "install": 'pip install "beamfem[store]"'} in found[
-        "extras"
-    ]
+    assert isinstance(found["rendering"], str)
+    assert found["missing"]["store"] == []
+    version = doctor._version
     monkeypatch.setattr(doctor, "_RENDER", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
-    monkeypatch.setattr(doctor, "_installed", lambda name: name != "h5py")
-    monkeypatch.setattr("beamfem.cli.targets.writable", lambda folder: False)
+    monkeypatch.setattr(doctor, "_version", lambda name: None if name == "h5py" else version(name))
+    monkeypatch.setattr(doctor, "writable", lambda folder: False)
     text = invoke("doctor").stdout
     assert "VTK was killed by signal 11" in text
     assert 'missing h5py: pip install "beamfem[store]"' in text
@@ -220,23 +222,37 @@ def test_a_real_process(tmp_path):
     assert "Exit codes: 0 success" in invoke("--help").stdout
 
 
-def test_help_shows_flags_without_the_name_of_a_type():
-    for command in ((), ("run",), ("study",), ("study", "pendulum"), ("info",)):
-        text = invoke(*command, "--help").stdout
-        assert "--help" in text
-        assert "bool" not in text, command
+LEE = (ROOT / "examples" / "lee_frame.toml").read_text()
 
 
-def test_help_of_a_study_names_it_as_it_was_given_and_ends_with_its_title(monkeypatch):
-    monkeypatch.chdir(ROOT)
-    monkeypatch.setattr(sys, "path", list(sys.path))
-    text = " ".join(invoke("study", "pendulum", "--help").stdout.split())
-    assert "Usage: beamfem study pendulum [OPTIONS] The free-falling" in text
-    assert "Return a run" not in text
+def test_remedies_of_the_library_are_worded_in_the_kinds_of_model_files(tmp_path):
+    static = re.sub("until = .*", "", LEE.replace('kind = "path"', 'kind = "static"').replace("-1.0]", "-25000.0]"))
+    (tmp_path / "lee.toml").write_text(static)
+    done = invoke("run", tmp_path / "lee.toml")
+    assert done.exit_code == 1
+    assert '`kind = "path"` follows the path around it' in done.stderr
+    assert "trace_equilibrium" not in done.stderr
+    free = CANTILEVER.read_text().replace('kind = "clamp"', 'kind = "pin"').replace('"fx", "fy", "m"', '"fx"')
+    (tmp_path / "free.toml").write_text(free)
+    error = json.loads(invoke("run", tmp_path / "free.toml", "--json").stdout)["error"]
+    assert error["message"].startswith("beam 'arm' can move freely")
+    assert 'a "clamp"' in error["message"]
+    assert "simulate" not in error["message"]
 
 
-def test_an_unknown_study_lists_each_study_once(monkeypatch):
-    monkeypatch.chdir(ROOT)
-    message = invoke("study", "penduum").stderr
-    assert "did you mean pendulum? Known are all, benchmarks/chain_growth, " in message
-    assert message.count("chain_growth") == 1
+def test_warnings_are_printed_once_and_without_lines_of_python(tmp_path):
+    text = CANTILEVER.read_text().replace("[0, 833.3333333333334]", "[-5000, 0]")
+    (tmp_path / "column.toml").write_text(text)
+    command = [sys.executable, "-m", "beamfem", "run", str(tmp_path / "column.toml")]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    (line,) = done.stderr.splitlines()
+    assert re.match(r"warning: \d of \d rows are unstable equilibria", line)
+    assert '`kind = "path"` finds the bifurcations' in line
+    assert "; the equilibrium is unstable" in done.stdout
+
+
+@pytest.mark.filterwarnings("ignore::beamfem.UnitsWarning")
+def test_tables_have_the_units_of_the_file(tmp_path):
+    (tmp_path / "lee.toml").write_text(LEE.replace('"N, cm"', '"N, mm"'))
+    printed = invoke("run", tmp_path / "lee.toml").stdout
+    assert re.search(r"load_factor +ux \[mm\] +uy \[mm\]\n", printed)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.cli.modelfile.functions import Interpolated
+from beamfem.model.time_functions import Interpolated
 
 SECTION = bf.Rectangle(0.02, 0.02)
 RUBBER = bf.Material(1e6, 0.3, 1000.0)

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import beamfem as bf
-from beamfem.cli.modelfile import actions
+from beamfem.cli.kinds import ACTING
 from beamfem.model.listed_parts import listed_parts
 
 FILE = str(Path(__file__).parent / "trial_parts.py")
@@ -105,7 +105,7 @@ kind = "snow"
 beam = "tip"
 size = 40
 amplitude = { kind = "table", points = [[0, 0], [1, 1]] }
-[connectors.stop]
+[[connectors]]
 kind = "buffer"
 point = "tip.at(0.5)"
 stiffness = 700
@@ -137,11 +137,11 @@ def test_listed_parts_are_solved_told_saved_drawn_and_exported(tmp_path):
     assert found["potential"] == pytest.approx(known.energy().potential[-1], rel=1e-9)
     assert found["loaded"] == [True] * 4
     words = found["words"]
-    assert words["supports"][1] == "Slide: tip.end, at (1.6, 0.6) m, stiffness 400 N/m"
-    assert words["joints"] == ["Weld: arm.end and tip.start, at (0.8, 0.6) m, thickness 0.004 m"]
-    assert words["loads"][0].startswith("SnowLoad: along arm, size a function, saved at ")
-    assert words["loads"][1] == "SnowLoad: along tip, size 40 N/m, amplitude a table of 2 points"
-    assert words["connectors"] == ["Buffer: tip.at(0.5), at (1.2, 0.6) m, stiffness 700 N/m"]
+    assert words["supports"][1] == "Slide: point tip.end, stiffness 400 N/m"
+    assert words["joints"] == ["Weld: a arm.end, b tip.start, thickness 0.004 m"]
+    assert words["loads"][0].startswith("SnowLoad: beam arm, size a function")
+    assert words["loads"][1] == "SnowLoad: beam tip, size 40 N/m, amplitude a function"
+    assert words["connectors"] == ["Buffer: point tip.at(0.5), stiffness 700 N/m"]
     assert found["kinds"] == ["Clamp", "Slide", "SnowLoad", "Buffer"]
     assert found["imperfect"] == ["SnowLoad", "SnowLoad"]
     for name in ("a.svg", "model.svg", "a.html"):
@@ -150,7 +150,8 @@ def test_listed_parts_are_solved_told_saved_drawn_and_exported(tmp_path):
 
 def test_wrong_keys_of_listed_parts_have_their_line(tmp_path):
     code = """
-from beamfem.cli.modelfile import ModelFileError, read_model_file
+from beamfem.cli.model_file import read_model_file
+from beamfem.cli.toml_source import ModelFileError
 said = []
 for line, wrong in (("size = 40", "size = true"), ("size = 40", "sise = 40"), ('kind = "buffer"', 'kind = "bufer"')):
     text = open("model.toml").read()
@@ -169,14 +170,12 @@ print(json.dumps(said))
 
 
 def test_kinds_are_those_of_model_files():
-    assert list(actions.SUPPORTS) == ["clamp", "pin", "roller", "prescribed", "spring", "foundation"]
-    assert list(actions.LOADS) == [
+    assert list(ACTING["supports"]) == ["clamp", "pin", "roller", "prescribed", "spring", "foundation"]
+    assert list(ACTING["loads"]) == [
         *("gravity", "force", "moment", "distributed", "pressure", "actuation", "temperature"),
     ]
-    assert list(actions.JOINTS) == ["rigid", "hinge"]
-    assert len(listed_parts()) == sum(
-        map(len, (actions.SUPPORTS, actions.LOADS, actions.JOINTS, actions.CONNECTORS))
-    )  # no two have one kind
+    assert list(ACTING["joints"]) == ["rigid", "hinge"]
+    assert len(listed_parts()) == sum(map(len, ACTING.values()))  # no two have one kind
 
 
 def test_listed_parts_are_public():

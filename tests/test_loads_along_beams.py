@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.cli.modelfile import ModelFileError, read_model_file
+from beamfem.cli.model_file import read_model_file
+from beamfem.cli.toml_source import ModelFileError
 
 STIFF = bf.Section.from_stiffness(1e9, 1e9, 1e3, 1.0, 1.0)
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.cli.modelfile import ModelFileError, read_model_file
+from beamfem.cli.model_file import read_model_file
+from beamfem.cli.toml_source import ModelFileError
 
 STIFF = bf.Section.from_stiffness(1e9, 1e9, 1.0, 1.0, 1.0)
 
@@ -103,7 +104,7 @@ def test_a_static_solve_has_a_row_at_every_load_factor_that_is_asked_for(tmp_pat
     job = model_file(tmp_path, "", "[0.5, 0.25, 1.0, 0.0]")
     rows = rows_of(job)
     assert [row["load_factor"] for row in rows] == pytest.approx([0.5, 0.25, 1.0, 0.0], abs=1e-12)
-    arm = job.beams["arm"]
+    arm = job.model.beams[0]
     half = bf.Model([arm], job.model.supports, [bf.PointForce(arm.end, (0.0, 2.5))])
     assert rows[0]["uy"] == pytest.approx(bf.solve_static(half).displacement(arm.end)[-1, 1], rel=1e-9)
 

@@ -10,7 +10,7 @@ from zipfile import ZipFile
 import pytest
 from typer.testing import CliRunner
 
-from beamfem.cli import shipped
+from beamfem.cli import examples
 from beamfem.cli.app import app
 
 ROOT = Path(__file__).parent.parent
@@ -39,18 +39,18 @@ def test_examples_are_listed_and_copied_once(tmp_path, monkeypatch):
     again = invoke("examples", tmp_path / "a")
     assert again.exit_code == 2
     assert "is there already" in again.stderr
-    monkeypatch.setattr(shipped, "_PACKAGE", tmp_path / "none" / "beamfem")
+    monkeypatch.setattr(examples, "_PACKAGE", tmp_path / "none" / "beamfem")
     assert "came without its examples" in invoke("examples").stderr
 
 
 def test_folders_in_the_package_come_before_those_beside_it(tmp_path, monkeypatch):
-    monkeypatch.setattr(shipped, "_PACKAGE", tmp_path / "beamfem")
-    assert shipped.shipped("studies") is None
+    monkeypatch.setattr(examples, "_PACKAGE", tmp_path / "beamfem")
+    assert examples.shipped("studies") is None
     (tmp_path / "studies").mkdir()
-    assert shipped.shipped("studies") == tmp_path / "studies"
+    assert examples.shipped("studies") == tmp_path / "studies"
     inside = tmp_path / "beamfem" / "shipped" / "studies"
     inside.mkdir(parents=True)
-    assert shipped.shipped("studies") == inside
+    assert examples.shipped("studies") == inside
 
 
 def test_the_wheel_is_told_to_hold_them():

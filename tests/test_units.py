@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.cli.modelfile import ModelFileError, read_model_file
+from beamfem.cli.model_file import read_model_file
+from beamfem.cli.toml_source import ModelFileError
 from beamfem.units import units_of
 
 # the same numbers under the names of several units

@@ -6,7 +6,7 @@ import h5py
 import pytest
 
 import beamfem as bf
-from beamfem.cli.modelfile.read import read_model_file
+from beamfem.cli.model_file import read_model_file
 
 BEAM = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(1), bf.Rectangle(0.1, 0.1), bf.Material(2e11, 0.3, 7800.0))
 MODEL = bf.Model([BEAM], [bf.Clamp(BEAM.start)], [bf.PointForce(BEAM.end, (0.0, -1e3))])

@@ -62,7 +62,7 @@ def inclined_rollers(model: Model, prescribed: set[int]) -> tuple[tuple[int, np.
             dofs = mesh.coordinates_of(mesh.node_at(support.point.fraction))
             rollers.append((dofs["r^x"], normal))
     if len({dof for dof, _ in rollers}) < len(rollers):
-        raise InputError("two inclined Rollers stand at the same point; a Pin constrains both directions")
+        raise InputError("two inclined Rollers stand at the same point", remedy="a Pin constrains both directions")
     for dof, _ in rollers:
         if dof in prescribed or dof + 1 in prescribed:
             raise InputError("an inclined Roller stands where another support already constrains the displacement")

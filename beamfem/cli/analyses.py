@@ -2,12 +2,12 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from inspect import Parameter, signature
-from typing import Any, Literal, get_type_hints
+from inspect import signature
+from typing import Any, Literal
 
 import numpy as np
 
-from beamfem.cli.schema import Kinds, Names, build, reader, shown
+from beamfem.cli.schema import Kinds, Names, build, reader, shown, with_keys
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
 from beamfem.model.model import Model
@@ -52,7 +52,9 @@ class Analysis:
 
     def run(self, model: Model, asked: Sequence[float]) -> Found:
         """Solve the model; asked: load factors at which outputs need a state. Raises InputError, ConvergenceError."""
-        keys = {name: state(model, value) if name in ("about", "start") else value for name, value in self.keys.items()}
+        keys: dict[str, Any] = {
+            name: state(model, value) if name in ("about", "start") else value for name, value in self.keys.items()
+        }
         if self.kind == "static":
             return Found(_static(model, asked, **keys))
         if self.kind == "path":
@@ -68,10 +70,10 @@ class Analysis:
         number = count("count", keys.get("count", signature(solve).parameters["count"].default))
         shown["mode"] = number_below("mode", shown.get("mode", 1), number + 1, lowest=1) - 1
         modes = solve(model, **keys)
-        names = (
+        listed = (
             ("load_factors", "kinds", "linearised") if self.kind == "buckling" else ("frequencies", "growth", "rigid")
         )
-        values = {name: list(getattr(modes, name)) for name in names if np.any(getattr(modes, name))}
+        values = {name: list(getattr(modes, name)) for name in listed if np.any(getattr(modes, name))}
         return Found(modes.solution(**shown), values, modes)
 
 
@@ -142,24 +144,14 @@ class Imperfection:
         return model.with_imperfection(solve(model, self.mode, state(model, self.about)), self.size, self.mode - 1)
 
 
-def _analysis(kind: str, *sources: Callable[..., Any], without: Sequence[str] = (), **hints: Any) -> Any:
-    """Return what makes an analysis of its keys: the parameters of some functions, and those with type hints here."""
-
-    def make(**keys: Any) -> Analysis:
-        return Analysis(kind, keys)
-
-    found = {name: item for source in sources for name, item in signature(source).parameters.items()}
-    found |= {name: Parameter(name, Parameter.KEYWORD_ONLY, default=None) for name in hints}
-    kept = [item.replace(kind=Parameter.KEYWORD_ONLY) for name, item in found.items() if name not in without]
-    make.__signature__ = signature(make).replace(parameters=kept)  # type: ignore[attr-defined]
-    make.__annotations__ = {name: hint for source in sources for name, hint in get_type_hints(source).items()} | hints
-    return make
+def _analysis(kind: str, *sources: Callable[..., Any], **hints: Any) -> Callable[..., Any]:
+    return with_keys(lambda keys: Analysis(kind, keys), sources, **hints)
 
 
 ANALYSES: Kinds = {
     "static": _analysis("static", solve_static),
-    "path": _analysis("path", trace_equilibrium, without=["start"], until=reader(_until)),
+    "path": _analysis("path", trace_equilibrium, start=None, until=reader(_until)),
     "buckling": _analysis("buckling", solve_buckling, Buckling.solution, about=Start, mode=int),
     "modes": _analysis("modes", solve_modes, Modes.solution, about=Start, mode=int),
-    "dynamics": _analysis("dynamics", simulate, without=["integrator"], start=Start, rho_inf=float),
+    "dynamics": _analysis("dynamics", simulate, integrator=None, start=Start, rho_inf=float),
 }

@@ -93,9 +93,8 @@ def _print(found: dict[str, Any]) -> None:
     cache, solve = found["cache"], found["first_solve"]
     print("versions\n" + "\n".join(f"  {name:14s} {version}" for name, version in found["versions"].items()))
     folder = cache["folder"] or "nowhere: set BEAMFEM_CACHE_DIR to a folder that can be written to"
-    print(
-        f"\n{cache['compiled_kernels']} kernels in {folder}{'' if cache['writable'] else ', which cannot be written to'}"
-    )
+    writes = "" if cache["writable"] else ", which cannot be written to"
+    print(f"\n{cache['compiled_kernels']} kernels in {folder}{writes}")
     verdict = "right" if solve["right"] else f"WRONG: tip deflection {solve['deflection']:.8f} instead of {_TIP:.8f}"
     first, again = solve["seconds"]
     print(f"first solve {first:.2f} s, again {1e3 * again:.1f} ms: {verdict}")

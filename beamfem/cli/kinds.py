@@ -90,6 +90,7 @@ SECTIONS: Kinds = {
     "stiffness": _along(Section.from_stiffness),
     "layered": Layered,
 }
+MATERIALS: Kinds = {"material": Material}
 FUNCTIONS: Kinds = {"table": Interpolated, "sine": _sine, "smooth-ramp": _smooth_ramp}
 ELEMENTS: Kinds = {preset.__name__: preset for preset in (ANCF, ANCFCRBF, BilinearANCF, BilinearCRBF, CRBF, ShearRigid)}
 FORCES: Kinds = {
@@ -153,7 +154,7 @@ def _file(value: Any, names: Names) -> Path:
 
 
 _function = named("functions", FUNCTIONS)
-_material, _section, _element = named("materials", Material), named("sections", SECTIONS), named("elements", ELEMENTS)
+_material, _section, _element = named("materials", MATERIALS), named("sections", SECTIONS), named("elements", ELEMENTS)
 Elements = reader(_elements)
 TYPES: dict[Any, Any] = {
     Point: reader(lambda value, names: names.point(value)),
@@ -169,8 +170,8 @@ TYPES: dict[Any, Any] = {
     "number": reader(_number),
     "vector": reader(_vector),
 }
-NAMED: dict[str, Kinds | Callable[..., Any]] = {
-    "materials": Material,
+NAMED: dict[str, Kinds] = {
+    "materials": MATERIALS,
     "functions": FUNCTIONS,
     "sections": SECTIONS,
     "elements": ELEMENTS,
@@ -182,7 +183,7 @@ class BeamTable:
     """The keys of [beams.NAME]."""
 
     curve: Curve
-    elements: Elements
+    elements: Elements  # type: ignore[valid-type]
     element: Element
     section: CrossSection
     material: Material | None = None
@@ -204,5 +205,7 @@ _NAME = re.compile(rf"\b({'|'.join(_PYTHON)})\b")
 
 
 def in_keys(message: str) -> str:
-    """Return a message of the library with the kinds of model files in place of classes and functions."""
-    return _NAME.sub(lambda match: _PYTHON[match[0]], message)
+    """Return a message of the library with kinds and keys in place of classes, functions and arguments."""
+    keys = re.sub(r"\b([a-z_]+)=(?=[\"\w])", r"\1 = ", _NAME.sub(lambda match: _PYTHON[match[0]], message))
+    keys = re.sub(r"np\.radians\(([\d.]+)\)", lambda match: f"{np.radians(float(match[1])):.12g}", keys)
+    return keys.replace(" = True", " = true").replace(" = False", " = false")

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -67,16 +68,14 @@ def read_model_file(path: str | PathLike[str], files_anywhere: bool = False) -> 
         names.parts[section] = {}
         for name, table in _named_tables(source, section).items():
             with _within(source, section, name):
-                read = build if callable(kinds) else part
-                names.parts[section][name] = read(kinds, table, names)
+                names.parts[section][name] = part(kinds, table, names)
     for name, table in _named_tables(source, "beams").items():
         with _within(source, "beams", name):
             names.beams[name] = build(BeamTable, table, names).beam(name)
     if not names.beams:
         raise source.error("a model needs at least one beam, a table headed [beams.NAME]")
     acting = {
-        section: _tables(source, section, lambda table, kinds=kinds: _each_place(kinds, table, names))
-        for section, kinds in ACTING.items()
+        section: _tables(source, section, partial(_each_place, kinds, names)) for section, kinds in ACTING.items()
     }
     model = _model(source, list(names.beams.values()), acting)
     if "units" in source.values:
@@ -105,14 +104,17 @@ def _job(source: Source, names: Names, model: Model, imperfection: Imperfection 
     return Job(source, names, title, model, analysis, outputs, files, imperfection)
 
 
-def _each_place(kinds: Kinds, table: Any, names: Names) -> list[Any]:
+def _each_place(kinds: Kinds, names: Names, table: Any) -> list[Any]:
     """Return the part of a table, or one for each of its `points` or `beams`. Raises KeyFault."""
     require_table(table)
-    for plural in ("points", "beams"):
+    for plural, single in (("points", "point"), ("beams", "beam")):
         if isinstance(places := table.get(plural), list):
             rest = {key: value for key, value in table.items() if key != plural}
-            tables = [{**rest, plural.removesuffix("s"): place} for place in places]
-            return [part(kinds, each, names) for each in tables]
+            try:
+                return [part(kinds, {**rest, single: (place := each)}, names) for each in places]
+            except KeyFault as fault:
+                path = (plural, places.index(place), *fault.path[1:]) if fault.path[:1] == (single,) else fault.path
+                raise KeyFault(fault.message, *path) from None
     return [part(kinds, table, names)]
 
 
@@ -129,7 +131,8 @@ def _model(source: Source, beams: list[Beam], acting: dict[str, list[list[Any]]]
                 with _within(source, section, number):
                     before += found
                     alone = before if section == "supports" else found
-                    _require_compatible(Model(beams, **{section: alone}))
+                    given: Any = {section: alone}
+                    _require_compatible(Model(beams, **given))
         raise
     return model
 
@@ -148,14 +151,14 @@ def _within(source: Source, *path: str | int) -> Iterator[None]:
     except ModelFileError:
         raise
     except (KeyFault, InputError, FileError) as error:
-        fault = error
         if not isinstance(error, KeyFault):
             value: Any = source.values
             for key in path:
-                value = value[key] if isinstance(value, list) or key in value else {}
-            fault = KeyFault.of(error, *(named_first(str(error), value) if isinstance(value, dict) else ()))
-        message = f"{fault.message}; {fault.remedy}" if fault.remedy else fault.message
-        raise source.error(in_keys(message), *path, *fault.path) from error
+                value = value[key] if isinstance(key, int) else value.get(key, {})
+            named = named_first(str(error), value) if isinstance(value, dict) else []
+            path = path if named or path != ("analysis",) else ()  # the model rather than a key of the analysis
+            error = KeyFault.of(error, *named)
+        raise source.error(in_keys(error.message), *path, *error.path) from error
 
 
 def _tables(source: Source, section: str, read: Callable[[Any], Any]) -> list[Any]:

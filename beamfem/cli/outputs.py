@@ -2,15 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from inspect import Parameter, signature
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any
 
 import numpy as np
 
 from beamfem.cli.analyses import Analysis, Found
 from beamfem.cli.report import require_target
-from beamfem.cli.schema import KeyFault, Kinds, Names, reader, shown
+from beamfem.cli.schema import KeyFault, Kinds, Names, reader, shown, with_keys
 from beamfem.errors import InputError
 from beamfem.io.description import describe
 from beamfem.model.beam import Beam, Point
@@ -133,11 +132,8 @@ class Output:
         for value in self.asked:
             if not low - _NEAR <= value <= high + _NEAR:
                 raise InputError(f"at asks for the {what} {value:g}, but the states are those from {low:g} to {high:g}")
-            if (
-                solution.static
-                and not isinstance(solution, EquilibriumPath)
-                and np.abs(solution.at - value).min() > _NEAR
-            ):
+            exact = solution.static and not isinstance(solution, EquilibriumPath)
+            if exact and np.abs(solution.at - value).min() > _NEAR:
                 raise InputError(f"at asks for the {what} {value:g}, where the structure jumps: it has no state there")
         return [int(np.abs(solution.at - value).argmin()) for value in self.asked]
 
@@ -159,11 +155,11 @@ def draw(solution: Solution, path: Path, **options: Any) -> None:
     kind = path.suffix.lower()
     if kind == ".html" and options:
         raise InputError("a page has its own choice of colours; --colour is for pictures and films")
-    write = {".html": solution.to_html, ".gif": solution.animate, ".mp4": solution.animate}.get(kind, solution.plot)
-    write(path, **options)
+    writers: Any = {".html": solution.to_html, ".gif": solution.animate, ".mp4": solution.animate}
+    writers.get(kind, solution.plot)(path, **options)
 
 
-# what writes a file: a method, or a function of a solution, and the suffixes
+# the method that writes a file, and its suffixes
 _PICTURE, _FILM = (".png", ".svg", ".pdf"), (".gif", ".mp4")
 WRITERS: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
     "results": (Solution.save, (".h5", ".hdf5")),
@@ -219,20 +215,12 @@ class OutputFile:
         getattr(source, WRITERS[self.kind][0].__name__)(path=self.file, **options)
 
 
-def _file_of(kind: str) -> Callable[..., OutputFile]:
-    """Return what makes the file of a kind of its keys: `file` and the parameters of the method."""
-    method = WRITERS[kind][0]
-
-    def make(file: Path, **options: Any) -> OutputFile:
-        return OutputFile(kind, file, options)
-
-    keys = {name: item for name, item in signature(method).parameters.items() if name not in ("self", "path")}
-    keys = {"file": Parameter("file", Parameter.KEYWORD_ONLY)} | keys
-    ordered = [item.replace(kind=Parameter.KEYWORD_ONLY) for item in keys.values()]
-    make.__signature__ = signature(method).replace(parameters=ordered)  # type: ignore[attr-defined]
-    hints = get_type_hints(method)
-    make.__annotations__ = {name: hints.get(name, item.annotation) for name, item in keys.items()} | {"file": Path}
-    return make
-
-
-FILES: Kinds = {kind: _file_of(kind) for kind in WRITERS}
+FILES: Kinds = {
+    kind: with_keys(
+        lambda keys, kind=kind: OutputFile(kind, keys["file"], {name: keys[name] for name in keys if name != "file"}),
+        [method],
+        needed=["file"],
+        file=Path,
+    )
+    for kind, (method, _) in WRITERS.items()
+}

@@ -1,6 +1,5 @@
 """`beamfem info`, `export` and `plot`: commands for a results file."""
 
-from dataclasses import Field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,7 +9,6 @@ from beamfem.cli.report import AsJson, Quiet, print_json, reported, require_targ
 from beamfem.cli.run import Colour
 
 if TYPE_CHECKING:
-    from beamfem.model.model import Model
     from beamfem.results.solution import Solution
 
 Results = Annotated[Path, typer.Argument(help="A results file (.h5).", show_default=False)]
@@ -91,18 +89,13 @@ def _described(path: Path, solution: "Solution") -> dict[str, Any]:
     import h5py
 
     from beamfem.io.hdf5 import read_label
-    from beamfem.io.in_words import material_in_words, section_in_words
+    from beamfem.io.in_words import beam_in_words, part_in_words
 
     with h5py.File(path, "r") as file:
         version = read_label(file, "beamfem_version")
     model, statistics = solution.model, solution.statistics
-    beams = [
-        f"{_text(beam, model)}: {type(beam.curve).__name__}, {beam.curve.length:.6g} {model.unit('m')} long, "
-        f"{mesh.elements} x {beam.element.name} ({beam.element.forces.name}), "
-        f"{section_in_words(beam.section, model.unit)}, material {material_in_words(beam.material, model.unit)}"
-        for beam, mesh in zip(model.beams, model.meshes, strict=True)
-    ]
     parts = {name: getattr(model, name) for name in ("supports", "joints", "connectors", "loads")}
+    words = {name: [part_in_words(item, model) for item in items] for name, items in parts.items()}
     return {
         "file": str(path),
         "written_by": f"beamfem {version}",
@@ -110,41 +103,8 @@ def _described(path: Path, solution: "Solution") -> dict[str, Any]:
         "outcome": statistics.outcome,
         "effort": statistics.effort,
         "units": model.units,
-        "model": {"beams": beams, **{key: [_part(item, model) for item in items] for key, items in parts.items()}},
+        "model": {"beams": [beam_in_words(beam, model) for beam in model.beams], **words},
     }
-
-
-def _part(item: Any, model: "Model") -> str:
-    """Return a support, joint, connector or load in a line: the values of its fields that are not their defaults."""
-    from beamfem.model.field_units import field_units
-
-    units = field_units(item)
-    given = [(field.name, getattr(item, field.name)) for field in fields(item) if _given(item, field)]
-    words = [f"{name} {_text(value, model)} {model.unit(units.get(name, ''))}".strip() for name, value in given]
-    return f"{type(item).__name__}: {', '.join(words)}"
-
-
-def _given(item: Any, field: Field[Any]) -> bool:
-    value = getattr(item, field.name)
-    return hasattr(value, "shape") or (value is not None and value != field.default)
-
-
-def _text(value: Any, model: "Model") -> str:
-    """Return a value of a part; points and beams as model files name them."""
-    from beamfem.model.beam import Beam, Point
-    from beamfem.model.named import names
-
-    if isinstance(value, Beam):
-        return names(model.beams)[model.number_of(value)]
-    if isinstance(value, Point):
-        return (
-            f"{_text(value.beam, model)}.{ {0.0: 'start', 1.0: 'end'}.get(value.fraction, f'at({value.fraction:g})') }"
-        )
-    if isinstance(value, tuple):
-        return f"({', '.join(_text(item, model) for item in value)})"
-    if callable(value):
-        return "a function"
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _print(found: dict[str, Any]) -> None:

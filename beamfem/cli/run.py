@@ -116,7 +116,7 @@ def _kept(job: "Job", out: Path | None) -> Iterator[None]:
         yield
     except (ConvergenceError, KeyboardInterrupt) as error:
         if isinstance(error, ConvergenceError):
-            error.args = (in_keys(str(error)),)
+            error.args, error.remedy = (in_keys(str(error)),), in_keys(error.remedy)
         before = getattr(error, "solution", None)
         if before is not None and out is not None:
             before.save(out)

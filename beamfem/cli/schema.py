@@ -10,21 +10,24 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, is_dataclass
 from difflib import get_close_matches
 from pathlib import Path
-from types import NoneType
-from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+from types import NoneType, UnionType
+from typing import Annotated, Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, PlainValidator, Strict, ValidationError, ValidationInfo, create_model
 
-from beamfem.errors import InputError
+from beamfem.errors import BeamfemError, InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
 from beamfem.validation import nearest, require_known
+from beamfem.validation import shown as in_python
 
 Kinds = Mapping[str, Callable[..., Any]]
 Made = TypeVar("Made")
 
-_POINT = re.compile(r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\(\s*(?P<fraction>[-+.\deE]+)\s*\))")
+_POINT = re.compile(
+    r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\(\s*(?P<fraction>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*\))"
+)
 _NO_KEYS = ("self", "model", "asked", "path")  # parameters that are no keys
 _RULES = {
     "float_type": "a number",
@@ -38,18 +41,16 @@ _RULES = {
 
 
 class KeyFault(ValueError):
-    """A wrong value in a table, with its path below the table that is read; remedy: as that of a `BeamfemError`."""
+    """A wrong value in a table, with its path below the table that is read."""
 
-    def __init__(self, message: str, *path: str | int, remedy: str = "") -> None:
+    def __init__(self, message: str, *path: str | int) -> None:
         super().__init__(message)
-        self.message, self.path, self.remedy = message, path, remedy
+        self.message, self.path = message, path
 
     @classmethod
-    def of(cls, error: "KeyFault | InputError", *path: str | int) -> "KeyFault":
+    def of(cls, error: "KeyFault | BeamfemError", *path: str | int) -> "KeyFault":
         """Return an error as that of the key at a path."""
-        if isinstance(error, KeyFault):
-            return cls(error.message, *path, *error.path, remedy=error.remedy)
-        return cls(error.reason, *path, remedy=error.remedy)
+        return cls(str(error), *path, *(error.path if isinstance(error, KeyFault) else ()))
 
 
 @dataclass
@@ -87,33 +88,22 @@ class Names:
         return self.moved.get(point) or Point(self.moved.get(point.beam, point.beam), fraction)
 
     def points(self, places: Any) -> list[Point]:
-        """Return the points of a list, or a list of one point. Raises InputError, KeyFault."""
-        return (
-            [at_key(number, self.point, item) for number, item in enumerate(places)]
-            if isinstance(places, list)
-            else [self.point(places)]
-        )
+        """Return the points of a list, or a list of one point. Raises InputError."""
+        return [self.point(place) for place in (places if isinstance(places, list) else [places])]
 
 
 def _points(model: Model) -> list[Point]:
     """Return all points with supports, loads, joints or connectors."""
-    points = [item.point for item in (*model.point_supports, *model.point_loads)]
+    acting: list[Any] = [*model.point_supports, *model.point_loads]
+    points = [item.point for item in acting]
     points += [point for joint in model.joints for point in (joint.a, joint.b)]
     return points + [point for connector in model.connectors for point in connector.points]
-
-
-def at_key(key: str | int, read: Callable[..., Made], *values: Any) -> Made:
-    """Return what is read, errors with the key that it is read from. Raises KeyFault."""
-    try:
-        return read(*values)
-    except (KeyFault, InputError) as error:
-        raise KeyFault.of(error, key) from None
 
 
 def part(kinds: Kinds, table: Any, names: Names, default: str | None = None) -> Any:
     """Return the part that a table describes by its `kind`. Raises KeyFault."""
     require_table(table)
-    kind = table.get("kind", default)
+    kind = table.get("kind", default or (next(iter(kinds)) if len(kinds) == 1 else None))
     if kind is None:
         raise KeyFault(f"the key kind is missing; it is one of {', '.join(kinds)}")
     if not isinstance(kind, str):
@@ -139,8 +129,8 @@ def build(make: Callable[..., Made], table: Any, names: Names) -> Made:
 
 def named_first(message: str, table: Mapping[str, Any]) -> list[str]:
     """Return the key of a table that a message names first, in a list that is empty if there is none."""
-    found = {key: re.search(rf"\b{re.escape(key)}\b", message) for key in table}
-    return sorted((key for key, match in found.items() if match), key=lambda key: found[key].start())[:1]
+    places = {key: match.start() for key in table if (match := re.search(rf"\b{re.escape(key)}\b", message))}
+    return sorted(places, key=lambda key: places[key])[:1]
 
 
 def _schema(make: Callable[..., Any], types: Mapping[Any, Any]) -> type[BaseModel]:
@@ -160,51 +150,74 @@ def _type(hint: Any, types: Mapping[Any, Any]) -> Any:
         return hint
     if hint is inspect.Parameter.empty:
         return Any
-    options = get_args(hint) if get_origin(hint) not in (Literal, tuple, list, Sequence, Callable, dict) else ()
-    options = [option for option in options or (hint,) if option not in (NoneType, np.ndarray)]
+    union = get_args(hint) if get_origin(hint) in (Union, UnionType) else (hint,)
+    options = [option for option in union if option not in (NoneType, np.ndarray)]
     for option in reversed(options):
         if option in types:
             return types[option]
-    if any(option is Callable or get_origin(option) is Callable for option in options):
-        kinds = {option: get_origin(option) or option for option in options}
-        scalar, vector = float in kinds.values(), tuple in kinds.values()
-        return types["number" if scalar else "vector" if vector else "function"]
+    described: Any = next(filter(is_dataclass, options), None)
+    if described is not None:
+        return reader(lambda value, names: build(described, value, names))
+    origins = [get_origin(option) or option for option in options]
+    if Callable in origins:
+        return types["number" if float in origins else "vector" if tuple in origins else "function"]
     hint = options[0]
     if get_origin(hint) is tuple and Ellipsis not in get_args(hint):
         return Any  # the library checks vectors
     if get_origin(hint) in (tuple, list, Sequence):
         return list[_type(get_args(hint)[0], types)]  # type: ignore[misc]
-    if is_dataclass(hint):
-        return reader(lambda value, names: build(hint, value, names))
     return Annotated[hint, Strict()] if hint in (float, int, bool, str) else hint
+
+
+def with_keys(
+    make: Callable[..., Any], sources: Sequence[Callable[..., Any]], needed: Sequence[str] = (), **hints: Any
+) -> Callable[..., Any]:
+    """Return a function whose keys are the parameters of others.
+
+    hints: types of further keys, None for parameters that are left out; needed: further keys without default.
+    """
+    key_only, without = inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.empty
+
+    def made(**keys: Any) -> Any:
+        return make(keys)
+
+    found = {key: item for source in sources for key, item in inspect.signature(source).parameters.items()}
+    own = {key: inspect.Parameter(key, key_only, default=without if key in needed else None) for key in hints}
+    kept = {key: item for key, item in (found | own).items() if hints.get(key, make) is not None}
+    types = {key: hint for source in sources for key, hint in get_type_hints(source).items()} | hints
+    parameters = [item.replace(kind=key_only) for item in kept.values()]
+    made.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    made.__annotations__ = {key: types.get(key, item.annotation) for key, item in kept.items()}
+    return made
 
 
 def reader(read: Callable[[Any, Names], Any]) -> Any:
     """Return a type whose values a function reads."""
 
     def validate(value: Any, info: ValidationInfo) -> Any:
-        return read(value, info.context)
+        names: Any = info.context
+        return read(value, names)
 
     return Annotated[Any, PlainValidator(validate)]
 
 
-def named(section: str, kinds: Kinds | Callable[..., Any]) -> Callable[[Any, Names], Any]:
+def named(section: str, kinds: Kinds) -> Callable[[Any, Names], Any]:
     """Return what reads a part: its name in a section of the file, a table, or a kind that needs no other key."""
     single = section.removesuffix("s")
     article = "an" if single[0] in "aeiou" else "a"
+    short = [kind for kind, make in kinds.items() if not _needed(make)]
 
     def read(value: Any, names: Names) -> Any:
-        known = names.parts.get(section, {})
-        short = [kind for kind, make in kinds.items() if not _needed(make)] if isinstance(kinds, Mapping) else []
         if isinstance(value, dict):
-            return part(kinds, value, names) if isinstance(kinds, Mapping) else build(kinds, value, names)
+            return part(kinds, value, names)
         if not isinstance(value, str):
             raise InputError(f"must be the name of {article} {single}, or a table, got {shown(value)}")
+        known = names.parts.get(section, {})
         if value in known:
             return known[value]
         if value in short:
             return part(kinds, {"kind": value}, names)
-        if isinstance(kinds, Mapping) and value in kinds:
+        if value in kinds:
             raise InputError(f"the kind {value!r} needs further keys: {in_braces(value, kinds[value])}")
         listed = [*known, *short]
         hint = nearest(value, listed) if listed else f"the file has none; they are headed [{section}.NAME]"
@@ -256,4 +269,4 @@ def shown(value: Any) -> str:
         return f'the text "{value}"'
     if isinstance(value, dict):
         return "a table"
-    return f"the array {value}" if isinstance(value, list) else str(value)
+    return f"the array {in_python(value)}" if isinstance(value, list) else in_python(value)

@@ -205,15 +205,15 @@ class BSpline:
             Unless the degree is 3, all weights are equal, and no interior knot occurs more than twice.
         """
         advice = (
-            "; a cubic close to it goes through positions and tangents at arc lengths s: "
+            "a cubic close to it goes through positions and tangents at arc lengths s: "
             "spline_through_hermite(s, curve.position(s), curve.tangent(s))"
         )
         if self.degree != 3:
             raise InputError(
-                f"only a spline of degree 3 is one cubic a span, this one has degree {self.degree}{advice}"
+                f"only a spline of degree 3 is one cubic a span, this one has degree {self.degree}", remedy=advice
             )
         if self.weights is not None and len(set(self.weights)) > 1:
-            raise InputError(f"a spline with different weights is a quotient of cubics, not a cubic{advice}")
+            raise InputError("a spline with different weights is a quotient of cubics, not a cubic", remedy=advice)
         for knot in self.breaks[1:-1]:
             if self.multiplicity(knot) > 2:
                 raise InputError(

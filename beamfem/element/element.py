@@ -100,7 +100,8 @@ class Element:
         if isinstance(self.forces, ElasticLine) and not has_slope:
             raise InputError(
                 f"the elastic line takes its curvature from r_xx, which the {self.field.name} field does not have "
-                "across elements; use the cubic field, or Structural forces"
+                "across elements",
+                remedy="use the cubic field, or Structural forces",
             )
 
     def __eq__(self, other: object) -> bool:

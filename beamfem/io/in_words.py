@@ -1,10 +1,14 @@
-"""Materials and sections in words, for the legends of files and for the command line."""
+"""Parts of a model in words, for the legends of files and for the command line."""
 
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import Field, fields
 from typing import Any
 
 from beamfem.material import Material
+from beamfem.model.beam import Beam, Point
+from beamfem.model.field_units import field_units
+from beamfem.model.model import Model
+from beamfem.model.named import names
 from beamfem.section import Layered, Section, ShapedSection, StiffnessSection
 from beamfem.section.outline import RectangleOutline, TubeOutline
 
@@ -48,3 +52,43 @@ def section_in_words(section: Any, unit: Unit) -> str:
             forces = f"E A = {section.axial:g} {unit('N')}, k_s G A = {section.shear:g} {unit('N')}"
             return f"{forces}, E I = {section.bending:g} {unit('N m^2')}"
     return "varies along the beam" if callable(section) else str(section)
+
+
+def beam_in_words(beam: Beam, model: Model) -> str:
+    """Return a beam in a line: its name, axis, elements, section and material."""
+    axis = f"{type(beam.curve).__name__}, {beam.curve.length:.6g} {model.unit('m')} long"
+    elements = f"{model.mesh_of(beam.start).elements} x {beam.element.name} ({beam.element.forces.name})"
+    section, material = section_in_words(beam.section, model.unit), material_in_words(beam.material, model.unit)
+    return f"{_value_in_words(beam, model)}: {axis}, {elements}, {section}, material {material}"
+
+
+def part_in_words(part: Any, model: Model) -> str:
+    """Return a support, joint, connector or load in a line, with the fields that are not their defaults."""
+    units = field_units(part)
+    words = [
+        f"{field.name} {_value_in_words(getattr(part, field.name), model)} {model.unit(units.get(field.name, ''))}"
+        for field in fields(part)
+        if _is_given(part, field)
+    ]
+    return f"{type(part).__name__}: {', '.join(word.strip() for word in words)}"
+
+
+def _is_given(part: Any, field: Field[Any]) -> bool:
+    value = getattr(part, field.name)
+    return hasattr(value, "shape") or (value is not None and value != field.default)
+
+
+def _value_in_words(value: Any, model: Model) -> str:
+    """Return a value of a part; points and beams as model files name them."""
+    match value:
+        case Beam():
+            return names(model.beams)[model.number_of(value)]
+        case Point():
+            ends = {0.0: "start", 1.0: "end"}
+            place = ends.get(value.fraction, f"at({value.fraction:g})")
+            return f"{_value_in_words(value.beam, model)}.{place}"
+        case tuple():
+            return f"({', '.join(_value_in_words(item, model) for item in value)})"
+        case float():
+            return f"{value:.6g}"
+    return "a function" if callable(value) else str(value)

@@ -128,8 +128,8 @@ class Temperature(ImposedStrain):
         sections = [beam.section_at(s) for s in ends_and_middle(beam).tolist()]
         if not any(thermal_strain(section, beam.material).any() for section in sections):
             raise InputError(
-                "Temperature changes nothing: give a material of its beam a coefficient of thermal expansion, "
-                "Material(..., thermal_expansion=1.2e-5)"
+                "Temperature changes nothing: no material of its beam expands with heat",
+                remedy="give one a coefficient of thermal expansion, thermal_expansion=1.2e-5",
             )
         evenly = all(expands_evenly(section, beam.material) for section in sections)
         if not evenly and (beam.element.forces.fills_body or beam.law is not None):

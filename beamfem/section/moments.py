@@ -292,5 +292,7 @@ class Section:
 def required(material: Material | None) -> Material:
     """Return the material of a section that needs one. Raises InputError without a material."""
     if material is None:
-        raise InputError("this section needs a material: give Beam one, or use a section with materials of its own")
+        raise InputError(
+            "this section needs a material", remedy="give the beam one, or use a section with materials of its own"
+        )
     return material

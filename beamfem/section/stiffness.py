@@ -59,8 +59,8 @@ class StiffnessSection:
     def moments(self, material: Material | None) -> list[tuple[Material, np.ndarray]]:
         """Raise InputError: a section given by its stiffness has no body to integrate over."""
         raise InputError(
-            "continuum forces integrate over a body, but a section from its stiffness has none: "
-            "use Structural or ElasticLine forces, or a Section with a material"
+            "continuum forces integrate over a body, but a section from its stiffness has none",
+            remedy="use Structural or ElasticLine forces, or a Section with a material",
         )
 
     def materials_at(self, y: np.ndarray, material: Material | None) -> list[tuple[Material, np.ndarray]]:

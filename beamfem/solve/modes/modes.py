@@ -256,7 +256,8 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     if force > 0.0:
         raise InputError(
             f"the state to vibrate about is not in equilibrium: at load factor {load_factor:g} a force of {force:.3g} "
-            "is unbalanced. Give about= a state of solve_static with the same loads"
+            "is unbalanced",
+            remedy="Give a state of solve_static with the same loads as about",
         )
     if count > pencil.size:
         raise InputError(f"count is {count}, but supports leave this model only {pencil.size} modes")

@@ -38,7 +38,8 @@ def linearised_loads(
     if not is_symmetric(system, csr_array(linear.stiffness + _CHANGE / effect * linear.geometric)):
         raise InputError(
             "some load follows the beam, so that its work depends on the motion: such loads can make a structure "
-            "flutter before its tangent is singular. Look at the growth of solve_modes(model, about=state) instead"
+            "flutter before its tangent is singular",
+            remedy="Look at the growth that solve_modes finds about a state",
         )
     shapes = _softened(linear.geometric, linear.factors, count, _NONE * effect)
     modes = np.zeros((shapes.shape[1], len(p)))

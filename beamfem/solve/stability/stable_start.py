@@ -35,8 +35,8 @@ def stable_start(system: System, about: State | Solution | None) -> tuple[np.nda
     grows = (_moves(system, load_change(system, p, load_factor, load_factor + width)) for width in _WIDTHS)
     if not imposed and not any(grows):
         raise InputError(
-            "no load grows with the load factor, or supports take it up, so none can buckle the model; add one with "
-            "scale=True"
+            "no load grows with the load factor, or supports take it up, so none can buckle the model",
+            remedy="add one with scale=True",
         )
     unstable = unstable_directions(system, p, load_factor, mixed=False)
     if unstable > 0 and counts_with_stresses(system, p, load_factor):

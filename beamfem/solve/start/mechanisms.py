@@ -57,11 +57,11 @@ def free_motion(system: System) -> FreeMotion | None:
     farthest = (start, end)[int(moved[1] > (1.0 + 1e-6) * moved[0])]
     x, y = farthest.reference
     unjoined = next((pair for pair in unjoined_ends(model) if _parts(rows, free, pair)), None)
-    remedy = f"moves. {in_words(model, unjoined)}: add a Rigid or a Hinge. Otherwise a" if unjoined else "moves. A"
+    missing = f"{in_words(model, unjoined)}: add a Rigid or a Hinge. Otherwise a" if unjoined else "A"
     error = FreeMotionError(
-        f"{beam_in_words(model.beams, number)} can move freely: {', '.join(described)}; its point ({x:g}, {y:g}) "
-        f"{remedy} static solve needs supports that hold it (a Clamp, or a Pin and a Roller) or joints that stiffen it "
-        "(Rigid instead of Hinge); without them, use simulate"
+        f"{beam_in_words(model.beams, number)} can move freely: {', '.join(described)}; its point ({x:g}, {y:g}) moves",
+        remedy=f"{missing} static solve needs supports that hold it (a Clamp, or a Pin and a Roller) or joints that "
+        "stiffen it (Rigid instead of Hinge); without them, use simulate",
     )
     return FreeMotion(rows, free, error)
 

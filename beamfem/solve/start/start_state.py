@@ -39,13 +39,15 @@ def resting_state(system: System, about: State | Solution | None) -> tuple[np.nd
     Raises InputError for a state that moves, or is none of its load factor.
     """
     if isinstance(about, Solution) and not about.static:
-        raise InputError("about must be a static equilibrium, this solution is a motion; give one of solve_static")
+        raise InputError(
+            "about must be a static equilibrium, this solution is a motion", remedy="give one of solve_static"
+        )
     about = last_state(about, "about")
     p = start_state(system, about, "about")
     if about is None:
         return p, 0.0
     if np.any(about.v) or np.any(about.a):
-        raise InputError("about must be a state at rest, this one moves; take it from solve_static")
+        raise InputError("about must be a state at rest, this one moves", remedy="take it from solve_static")
     _require_of_load_factor(system, about, p)
     return p, about.at
 

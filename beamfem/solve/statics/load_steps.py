@@ -202,12 +202,13 @@ def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap
             where += f"; the path is unstable from load factor {unstable[0]:.6g} on"
         instead = "; or prescribe a displacement (Prescribed) instead of the load" if loaded else ""
         raise LimitPointError(
-            f'{where}. unstable="leave" follows the stable branch instead'
-            if unstable
-            else f'{where}. trace_equilibrium follows the path around it; snap="jump" goes to the state in which the '
-            f"structure comes to rest{instead}",
+            where,
             load_factor,
             done.solution(),
+            remedy='unstable="leave" follows the stable branch instead'
+            if unstable
+            else 'trace_equilibrium follows the path around it; snap="jump" goes to the state in which the structure '
+            f"comes to rest{instead}",
         )
     if follower.left is not None and same_point(follower.system, follower.left, turn.limit):
         raise LimitPointError(

@@ -27,6 +27,7 @@ sys.modules[spec.name] = module
 spec.loader.exec_module(module)
 for name in {PARTS}:
     setattr(parts, name, getattr(module, name))
+    setattr(beamfem, name, getattr(module, name))
     beamfem.__all__.append(name)
 """
 USED = """

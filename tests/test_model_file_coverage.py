@@ -165,6 +165,8 @@ NO_KEY = {
     "Model.numbered": "numbers of the mesh for a program",
     "Model.nodes_needed": "numbers of the mesh for a program",
     "Model.tables": "tables of solvers, for a program",
+    "Model.imposed_on": "numbers of the mesh for a program",
+    "Solution.computed": "keeps functions of a program",
     "Model.with_loads": "loops over loads belong in Python",
     "Model.with_": "loops over loads belong in Python",
     "Model.supports_along": "numbers of the mesh for a program",

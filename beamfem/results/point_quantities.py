@@ -44,7 +44,23 @@ class PointQuantities:
         return {}
 
     def computed(self, build: "Callable[[Solution], _Value]") -> _Value:
-        """Return build(solution), which is kept with the solution."""
+        """Return a function of the solution, whose value is kept with it.
+
+        Parameters
+        ----------
+        build : callable
+            Function of the solution, called once.
+
+        Returns
+        -------
+        object
+            Its value.
+
+        Examples
+        --------
+        >>> solution.computed(len) == len(solution)
+        True
+        """
         if build not in self._computed:
             self._computed[build] = build(self._whole)
         value: _Value = self._computed[build]

@@ -163,7 +163,12 @@ def test_what_lies_before_and_behind_a_turning_point_is_listed_in_the_order_of_t
     monkeypatch.setattr(found_by, "turning_point", lambda segment, x: crossing(x))
     monkeypatch.setattr(found_by, "_search", lambda segment, start, end: iter([crossing(0.5 * (start + end))]))
     line = SimpleNamespace(dot=np.dot, length=np.linalg.norm)
-    segment = SimpleNamespace(line=line, turned=[0.6], change=lambda start, end: 0)
+    ends = {
+        "symmetric": True,
+        "before": SimpleNamespace(negative_pivots=0),
+        "after": SimpleNamespace(negative_pivots=0),
+    }
+    segment = SimpleNamespace(line=line, turned=[0.6], change=lambda start, end: 0, **ends)
     shares = [found.fraction for found in found_by.bifurcations(segment, [])]
     low, high = 0.6 - found_by._BESIDE, 0.6 + found_by._BESIDE
     assert shares == pytest.approx([0.5 * low, 0.6, 0.5 * (high + 1.0)])

@@ -91,10 +91,6 @@ MISTAKES = {
     "a connector among loads": (lambda: bf.Model([BEAM], [], [connector()]), "it belongs in connectors"),
     "a connector without energy": (tied(energy=None), "has no energy, but a Contribution"),
     "a connector without two": (tied(energy=None, unknowns=None), "has no unknowns and no energy"),
-    "energies in the wrong order": (
-        tied(energy=lambda self, at: stored(self, at)[::-1]),
-        r"the derivative of the potential, the second number of energy\(\), \[0. 0. 0.\]",
-    ),
     "one energy": (tied(energy=lambda self, at: 0.0), "kinetic and potential energy in this order, got 0.0"),
     "a force by points": (
         tied(force=lambda self, at: pull(self, at)[None]),

@@ -69,11 +69,10 @@ def test_a_path_that_turns_back_where_it_has_long_been_unstable_advises_to_leave
     assert solution.reaction(centre)[-1] == pytest.approx(traced.reaction(centre)[-1], rel=1e-6, abs=1e-12)
 
 
-@pytest.mark.parametrize(("rise", "half"), [(0.1, False), (0.02, True), (0.002, True)])
-def test_a_branch_is_followed_across_the_point_where_it_merges_into_the_primary_path(rise, half):
-    """Both halves of the whole beam buckle at once; the branch returned to the path and ended there."""
-    support = led(rise, ux=0.0) if half else led(rise)
-    _, _, model, _ = bistable(rise, rise / 10.0, [support], half=half, elements=10 if half else 20)
+@pytest.mark.parametrize("rise", [0.02, 0.002])
+def test_a_branch_is_followed_across_the_point_where_it_merges_into_the_primary_path(rise):
+    """The branch of half the bistable beam returned to the path and ended there."""
+    _, _, model, _ = bistable(rise, rise / 10.0, [led(rise, ux=0.0)], half=True, elements=10)
     primary = bf.trace_equilibrium(model, until=1.0)
     branch = bf.trace_equilibrium(model, until=1.0, start=primary.bifurcations[0])
     assert "the branch is closed" in branch.statistics.ended

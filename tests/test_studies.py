@@ -173,7 +173,7 @@ def test_continuum_forces_lock_on_a_thin_ring():
 
 def test_order_eight_is_the_shooting_of_a_quarter_ring():
     section, force = curved.quarter_section()
-    found = curved.displaced(curved.QUARTER, bf.CRBF(8), 8, section, force)
+    (found,) = curved.displaced(curved.QUARTER, bf.CRBF(8), 8, section, force)
     assert found == pytest.approx(curved.quarter_limit("arc"), abs=1e-12)
 
 

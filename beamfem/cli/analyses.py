@@ -83,12 +83,12 @@ def state(model: Model, load_factor: float | None) -> State | None:
 
 
 def _static(
-    model: Model, asked: Sequence[float], steps: int = 1, newton: Any = None, snap: Any = "error", at: Any = None
+    model: Model, asked: Sequence[float], steps: int = 1, newton: Any = None, at: Any = None, **keys: Any
 ) -> Solution:
     if at is None:
-        return warned(solve_through(model, asked, steps, newton, snap=snap))
+        return warned(solve_through(model, asked, steps, newton, **keys))
     further = [value for value in asked if all(abs(value - other) > SAME for other in at)]
-    return solve_static(model, steps, newton, at=sorted([*at, *further]) if further else at, snap=snap)
+    return solve_static(model, steps, newton, at=sorted([*at, *further]) if further else at, **keys)
 
 
 def _start(value: Any, names: Names) -> float | None:

@@ -52,8 +52,7 @@ class PathPoint:
 class Corrected:
     """The last y (n + 1,) of an iteration, how many iterations it took and why it ended.
 
-    negative_pivots: fewest and most of the tangents from the second iteration on, if they were counted; stress
-    resultants extrapolated along the path change the signs of modes that are much softer than the others.
+    negative_pivots: fewest and most of the tangents during the iteration, if they were counted.
     """
 
     y: np.ndarray
@@ -260,8 +259,7 @@ class _InPlane(SingleCorrections):
         line, y = self.line, self.state
         balance, along, factors = line.solve(y, self.stresses)
         negative = factors.negative_pivots if self.counted else 0
-        if self.taken:
-            self.counts = min(self.counts[0], negative), max(self.counts[1], negative)
+        self.counts = min(self.counts[0], negative), max(self.counts[1], negative)
         reach = line.dot(self.normal, along)
         if reach == 0.0:
             raise LinAlgError("the path lies in the plane")

@@ -139,14 +139,14 @@ def test_the_period_error_of_the_trapezoidal_rule_is_that_of_its_closed_form(ste
     assert period_error(bf.GeneralizedAlpha(1.0).rule(0.1), 10.0 / steps) == pytest.approx(expected, rel=1e-9)
 
 
-@pytest.mark.parametrize("steps", [20, 60])
-def test_a_resonance_that_its_steps_detune_is_warned_of(steps):
+@pytest.mark.parametrize(("steps", "periods"), [(20, 80), (20, 200), (60, 80)])
+def test_a_resonance_that_its_steps_detune_is_warned_of(steps, periods):
     """1.566 X / (2 zeta) = 1.53 mm at the tip of a post whose base vibrates by X (Blevins); half of it at 20 steps."""
     frequency, ratio, size = 8.179247, 0.0051, 1e-5
     omega = 2.0 * np.pi * frequency
     post = straight(bf.Material(2e11, 0.3, 7800.0, retardation_time=2.0 * ratio / omega))
     shaken = bf.Prescribed(post.start, ux=0.0, uy=lambda t: size * np.sin(omega * t), rotation=0.0)
-    run = lambda: bf.simulate(bf.Model([post], [shaken]), 80.0 / frequency, 1.0 / frequency / steps)  # noqa: E731
+    run = lambda: bf.simulate(bf.Model([post], [shaken]), periods / frequency, 1.0 / frequency / steps)  # noqa: E731
     if steps == 20:
         with pytest.warns(TimeStepWarning, match="detune the resonance"):
             motion = run()
@@ -155,7 +155,7 @@ def test_a_resonance_that_its_steps_detune_is_warned_of(steps):
     else:
         motion = run()
         assert not motion.warnings
-        built_up = 1.566 * size / (2.0 * ratio) * (1.0 - np.exp(-2.0 * np.pi * ratio * 80.0))
+        built_up = 1.566 * size / (2.0 * ratio) * (1.0 - np.exp(-2.0 * np.pi * ratio * periods))
         assert np.abs(motion.displacement(post.end)[-120:, 1]).max() == pytest.approx(built_up, rel=0.05)
     assert lengthened_period(motion)[0] == pytest.approx(frequency, rel=0.02)
 

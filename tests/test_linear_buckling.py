@@ -179,7 +179,11 @@ def test_a_clamped_heated_bar_buckles_with_any_amplitude(amplitude, inverse, slo
     assert found.linearised == pytest.approx([kelvin / slope] if slope else [], rel=1e-4)
 
 
-@pytest.mark.parametrize("amplitude", [lambda t: t**2, lambda t: max(0.0, t - 0.5)], ids=["square", "flat"])
+@pytest.mark.parametrize(
+    "amplitude",
+    [lambda t: t**2, lambda t: max(0.0, t - 0.5), lambda t: max(0.0, t - 1.0)],
+    ids=["square", "flat", "flat to 1"],
+)
 def test_a_force_whose_amplitude_is_flat_at_the_start_buckles_a_column(amplitude):
     """It was refused: no load grows with the load factor."""
     beam = bar((0, 0), (1, 0), 1e6, 1.0, 1e6)

@@ -15,6 +15,7 @@ _PERIODS = 2.0  # fewest in the second half of a motion that define a frequency
 _NEAR = 0.25  # of a natural frequency, within which a driven motion is near resonance
 _DETUNED = 0.1  # of a period; a response that is out of phase by less over the whole motion has hardly changed
 _ROWS = 200  # most rows at which energies are evaluated
+_OF_PERIOD = 20  # fewest of these in a period; fewer can fall on the same phases of all periods
 
 
 def lengthened_period(solution: Solution) -> tuple[float, float]:
@@ -77,7 +78,7 @@ def detuned(solution: Solution, system: System, functions: list[FunctionOfTime])
     times = [retardation_time(section, material) for section, material in sections if not callable(section)]
     damping = np.pi * frequency * min((time for time in times if time > 0.0), default=0.0)
     if damping > 0.0:
-        resonant = error > 0.5 * damping and _resonates(solution, functions)
+        resonant = error > 0.5 * damping and _resonates(solution, functions, frequency)
         allowed, compared = 0.1 * damping, f"more than half the damping ratio there, {100 * damping:.2g} %"
     else:
         damped = not system.connectors.keep_energy or any(block.damping.any() for block in system.blocks)
@@ -98,12 +99,15 @@ def detuned(solution: Solution, system: System, functions: list[FunctionOfTime])
     return (sentence,)
 
 
-def _resonates(solution: Solution, functions: list[FunctionOfTime]) -> bool:
+def _resonates(solution: Solution, functions: list[FunctionOfTime], frequency: float) -> bool:
     """Return whether functions of time vary in the second half of a motion, whose kinetic and strain energy balance."""
-    half = solution.at[len(solution.at) // 2 :].tolist()
+    first = len(solution.at) // 2
+    half = solution.at[first:].tolist()
     if not any(np.ptp([function.at(time) for time in half]) > 0.0 for function in functions):
         return False
-    energy = solution[len(solution) // 2 :: max(len(half) // _ROWS, 1)].energy()
+    spacing = (half[-1] - half[0]) / (len(half) - 1)
+    stride = max(int(1.0 / (_OF_PERIOD * frequency * spacing)), 1)
+    energy = solution[max(first, len(solution) - _ROWS * stride) :: stride].energy()
     ratio = np.sqrt(float(np.mean(energy.kinetic)) / max(float(np.mean(energy.strain)), np.finfo(float).tiny))
     return bool(abs(ratio - 1.0) <= _NEAR)
 

@@ -14,7 +14,7 @@ from beamfem.solve.start.balance import left_over
 from beamfem.solve.start.start_state import resting_state
 from beamfem.solve.statics.preload import first_equilibrium
 
-_WIDTHS = (1e-6, *np.linspace(0.1, 1.0, 10).tolist())  # of the load factor: amplitudes may be flat at the start
+_WIDTHS = (1e-6, *np.linspace(0.1, 1.0, 10).tolist(), 3.0, 10.0)  # of the load factor: amplitudes may be flat at first
 _ROUND_OFF = 8.0 * np.finfo(float).eps  # of the largest force: what is left of one along the normal of a roller
 
 

@@ -276,3 +276,21 @@ def test_of_several_older_results_the_one_written_last_is_kept(tmp_path, monkeyp
     monkeypatch.setattr(bf, "__version__", "3")
     with pytest.warns(bf.ChangedCodeWarning, match="the old results are kept"):
         assert bf.sweep(same, x=[1.0], store=store, keep_stale=True).values == (3.0,)
+
+
+LAST = 2.0
+
+
+def scaled(load):
+    return LAST * load
+
+
+def test_another_value_of_a_global_variable_computes_again(tmp_path, monkeypatch):
+    """No file had changed, so the results of the old value were returned."""
+    store = tmp_path / "store.jsonl"
+    assert bf.sweep(scaled, load=[1.0, 3.0], store=store)["scaled"].tolist() == [2.0, 6.0]
+    monkeypatch.setattr(sys.modules[__name__], "LAST", 5.0)
+    with pytest.warns(bf.ChangedCodeWarning, match="LAST of test_sweep_code changed"):
+        assert bf.sweep(scaled, load=[1.0, 3.0], store=store)["scaled"].tolist() == [5.0, 15.0]
+    monkeypatch.undo()
+    assert bf.sweep(scaled, load=[1.0, 3.0], store=store).computed == 0

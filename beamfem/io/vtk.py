@@ -3,6 +3,7 @@
 import os
 import re
 import shutil
+import signal
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
@@ -12,7 +13,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from beamfem.assembly.callbacks import uninterrupted
+from beamfem.assembly.callbacks import Deferred, uninterrupted
 from beamfem.errors import FileError, InputError
 from beamfem.extras import needed_for
 from beamfem.files import make_folder, path_of, whole
@@ -24,11 +25,13 @@ from beamfem.validation import items
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
-with needed_for("to_vtk"):
+_deferred = Deferred(signal.valid_signals())  # a process that is interrupted while it loads VTK may crash
+with _deferred, needed_for("to_vtk"):
     from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
     from vtkmodules.vtkCommonCore import vtkDataArray, vtkPoints, vtkStringArray
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
+_deferred.deliver()
 
 VALUES_IN_MEMORY = 100_000
 _STEPS_BETWEEN_PUBLISHING = 50

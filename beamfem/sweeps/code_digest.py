@@ -30,7 +30,7 @@ def code_digests() -> dict[str, str]:
     waiting = [name for name in sys.modules if name != "__mp_main__"]  # the same as __main__
     while waiting:
         name = waiting.pop()
-        if name not in digests and (path := _own_file(name)) is not None:
+        if name not in digests and (path := own_file(name)) is not None:
             digests[name], imports = _read(name, path)
             waiting += imports
     return digests
@@ -78,7 +78,7 @@ def _package(name: str, path: Path) -> str:
     return name if path.stem == "__init__" else name.rpartition(".")[0]
 
 
-def _own_file(name: str) -> Path | None:
+def own_file(name: str) -> Path | None:
     """Return the file of a module; None of what is part of Python, installed or beamfem itself, or is no module."""
     module = sys.modules.get(name)
     if isinstance(module, ModuleType):

@@ -17,12 +17,40 @@ from typing import Any
 import numpy as np
 
 from beamfem.errors import InputError
+from beamfem.sweeps.code_digest import own_file
 
 
 def point_key(function: Any, point: Mapping[str, Any]) -> str:
     """Return the key of a call (64 hexadecimal digits). Raises InputError for what cannot be keyed."""
     forms = {name: canonical(value, name) for name, value in sorted(point.items())}
     return hashlib.sha256(json.dumps([canonical(function, "the function"), forms]).encode()).hexdigest()
+
+
+def global_digests(function: Any) -> dict[str, str]:
+    """Return a digest of each global variable that a function of the user's files uses, itself or through others.
+
+    Its value may change without an edit of a file. Values that cannot be keyed, such as open files, do not count.
+    """
+    result, seen, waiting = dict[str, str](), set[FunctionType](), [function]
+    while waiting:
+        item = waiting.pop()
+        if isinstance(item, partial):
+            waiting.append(item.func)
+        if not isinstance(item, FunctionType) or item in seen or own_file(item.__module__) is None:
+            continue
+        seen.add(item)
+        waiting += [cell.cell_contents for cell in item.__closure__ or ()]
+        for name in _names(item.__code__) & item.__globals__.keys():
+            value = item.__globals__[name]
+            if isinstance(value, FunctionType | partial):
+                waiting.append(value)
+            elif not isinstance(value, ModuleType | type):
+                try:
+                    form = json.dumps(canonical(value, name))
+                except InputError:
+                    continue
+                result[f"{name} of {item.__module__}"] = hashlib.sha256(form.encode()).hexdigest()[:16]
+    return result
 
 
 def canonical(value: Any, where: str) -> Any:

@@ -1,7 +1,7 @@
 """Results of a sweep on disk: a file of JSON lines, one per result, which stays readable if the process is killed.
 
-A row identifies the code that computed it by a digest; another line lists, once, the modules of that code. Whole
-solutions are separate files in a folder beside it, named after their row.
+A row identifies the code that computed it by a digest; another line lists, once, the modules of that code and the
+global variables that it uses. Whole solutions are separate files in a folder beside it, named after their row.
 """
 
 import hashlib
@@ -22,7 +22,7 @@ from beamfem.files import path_of
 from beamfem.io.results import load
 from beamfem.results.solution import Solution
 from beamfem.sweeps.code_digest import code_digests
-from beamfem.sweeps.keys import point_key
+from beamfem.sweeps.keys import global_digests, point_key
 from beamfem.sweeps.workers import Outcome
 
 _NAMED = 5  # modules in a warning
@@ -39,7 +39,7 @@ class ResultCache:
         self, path: str | PathLike[str], function: Callable[..., Any], points: Sequence[Mapping[str, Any]]
     ) -> None:
         self._keys = [point_key(function, point) for point in points]
-        self._modules = code_digests()
+        self._modules = {**code_digests(), **global_digests(function)}
         self._code = hashlib.sha256(json.dumps(sorted(self._modules.items())).encode()).hexdigest()[:24]
         self._function = getattr(function, "__qualname__", str(function))
         given = path_of(path)
@@ -87,11 +87,12 @@ class ResultCache:
         return outcomes
 
     def _of_other_code(self, key: str) -> tuple[Outcome, set[str]] | None:
-        """Return the last outcome stored under a key by other code, and the modules in which the two differ."""
+        """Return the last outcome stored under a key by other code, and the modules and variables in which the two differ."""
         for code in reversed(self._known.get(key, {})):
             outcome, then = self._outcome(key, code), self._modules_of.get(code, {})
             if outcome is not None:
-                return outcome, {n for n in {*then, *self._modules} if then.get(n) != self._modules.get(n)}
+                changed = {n for n in {*then, *self._modules} if then.get(n) != self._modules.get(n)}
+                return outcome, {n for n in changed if n.partition(" of ")[2] not in changed}
         return None
 
     def add(self, number: int, parameters: str, outcome: Outcome) -> None:

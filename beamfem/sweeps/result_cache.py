@@ -87,7 +87,7 @@ class ResultCache:
         return outcomes
 
     def _of_other_code(self, key: str) -> tuple[Outcome, set[str]] | None:
-        """Return the last outcome stored under a key by other code, and the modules and variables in which the two differ."""
+        """Return the last outcome stored under a key by other code, and the modules and variables that differ."""
         for code in reversed(self._known.get(key, {})):
             outcome, then = self._outcome(key, code), self._modules_of.get(code, {})
             if outcome is not None:

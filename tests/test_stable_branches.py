@@ -215,3 +215,22 @@ def test_what_cannot_be_left_is_refused():
         bf.solve_static(bent_there_and_back(LAWS[0])[1], unstable="leave")
     with pytest.raises(bf.InputError, match='unstable must be "keep" or "leave"'):
         bf.solve_static(bf.Model([column], [bf.Clamp(column.start)], [push]), unstable="yes")
+
+
+@pytest.mark.parametrize("ratio", [1.25, 2.0, 4.0])
+@pytest.mark.parametrize("element", [bf.CRBF(2), bf.CRBF(3)], ids=lambda element: element.name)
+def test_a_bifurcation_at_the_end_of_a_load_step_is_left(element, ratio):
+    """Halved load steps end on the critical load, whose pivots have any sign; rows beyond it were unstable."""
+    beam = bf.Beam(bf.Line((0, 0), (0, 1)), 6, element, bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -1.0))])
+    critical = float(bf.solve_buckling(column, count=1).load_factors[0])
+    loaded = column.with_loads([bf.PointForce(beam.end, (0.0, -ratio * critical))])
+    found = bf.solve_static(loaded, unstable="leave")
+    assert found.stable.all()
+    # the same load led there by a force aside, which is taken away
+    aside = bf.PointForce(beam.end, (1e-3 * critical, 0.0), amplitude=lambda at: 1.0 - at)
+    other = bf.solve_static(loaded.with_loads([*loaded.loads, aside]), steps=7)
+    x, y = found.displacement(beam.end)[-1]
+    assert (abs(x), y) == pytest.approx(
+        (abs(other.displacement(beam.end)[-1, 0]), other.displacement(beam.end)[-1, 1]), abs=1e-7
+    )

@@ -16,6 +16,7 @@ from beamfem.solve.continuation.steps import Step, longest_step, take_step, too_
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.statics.static_record import is_unstable
 
+LOCATED = 1e-6  # of the load factor, within which a row is the critical point
 _FIRST_STEP = 1e-2  # along the path, see Continuation
 _PACE = 40  # steps, rejected ones included, from which the number of further steps is estimated
 # Ratio of the load gained in the second half of these steps to that in the first half. Outside of this range the path
@@ -147,12 +148,12 @@ class PathFollower:
 
 
 def _require_stable(step: Step, limit: float, end: float, iterations: int, cuts: int) -> None:
-    """Raise BifurcatesError if a step from a stable point loses its stability at a bifurcation up to `end`.
+    """Raise BifurcatesError if a step from a stable point loses its stability at a bifurcation below `end`.
 
     limit: fraction up to which the load factor grows.
     """
     first = next((crossing for crossing in step.crossings if crossing.fraction not in step.segment.turned), None)
-    if first is None or first.fraction > limit or first.y[-1] > end:
+    if first is None or first.fraction > limit or first.y[-1] > (1.0 - LOCATED) * end:
         return
     modes = [crossing.mode for crossing in step.crossings if crossing.fraction == first.fraction]
     raise BifurcatesError(first.y, np.array(modes), iterations, cuts)

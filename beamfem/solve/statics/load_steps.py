@@ -61,6 +61,9 @@ def reach(
             step = _within_a_turn(system, done, step)
             stop = next((stop for stop in ahead if stop > done.reached + SAME), end)
             target = stop if done.reached + step > stop - SAME else done.reached + step
+            if follower.leaves and done.lost_stability:
+                _follow(done, follower, (target, stop), snap)
+                continue
             result, accepted = _attempt(system, done, target, newton)
             if accepted:
                 state = system.history.in_equilibrium(result.state, target, system.imposing(target))
@@ -142,11 +145,12 @@ def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float],
     to: the load factor to reach, and the largest one allowed for rows.
     """
     try:
-        for followed in follower.follow(done.state, done.reached, *to):
+        for followed in follower.follow(*_start(done, follower), *to):
             done.iterations += followed.iterations
             done.cuts += followed.cuts
             point = followed.point
-            done.add(point.load_factor, point.y[:-1], point.negative_pivots, Termination.CONVERGED)
+            if point.load_factor > done.reached:
+                done.add(point.load_factor, point.y[:-1], point.negative_pivots, Termination.CONVERGED)
     except BifurcatesError as bifurcation:
         done.iterations += bifurcation.iterations
         done.cuts += bifurcation.cuts
@@ -168,6 +172,22 @@ def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float],
             + advice(done.model, done.state),
             done.solution(),
         ) from lost
+
+
+def _start(done: StaticRecord, follower: PathFollower) -> tuple[np.ndarray, float]:
+    """Return the state (n,) and load factor from which the path is followed.
+
+    Where unstable paths are left, that is just below the last row, or at the row before it: a bifurcation that is the
+    last row itself lies in no step that begins there, and its tangent has pivots of any sign.
+    """
+    before, below = done.rows[-2:][0], (1.0 - BESIDE) * done.reached
+    if not follower.leaves or before[0] >= below or is_unstable(done.symmetric, before[2]):
+        return done.state, done.reached
+    result = solve_equilibrium(follower.system, done.state, below, follower.newton)
+    done.iterations += result.iterations
+    if result.ended.good and not is_unstable(done.symmetric, result.negative_pivots):
+        return result.state, below
+    return (before[1], before[0]) if done.lost_stability else (done.state, done.reached)
 
 
 def _merges(follower: PathFollower, done: StaticRecord, point: np.ndarray, beyond: np.ndarray, end: float) -> bool:

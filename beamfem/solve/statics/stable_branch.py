@@ -5,7 +5,7 @@ import numpy as np
 from beamfem.assembly.system import System
 from beamfem.errors import LimitPointError
 from beamfem.solve.newton.iteration import Newton, Termination
-from beamfem.solve.statics.load_path import BifurcatesError
+from beamfem.solve.statics.load_path import LOCATED, BifurcatesError
 from beamfem.solve.statics.snap import rest_state
 from beamfem.solve.statics.static_record import StaticRecord
 
@@ -22,7 +22,12 @@ def leave(system: System, done: StaticRecord, at: BifurcatesError, end: float, n
     end: the largest load factor allowed. Raises LimitPointError.
     """
     load_factor = float(at.y[-1])
-    done.add(load_factor, at.y[:-1], 0, Termination.CONVERGED)
+    done.rows[:] = [row for row in done.rows if row[0] <= (1.0 + LOCATED) * load_factor]
+    if done.reached < (1.0 - LOCATED) * load_factor:
+        done.add(load_factor, at.y[:-1], 0, Termination.CONVERGED)
+    else:  # the last row is the bifurcation, whose pivots have any sign
+        load_factor = done.reached
+        done.rows[-1] = load_factor, done.state, 0
     start = np.append(at.y[:-1], min((1.0 + BESIDE) * load_factor, end))
     way = _RATIO ** np.arange(len(at.modes)) @ at.modes
     way *= _ASIDE / float(np.max(np.abs(way[:-1]) / system.scale))

@@ -41,6 +41,12 @@ class StaticRecord:
     def negative_pivots(self) -> int:
         return self.rows[-1][2]
 
+    @property
+    def lost_stability(self) -> bool:
+        """Whether the last row is the first unstable one after stable rows."""
+        last = [is_unstable(self.symmetric, count) for _, _, count in self.rows[-2:]]
+        return last == [False, True]
+
     def add(
         self, load_factor: float, state: np.ndarray, negative_pivots: int, ended: Termination, digits: float = np.nan
     ) -> None:

@@ -9,7 +9,7 @@ import beamfem as bf
 from beamfem.kernels.compiler.checks import CheckError
 from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.lanes import as_rows
-from beamfem.kernels.pointers import address_of, at, caller, reals, room, slots
+from beamfem.kernels.pointers import address_of, at, caller, room, slots
 
 
 @routine("nr")

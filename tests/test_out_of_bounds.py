@@ -1,4 +1,4 @@
-"""With BEAMFEM_CHECK=1 a kernel that leaves an array ends with an error, and without it nothing is compiled for this."""
+"""With BEAMFEM_CHECK=1 a kernel that leaves an array ends with an error; without it no check is compiled."""
 
 import json
 import os
@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import out_of_bounds
 import pytest
 
-import out_of_bounds
 from beamfem.kernels.compiler import machine
 from beamfem.kernels.compiler.checks import CHECKED
 

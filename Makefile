@@ -13,8 +13,13 @@ test verify: export OPENBLAS_NUM_THREADS = 1
 test: $(VENV)/.ready lint
 	$(BIN)/python -m pytest -n auto --maxprocesses 2 --dist loadgroup
 
+# run once more with kernels that check every access to arrays
+CHECKED := $(addprefix tests/test_,$(addsuffix .py,compiler compiler_refusals out_of_bounds lanes kernels bidirectional_lu \
+	band_newton statics dynamics section_laws motion_on_rollers))
+
 verify: $(VENV)/.ready
 	$(BIN)/python -m pytest -n auto --maxprocesses 2 --dist loadgroup -m "slow or not slow"
+	BEAMFEM_CHECK=1 $(BIN)/python -m pytest -n auto --maxprocesses 2 --dist loadgroup $(CHECKED)
 
 bench: $(VENV)/.bench
 	$(BIN)/python -m studies.benchmarks.peers

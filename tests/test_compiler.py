@@ -51,7 +51,7 @@ def conditions(a, b, result):
     result[8] = 1 if a > 0.0 and b > 0.0 else 0
     result[9] = 1 if a > 0.0 or b > 0.0 else 0
     flag = a > 0.0 and b > 0.0 and a < b
-    result[10], result[11] = flag, int(a) in (1, 2, 5)
+    result[10], result[11] = flag, (int(a) if abs(a) < 9.0 else 0) in (1, 2, 5)
     result[12] += a < b
 
 

@@ -162,9 +162,59 @@ def endless_calls(n, x):
     return of_itself(n)
 
 
+def index_from_the_end(n, x):
+    return x[-1]
+
+
+def set_from_the_end(n, x):
+    x[-2] = 0.0
+    return 0
+
+
+def add_from_the_end(n, x):
+    x[-2] += 1.0
+    return 0
+
+
+def power_of_whole_numbers(n, x):
+    return n**3
+
+
+def chained_with_an_entry(n, x):
+    return 0 < n < x[n]
+
+
+def chained_with_a_call(n, x):
+    return 0 < n < of_itself(n)
+
+
+def chained_with_a_division(n, x):
+    return 0 < n < 7 // n
+
+
+NOT_A_NUMBER = float("nan")
+
+
+def int_of_no_number(n, x):
+    return int(NOT_A_NUMBER)
+
+
+def division_by_zero(n, x):
+    return n % 0
+
+
 @pytest.mark.parametrize(
     ("function", "words"),
     [
+        (index_from_the_end, r"\[-1\]: compiled code does not count from the end"),
+        (set_from_the_end, r"\[-2\]: compiled code does not count from the end"),
+        (add_from_the_end, r"\[-2\]: compiled code does not count from the end"),
+        (power_of_whole_numbers, r"a power of whole numbers .* write x \* x or 2\.0\*\*n"),
+        (chained_with_an_entry, r"x\[n\] is computed in any case here"),
+        (chained_with_a_call, r"of_itself\(n\) is computed in any case here"),
+        (chained_with_a_division, "7 // n is computed in any case here"),
+        (int_of_no_number, "nan is no whole number of 64 bits"),
+        (division_by_zero, "division by zero"),
         (perhaps_nothing, "q may have no value here"),
         (after_an_empty_loop, "i may have no value here"),
         (no_value_at_the_end, "returns a value, but not where it ends"),

@@ -18,6 +18,7 @@ from numpy import dtype, float64, int32, int64, ndarray
 from beamfem.kernels import cache
 from beamfem.kernels.compiler import machine
 from beamfem.kernels.compiler.callables import Inlined
+from beamfem.kernels.compiler.checks import CHECKED, raise_violation
 from beamfem.kernels.compiler.translation import translate
 from beamfem.kernels.pointers import address_of
 
@@ -137,7 +138,11 @@ class Routine:
     @_lockless_property
     def compiled(self) -> Callable[..., Any]:
         """The compiled function, called without the GIL with numbers and addresses that nobody checks."""
-        return CFUNCTYPE(_PLAIN[self.returns], *(_PLAIN.get(kind, c_void_p) for kind in self.kinds))(self.address)
+        kinds = [_PLAIN.get(kind, c_void_p) for kind in self.kinds]
+        function = CFUNCTYPE(_PLAIN[self.returns], *kinds)(self.address)
+        if CHECKED:
+            function.errcheck = raise_violation
+        return function
 
     def __call__(self, *arguments: Any) -> Any:
         """Call it from Python, without the GIL; pointers are given as arrays of the right type or as addresses."""

@@ -11,7 +11,7 @@ from llvmlite import ir
 from beamfem.kernels.compiler import machine
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import operation
-from beamfem.kernels.compiler.kinds import LANES, NUMBER, ROWS, WHOLE, WIDTH, Value
+from beamfem.kernels.compiler.kinds import LANES, NUMBER, REALS, ROWS, WHOLE, WIDTH, Value
 
 __all__ = [
     "COLUMNS",
@@ -38,7 +38,7 @@ _BITS = ir.VectorType(WHOLE.llvm, WIDTH)
 @operation
 def as_rows(build: Build, pointer: Value) -> Value:
     """Return a pointer to numbers as a pointer to lanes."""
-    return Value(ROWS, build.converted(pointer, ROWS))
+    return pointer._replace(kind=ROWS, llvm=build.converted(pointer, ROWS))
 
 
 @operation
@@ -87,8 +87,8 @@ def gathered(build: Build, values: Value, places: Value) -> Value:
     """Return the entries of `values` at the first `WIDTH` indices in `places`."""
     builder, lanes = build.builder, ir.Constant(LANES.llvm, ir.Undefined)
     for lane in range(WIDTH):
-        index = builder.load(builder.gep(places.llvm, [ir.IntType(64)(lane)], inbounds=True))
-        number = builder.load(builder.gep(values.llvm, [index], inbounds=True))
+        index = build.read(places, Value(WHOLE, WHOLE.llvm(lane)))
+        number = build.read(values._replace(kind=REALS), index).llvm
         lanes = builder.insert_element(lanes, number, ir.IntType(32)(lane))
     return Value(LANES, lanes)
 
@@ -112,7 +112,7 @@ def add_columns(
     for j in inside:  # the first row stands for those that are not there
         there = builder.icmp_signed("<", j, columns.llvm)
         place = builder.select(there, builder.mul(apart.llvm, j), inside[0])
-        rows.append(build.read(Value(ROWS, source.llvm), Value(WHOLE, place)).llvm)
+        rows.append(build.read(source._replace(kind=ROWS), Value(WHOLE, place)).llvm)
     several = build.same(columns.llvm, COLUMNS)
     mask = builder.icmp_signed("<", ir.Constant(several.type, inside), several)
     # pairs of columns side by side, of the even and of the odd lanes
@@ -127,7 +127,9 @@ def add_columns(
         first = lane // 2 * 2
         left, right = pairs[lane % 2]
         entries = _shuffled(build, left, right, [first, first + 1, WIDTH + first, WIDTH + first + 1])
-        address = builder.gep(target.llvm, [builder.mul(step.llvm, WHOLE.llvm(lane))], inbounds=True)
+        place = builder.mul(step.llvm, WHOLE.llvm(lane))
+        build.check(target, place, columns.llvm)
+        address = builder.gep(target.llvm, [place], inbounds=True)
         before = _load(build, address, mask, COLUMNS)
         _store(build, builder.fadd(before, entries), address, mask, COLUMNS)
     builder.branch(done)

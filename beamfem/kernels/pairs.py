@@ -12,7 +12,7 @@ _SHORT = ir.IntType(32)
 @operation
 def as_pairs(build: Build, pointer: Value) -> Value:
     """Return a pointer to numbers as a pointer to pairs of a number and the next one."""
-    return Value(PAIRS, build.converted(pointer, PAIRS))
+    return pointer._replace(kind=PAIRS, llvm=build.converted(pointer, PAIRS))
 
 
 @operation

@@ -14,6 +14,7 @@ from llvmlite import ir
 
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import RESULTS, operation
+from beamfem.kernels.compiler.checks import CHECKED, register
 from beamfem.kernels.compiler.kinds import KINDS, REALS, SLOTS, WHOLES, Kind, Value
 
 _PLACE = c_char * 0  # an array may be empty
@@ -22,7 +23,7 @@ _PLACE = c_char * 0  # an array may be empty
 @operation
 def at(build: Build, pointer: Value, count: Value) -> Value:
     """Return the pointer advanced by `count` entries."""
-    return Value(pointer.kind, build.builder.gep(pointer.llvm, [count.llvm], inbounds=True))
+    return pointer._replace(llvm=build.builder.gep(pointer.llvm, [count.llvm], inbounds=True))
 
 
 @operation
@@ -35,7 +36,7 @@ def small_code(build: Build) -> None:
 def room(build: Build, count: Value) -> Value:
     """Return a pointer to `count` numbers on the stack of the function; the count is a compile-time constant."""
     numbers = build.space(ir.ArrayType(REALS.llvm.pointee, count.llvm.constant))
-    return Value(REALS, build.builder.bitcast(numbers, REALS.llvm))
+    return build.whole_array(Value(REALS, build.builder.bitcast(numbers, REALS.llvm)), count.llvm.constant)
 
 
 def _pointer(kind: Kind) -> Callable[..., Any]:
@@ -60,8 +61,11 @@ def caller(kinds: str, returns: str = "") -> Callable[..., Any]:
 
     @operation
     def call(build: Build, address: Value, *arguments: Value) -> Value | None:
+        for each in arguments:
+            build.pass_on(each)
         values = [build.converted(value, kind) for value, kind in zip(arguments, value_kinds, strict=True)]
         returned = build.builder.call(build.builder.inttoptr(address.llvm, function_type), values)
+        build.end_if_ended()
         return None if result is None else Value(result, returned)
 
     return call
@@ -69,6 +73,8 @@ def caller(kinds: str, returns: str = "") -> Callable[..., Any]:
 
 def address_of(values: np.ndarray) -> int:
     """Return the address of the first number of an array."""
+    if CHECKED:
+        register(values)
     if values.flags.writeable and values.flags.c_contiguous:
         return addressof(_PLACE.from_buffer(values.data))
     return int(values.__array_interface__["data"][0])  # works for all arrays, but takes twice as long

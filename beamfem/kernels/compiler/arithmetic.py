@@ -9,11 +9,15 @@ import numpy as np
 from llvmlite import ir
 
 from beamfem.kernels.compiler.build import Build
+from beamfem.kernels.compiler.checks import CHECKED
 from beamfem.kernels.compiler.kinds import FLAG, LANES, NUMBER, WHOLE, WIDTH, Kind, Value
 
 _OF_WHOLES = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul"}
 _OF_NUMBERS = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}
 _COMPARISONS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
+
+_BEYOND = 2.0**63
+_OF_ONE = ir.FunctionType(NUMBER.llvm, [NUMBER.llvm])
 
 
 def _common(a: Value, b: Value, least: Kind) -> Kind:
@@ -24,6 +28,8 @@ def _common(a: Value, b: Value, least: Kind) -> Kind:
 
 def combined(build: Build, operation: ast.operator, a: Value, b: Value) -> Value:
     """Return a + b, a - b, a * b, a / b, a // b, a % b or a ** b, with the meaning they have in Python."""
+    if isinstance(operation, ast.Pow) and max(a.kind.rank, b.kind.rank) <= WHOLE.rank:
+        raise TypeError("a power of whole numbers is a number here and may be whole in Python; write x * x or 2.0**n")
     kind = _common(a, b, NUMBER if isinstance(operation, ast.Div | ast.Pow) else WHOLE)
     both = [Value(kind, build.converted(each, kind)) for each in (a, b)]
     first, second = both[0].llvm, both[1].llvm
@@ -35,12 +41,18 @@ def combined(build: Build, operation: ast.operator, a: Value, b: Value) -> Value
     if kind is WHOLE and type(operation) in _OF_WHOLES:
         return Value(kind, getattr(build.builder, _OF_WHOLES[type(operation)])(first, second, flags=("nsw",)))
     if kind is WHOLE and isinstance(operation, ast.FloorDiv | ast.Mod):
-        return Value(kind, _floored(build.builder, operation, first, second))
+        return Value(kind, _floored(build, operation, first, second))
     raise TypeError(f"{type(operation).__name__} of a {kind.name} is not known to compiled code")
 
 
-def _floored(builder: ir.IRBuilder, operation: ast.operator, a: ir.Value, b: ir.Value) -> ir.Value:
+def _floored(build: Build, operation: ast.operator, a: ir.Value, b: ir.Value) -> ir.Value:
     """Return the quotient of integers rounded down, or its remainder; those of LLVM round towards zero."""
+    builder = build.builder
+    if isinstance(b, ir.Constant):
+        if b.constant == 0:
+            raise TypeError("division by zero")
+    elif CHECKED:
+        build.require(builder.icmp_signed("!=", b, WHOLE.llvm(0)), "integer division by zero")
     left, zero = builder.srem(a, b), WHOLE.llvm(0)
     signs_differ = builder.icmp_signed("<", builder.xor(left, b), zero)
     rounded_up = builder.and_(builder.icmp_signed("!=", left, zero), signs_differ)
@@ -97,6 +109,13 @@ def _absolute(build: Build, value: Value) -> Value:
 
 def _whole(build: Build, value: Value) -> Value:
     if value.kind is NUMBER:
+        if isinstance(value.llvm, ir.Constant) and not abs(value.llvm.constant) < _BEYOND:
+            raise TypeError(f"{value.llvm.constant} is no whole number of 64 bits")
+        if CHECKED:
+            size = build.builder.call(build.declared("llvm.fabs.f64", _OF_ONE), [value.llvm])
+            build.require(
+                build.builder.fcmp_ordered("<", size, NUMBER.llvm(_BEYOND)), "int of NaN or a number too large"
+            )
         return Value(WHOLE, build.builder.fptosi(value.llvm, WHOLE.llvm))
     return Value(WHOLE, build.converted(value, WHOLE))
 

@@ -10,7 +10,10 @@ from llvmlite import ir
 from beamfem.kernels.compiler.arithmetic import FUNCTIONS, combined, compared, negative
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import Inlined, Operation
-from beamfem.kernels.compiler.kinds import FLAG, NUMBER, WHOLE, Kind, Value
+from beamfem.kernels.compiler.kinds import FLAG, NUMBER, WHOLE, Value
+
+# what an operand of a comparison must not contain where Python might not evaluate it
+_MAY_FAIL = (ast.Call, ast.Subscript, ast.FloorDiv, ast.Mod)
 
 
 @dataclass(frozen=True)
@@ -18,14 +21,14 @@ class Scope:
     """The meaning of names in a function.
 
     outside: objects by name that are not variables, see `source.outside`; inline(function, values): writes the
-    instructions of another function here and returns its results; variables: kind and address by name; assigned: names
-    of the variables that have a value here on every path through the function.
+    instructions of another function here and returns its results; variables: see `Build.variable`; assigned: names of
+    the variables that have a value here on every path through the function.
     """
 
     build: Build
     outside: dict[str, Any]
     inline: Callable[[Inlined, Sequence[Value]], list[Value]]
-    variables: dict[str, tuple[Kind, ir.Value]] = field(default_factory=dict)
+    variables: dict[str, Value] = field(default_factory=dict)
     assigned: set[str] = field(default_factory=set)
 
 
@@ -49,6 +52,13 @@ def one_value(scope: Scope, node: ast.expr) -> Value:
     raise TypeError(f"{ast.unparse(node)} is not one value")
 
 
+def index_of(scope: Scope, node: ast.expr) -> Value:
+    """Return the index in brackets. Raises TypeError if it would count from the end in Python."""
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub) and isinstance(node.operand, ast.Constant):
+        raise TypeError(f"[{ast.unparse(node)}]: compiled code does not count from the end of an array")
+    return one_value(scope, node)
+
+
 def truth(scope: Scope, node: ast.expr) -> ir.Value:
     """Return a condition as an LLVM Boolean."""
     return scope.build.truth(one_value(scope, node))
@@ -63,12 +73,11 @@ def values(scope: Scope, node: ast.expr) -> Value | list[Value]:
         case ast.Name(id=name) if name in scope.variables:
             if name not in scope.assigned:
                 raise TypeError(f"{name} may have no value here")
-            kind, address = scope.variables[name]
-            return Value(kind, build.builder.load(address))
+            return build.get(scope.variables[name])
         case ast.Constant() | ast.Name() | ast.Attribute():
             return _constant(object_of(scope, node))
         case ast.Subscript(value=pointer, slice=index):
-            return build.read(one_value(scope, pointer), one_value(scope, index))
+            return build.read(one_value(scope, pointer), index_of(scope, index))
         case ast.BinOp(left=a, op=operation, right=b):
             return combined(build, operation, one_value(scope, a), one_value(scope, b))
         case ast.UnaryOp(op=ast.USub(), operand=value):
@@ -140,6 +149,9 @@ def _joined(scope: Scope, all_hold: bool, first: ast.expr, others: list[ast.expr
 
 def _compared(scope: Scope, a: ast.expr, operations: list[ast.cmpop], others: list[ast.expr]) -> Value:
     build, first, result = scope.build, one_value(scope, a), None
+    for other in others[1:]:
+        if any(isinstance(each, _MAY_FAIL) for each in ast.walk(other)):
+            raise TypeError(f"{ast.unparse(other)} is computed in any case here, and not always in Python; write `and`")
     for operation, other in zip(operations, others, strict=True):
         if isinstance(operation, ast.In) and isinstance(other, ast.Tuple) and len(operations) == 1:
             equal = [compared(build, ast.Eq(), first, one_value(scope, each)).llvm for each in other.elts]

@@ -24,11 +24,20 @@ class Kind:
     stored: ir.Type | None = None
 
 
+class Extent(NamedTuple):
+    """Where the array of a pointer starts and ends, as integers, and its name; known only with checks."""
+
+    start: ir.Value
+    end: ir.Value
+    name: str = ""
+
+
 class Value(NamedTuple):
-    """An LLVM value and its kind."""
+    """An LLVM value and its kind, and the extent of a pointer (see `checks`)."""
 
     kind: Kind
     llvm: ir.Value
+    extent: Extent | None = None
 
 
 FLAG = Kind("flag", ir.IntType(1), 0)

@@ -8,6 +8,8 @@ from functools import cache
 from llvmlite import binding as llvm
 from llvmlite import ir
 
+from beamfem.kernels.compiler.checks import CHECKED, SYMBOLS
+
 SYMBOL = "kernel"  # name of the only function of each module
 # functions of the C library that LLVM calls if the processor has no instruction, and for loops that copy or clear
 _OF_C = ("atan2", "pow", "floor", "sqrt", "memcpy", "memmove", "memset")
@@ -24,6 +26,8 @@ def _target() -> llvm.Target:
     for name in _OF_C:
         with suppress(AttributeError):
             llvm.add_symbol(name, cast(getattr(library, name), c_void_p).value)
+    for name, address in SYMBOLS.items() if CHECKED else ():
+        llvm.add_symbol(name, address)
     return llvm.Target.from_triple(llvm.get_process_triple())
 
 
@@ -34,9 +38,10 @@ def processor() -> tuple[str, str]:
 
 
 def description() -> str:
-    """Return a description of the target of machine code: system, processor and version of LLVM."""
+    """Return a description of machine code: system, processor, version of LLVM, and checks if there are any."""
     _target()
-    return repr((llvm.get_process_triple(), *processor(), llvm.llvm_version_info))
+    checks = ("checked",) if CHECKED else ()
+    return repr((llvm.get_process_triple(), *processor(), llvm.llvm_version_info, *checks))
 
 
 def _new_machine() -> llvm.TargetMachine:

@@ -7,8 +7,17 @@ assigned a value of another kind. The statements are `for` over `range` with a c
 called is an `Operation`, an `Inlined` function or one of `arithmetic.FUNCTIONS`. Names from outside the function stand
 for numbers, modules or such functions. Anything else raises TypeError with the line.
 
-Integers have 64 bits, and are converted in operations with floating-point numbers. Integer division by zero ends the
-process, as in C; floating-point division by zero gives an infinity or NaN.
+Integers have 64 bits, and are converted in operations with floating-point numbers. What differs from Python:
+
+- An index counts from the address of its pointer; a negative one means memory before it (`at` may have moved it there).
+  A negative constant in brackets is refused. Nothing is checked, except with BEAMFEM_CHECK=1, see `checks`.
+- A chained comparison computes all its operands. Those that Python may leave out cannot have calls, entries or
+  integer division; use `and`. `min`, `max` and `in` compute all of theirs, in Python as well.
+- `2**3` of integers is refused, since the power is a floating-point number here. (-8.0)**0.5 is NaN, 0.0**-1 infinite.
+- `int` of NaN, of an infinity or of a number beyond 64 bits has no defined value, nor has an integer that overflows.
+- Integer division by zero ends the process, as in C; floating-point division by zero gives an infinity or NaN.
+
+BEAMFEM_CHECK=1 makes errors of the indices, of `int` and of integer division by zero; constants are refused always.
 """
 
 import ast
@@ -20,8 +29,8 @@ from llvmlite import ir
 from beamfem.kernels.compiler.arithmetic import combined
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import RESULTS, Inlined
-from beamfem.kernels.compiler.expressions import Scope, object_of, one_value, truth, values
-from beamfem.kernels.compiler.kinds import KINDS, WHOLE, Kind, Value
+from beamfem.kernels.compiler.expressions import Scope, index_of, object_of, one_value, truth, values
+from beamfem.kernels.compiler.kinds import KINDS, WHOLE, Value
 from beamfem.kernels.compiler.source import definition, outside
 
 
@@ -61,7 +70,7 @@ class _Body:
         self._end = self._builder.append_basic_block("end")
         self._depth = 0  # number of loops and branches around a statement
         self._loops: list[tuple[ir.Block, ir.Block]] = []  # targets of `continue` and `break`
-        self._results: list[tuple[Kind, ir.Value]] | None = None  # kinds and addresses, from the first return
+        self._results: list[Value] | None = None  # variables, from the first return
         self._breaks: list[set[str] | None] = []  # names assigned at every `break` of a loop, None without any
         self._definition = definition(function)
         for argument, value in zip(self._definition.args.args, arguments, strict=True):
@@ -74,7 +83,7 @@ class _Body:
             raise TypeError(f"{self._function.__qualname__} returns a value, but not where it ends")
         self._branch(self._end)
         self._builder.position_at_end(self._end)
-        return [Value(kind, self._builder.load(address)) for kind, address in self._results or ()]
+        return [self._build.get(variable) for variable in self._results or ()]
 
     def _inline(self, inlined: Inlined, arguments: Sequence[Value]) -> list[Value]:
         flags = self._build.flags if inlined.flags is None else inlined.flags
@@ -89,6 +98,7 @@ class _Body:
             if self._builder.block.is_terminated:
                 return
             where = f"in compiled code: {self._function.__code__.co_filename}, line {statement.lineno}"
+            self._build.where = f"{self._function.__module__}.{self._function.__name__}, line {statement.lineno}"
             try:
                 self._statement(statement)
             except TypeError as error:
@@ -152,7 +162,7 @@ class _Body:
             case ast.Name(id=name), Value():
                 self._set(name, value)
             case ast.Subscript(value=pointer, slice=index), Value():
-                self._build.write(one_value(self._scope, pointer), one_value(self._scope, index), value)
+                self._build.write(one_value(self._scope, pointer), index_of(self._scope, index), value)
             case _:
                 raise TypeError(f"{ast.unparse(target)} cannot be assigned this in compiled code")
 
@@ -160,18 +170,18 @@ class _Body:
         variables = self._scope.variables
         self._scope.assigned.add(name)
         if name in variables:
-            kind, address = variables[name]
+            kind = variables[name].kind
             if kind is value.kind or kind.rank > value.kind.rank > 0:
-                self._builder.store(self._build.converted(value, kind), address)
+                self._build.set(variables[name], value)
                 return
             if self._depth > 0:
                 raise TypeError(f"{name} is a {kind.name} and cannot become a {value.kind.name} in a loop or branch")
-        variables[name] = value.kind, self._build.space(value.kind.llvm)
-        self._builder.store(value.llvm, variables[name][1])
+        variables[name] = self._build.variable(value, name)
+        self._build.set(variables[name], value)
 
     def _change(self, target: ast.expr, operation: ast.operator, by: ast.expr) -> None:
         if isinstance(target, ast.Subscript):
-            pointer, index = one_value(self._scope, target.value), one_value(self._scope, target.slice)
+            pointer, index = one_value(self._scope, target.value), index_of(self._scope, target.slice)
             before = self._build.read(pointer, index)
             after = combined(self._build, operation, before, one_value(self._scope, by))
             self._build.write(pointer, index, after)
@@ -181,11 +191,11 @@ class _Body:
 
     def _return(self, found: list[Value]) -> None:
         if self._results is None:
-            self._results = [(each.kind, self._build.space(each.kind.llvm)) for each in found]
+            self._results = [self._build.variable(each) for each in found]
         if len(self._results) != len(found):
             raise TypeError("a function returns as many values everywhere")
-        for (kind, address), value in zip(self._results, found, strict=True):
-            self._builder.store(self._build.converted(value, kind), address)
+        for variable, value in zip(self._results, found, strict=True):
+            self._build.set(variable, value)
         self._builder.branch(self._end)
 
     def _fork(self, condition: ir.Value, body: Sequence[ast.stmt], other: Sequence[ast.stmt]) -> None:

@@ -26,9 +26,9 @@ from numpy.lib.stride_tricks import as_strided
 from scipy.linalg import solve_banded
 
 import beamfem as bf
-from beamfem.assembly.equations import MIXED, STATICS, linearise, linearise_after
+from beamfem.assembly.equations import STATICS, linearise, linearise_after
 from beamfem.assembly.round_off import LOSES, lost_digits
-from beamfem.assembly.system import system_of
+from beamfem.assembly.system import Proven, system_of
 from beamfem.kernels.band import band
 from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 
@@ -175,7 +175,7 @@ def compared(element, slenderness, elements, state):
     if min(lapack, errors["statics"]) < NO_DIGITS:
         assert count == negative == STATES[state]
     else:
-        assert MIXED in system.proven or lost_digits(system, p, 1.0, STATICS) > LOSES
+        assert Proven.LOSES_DIGITS in system.proven or lost_digits(system, p, 1.0, STATICS) > LOSES
     return lapack, errors
 
 

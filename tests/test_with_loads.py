@@ -10,7 +10,7 @@ import pytest
 from connectors import SpringDamper
 
 import beamfem as bf
-from beamfem.assembly.system import System, shared_table, system_of
+from beamfem.assembly.system import Proven, System, shared_table, system_of
 
 STEEL = bf.Material(2.1e11, 0.3, 7850.0, thermal_expansion=1.2e-5)
 
@@ -212,7 +212,7 @@ def test_what_a_solve_finds_out_is_not_shared():
     """Whether a tangent keeps its digits depends on the state, and further solves on what was found."""
     model = frame()
     one, other = system_of(model, True), system_of(model.with_loads([force(model.beams[1], 3.0)]), True)
-    one.proven.add("something")
+    one.proven.add(Proven.KEEPS_DIGITS)
     assert not other.proven
     assert one.known_loads is not other.known_loads
 

@@ -8,7 +8,7 @@ from scipy.sparse import csc_array
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.differences import differentiated
 from beamfem.assembly.mixed_tangent import MixedTangent, mixed
-from beamfem.assembly.system import System
+from beamfem.assembly.system import Proven, System
 from beamfem.linalg.bordered import BorderedTangent, border_of
 from beamfem.linalg.saddle import SaddleTangent
 from beamfem.linalg.tangent import BandTangent, SparseTangent, Tangent
@@ -16,7 +16,6 @@ from beamfem.linalg.tangent import BandTangent, SparseTangent, Tangent
 STATICS = (1.0, 0.0, 0.0)
 INERTIA = (0.0, 0.0, 1.0)
 ROUND_OFF = 4.0 * float(np.finfo(float).eps)  # of a coordinate: each term of a strain is rounded, and so is the sum
-MIXED = "the tangent loses its digits unless stress resultants are unknowns of their own"
 _EMPTY = np.empty(0)
 _KEPT = 200_000  # floats of the largest workspace whose allocation is a noticeable part of an evaluation
 
@@ -81,7 +80,7 @@ def linearise(
         _give_back(system, assembler)
     system.connectors.add_forces(result, (p, v, a), time)
     tangent = tangent_of(system, matrix, system.connectors.tangents((p, v, a), time, coefficients))
-    if MIXED in system.proven and coefficients[0] != 0.0 and equations is None:
+    if Proven.LOSES_DIGITS in system.proven and coefficients[0] != 0.0 and equations is None:
         tangent = with_stresses(system, (p, v, a), time, coefficients, stresses, tangent)
     return result, tangent
 
@@ -89,7 +88,7 @@ def linearise(
 def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float) -> Tangent:
     """Return the static tangent in p (n,) with the stress resultants predicted by a linear step (n,) from p."""
     zeros = np.zeros(len(p))
-    if MIXED in system.proven:
+    if Proven.LOSES_DIGITS in system.proven:
         return linearise(system, p, zeros, zeros, time, STATICS, predicted_stresses(system, p, step, time))[1]
     matrix, assembler = _entries(system), _borrowed(system)
     assembler.take(system.loads_at(time))

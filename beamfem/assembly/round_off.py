@@ -6,18 +6,17 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.assembly.differences import differentiated
-from beamfem.assembly.equations import MIXED, ROUND_OFF, STATICS, linearise, residual, sizes, with_stresses
+from beamfem.assembly.equations import ROUND_OFF, STATICS, linearise, residual, sizes, with_stresses
 from beamfem.assembly.imposed_forces import imposed_forces
 from beamfem.assembly.loads_at import LoadsAt
 from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
-from beamfem.assembly.system import System
+from beamfem.assembly.system import Proven, System
 
 _CORRECTIONS = 12
 LAST_DIGITS = 1e-7  # of the model size: a state with a larger correction is wrong in more than its last digits
 ENOUGH = 6.0  # digits of the forces; with fewer, the accuracy of the tangent is checked
 _PLENTY = 12.0  # digits that no further correction improves
 LOSES = 1e-3  # relative error of a solution with the plain tangent that costs iterations, and digits
-_KEEPS = "the tangent keeps its digits"
 MOST_DIGITS = 15.0
 _NOTHING = 1e-10  # of the round-off of a state: smaller forces count as zero
 FEW_DIGITS = 4.0  # of the forces; with fewer, users are warned
@@ -117,7 +116,7 @@ def loses_digits(system: System, p: np.ndarray, load_factor: float) -> bool:
     """
     lost = _found_to_lose(system, p, load_factor)
     if lost is not None:
-        system.proven.add(MIXED if lost else _KEEPS)
+        system.proven.add(Proven.LOSES_DIGITS if lost else Proven.KEEPS_DIGITS)
     return bool(lost)
 
 
@@ -127,12 +126,12 @@ def counts_with_stresses(system: System, p: np.ndarray, load_factor: float) -> b
     Round-off of a plain tangent that loses its digits may be larger than the softest stiffness. Further solves are the
     same whether this was asked or not.
     """
-    return MIXED in system.proven or bool(_found_to_lose(system, p, load_factor))
+    return Proven.LOSES_DIGITS in system.proven or bool(_found_to_lose(system, p, load_factor))
 
 
 def _found_to_lose(system: System, p: np.ndarray, load_factor: float) -> bool | None:
     """Return whether the plain tangent loses digits, None if it is known before or cannot be checked."""
-    if MIXED in system.proven or _KEEPS in system.proven or system.connectors.items:
+    if Proven.LOSES_DIGITS in system.proven or Proven.KEEPS_DIGITS in system.proven or system.connectors.items:
         return None
     try:
         return lost_digits(system, p, load_factor, STATICS) > LOSES

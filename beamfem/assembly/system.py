@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from enum import Enum, auto
 from typing import Any, TypeVar
 
 import numpy as np
@@ -36,6 +37,15 @@ _NOTHING = np.empty(0)
 _NO_MOVEMENT = 1e300  # scale of history variables: no change of them counts as movement
 
 
+class Proven(Enum):
+    """What solves of a system have found out about it."""
+
+    LOSES_DIGITS = auto()  # the tangent, unless stress resultants are unknowns of their own
+    KEEPS_DIGITS = auto()
+    NOTHING_ACTS_AT_ZERO = auto()  # at load factor 0
+    CONSTANT_LOADS = auto()  # they neither follow the beam nor impose strains
+
+
 class shared_table(cached_property[_Table]):
     """A property of a system that does not depend on the size of loads, kept among its `tables`."""
 
@@ -54,14 +64,14 @@ class System:
     """All data of a model that solvers need; `system_of` creates it once.
 
     Systems of models that differ only in the size of their loads have their tables in common, see `Model.with_loads`.
-    released: whether the coordinates that supports move count as unknown; proven: names of properties that have been
-    checked; known_loads: loads at recent load factors.
+    released: whether the coordinates that supports move count as unknown; proven: properties found by earlier solves;
+    known_loads: loads at recent load factors.
     """
 
     model: Model
     static: bool
     released: bool = False
-    proven: set[str] = field(default_factory=set)
+    proven: set[Proven] = field(default_factory=set)
     known_loads: dict[float, LoadsAt] = field(default_factory=dict)
 
     def __reduce__(self) -> tuple[object, ...]:

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from beamfem.assembly.equations import MIXED
 from beamfem.assembly.round_off import LOSES
+from beamfem.assembly.system import Proven
 from beamfem.errors import ConvergenceError
 from beamfem.linalg.eigenpairs import Pairs, largest_pairs, nothing_known
 from beamfem.linalg.lapack import LinAlgError, eigh
@@ -32,7 +32,7 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | N
     factors = pencil.shifted(start).factorised(pencil.system.rotated)
     lost = pencil.lost(start, factors)
     if lost > LOSES:
-        pencil.system.proven.add(MIXED)
+        pencil.system.proven.add(Proven.LOSES_DIGITS)
         start = pencil.shift(rigid.shape[1]) if shift is None else shift
         factors = pencil.shifted(start).factorised(pencil.system.rotated)
     wanted = min(count + _SPARE, available)

@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.assembly.equations import MIXED
 from beamfem.assembly.round_off import LOSES
-from beamfem.assembly.system import system_of
+from beamfem.assembly.system import Proven, system_of
 from beamfem.errors import InputError
 from beamfem.linalg.eigenpairs import Pairs, digits_for, nothing_known
 from beamfem.linalg.general_pairs import general_pairs
@@ -287,7 +286,7 @@ def _general(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:
     tangent = pencil.shifted(shift)
     lost = pencil.lost(shift, tangent.factorised(pencil.system.rotated))
     if lost > LOSES:
-        pencil.system.proven.add(MIXED)
+        pencil.system.proven.add(Proven.LOSES_DIGITS)
         shift = pencil.shift(rigid.shape[1])
     if lost > WRONG:
         tangent = pencil.exact(shift)

@@ -6,9 +6,9 @@ import numpy as np
 from scipy.linalg import LinAlgError
 from scipy.sparse import csr_array
 
-from beamfem.assembly.equations import INERTIA, MIXED, STATICS, linearise, residual, with_stresses
+from beamfem.assembly.equations import INERTIA, STATICS, linearise, residual, with_stresses
 from beamfem.assembly.round_off import LAST_DIGITS, lost_digits
-from beamfem.assembly.system import System
+from beamfem.assembly.system import Proven, System
 from beamfem.linalg.tangent import UNROTATED, Factorised, Stresses, Tangent
 from beamfem.once import cached_property
 
@@ -50,7 +50,7 @@ class Pencil:
         return self._tangent((1.0, 0.0, -shift))
 
     def _tangent(self, coefficients: tuple[float, float, float]) -> Tangent:
-        mixed = MIXED in self.system.proven and coefficients != INERTIA
+        mixed = Proven.LOSES_DIGITS in self.system.proven and coefficients != INERTIA
         stresses = self.balanced_stresses if mixed else None
         return linearise(self.system, *self._at_rest, self.load_factor, coefficients, stresses)[1]
 
@@ -111,7 +111,7 @@ class Pencil:
         factors: of K - shift M. If random inertia forces move parts so soft that the last digits of the stiffness
         count, the error is found by comparison with the tangent that has stress resultants as unknowns.
         """
-        if MIXED in self.system.proven or self.system.connectors.items:
+        if Proven.LOSES_DIGITS in self.system.proven or self.system.connectors.items:
             return 0.0
         force = self.mass @ np.random.default_rng(0).standard_normal(self.mass.shape[0])
         moved = factors.solve(force)
@@ -122,7 +122,7 @@ class Pencil:
 
     def exact(self, shift: float) -> Tangent:
         """Return K - shift M with stress resultants as unknowns, which keeps the accuracy of soft parts."""
-        if MIXED in self.system.proven:
+        if Proven.LOSES_DIGITS in self.system.proven:
             return self.shifted(shift)
         plain, coefficients = self.shifted(shift), (1.0, 0.0, -shift)
         return with_stresses(self.system, self._at_rest, self.load_factor, coefficients, self.balanced_stresses, plain)

@@ -4,9 +4,8 @@ import math
 
 import numpy as np
 
-from beamfem.assembly.equations import MIXED
 from beamfem.assembly.round_off import ENOUGH, digits_of, loses_digits, remainder
-from beamfem.assembly.system import System
+from beamfem.assembly.system import Proven, System
 from beamfem.solve.newton.banded import BandProblem
 from beamfem.solve.newton.equilibrium import find_equilibrium
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
@@ -22,11 +21,11 @@ def solve_equilibrium(
     keep: the count of negative pivots to keep; the iteration stops if the tangent has another one from the third
     iteration on. The second tangent uses the stresses of a linear step, and the result only reports its count.
     """
-    mixed = MIXED in system.proven
+    mixed = Proven.LOSES_DIGITS in system.proven
     result = _with_digits(system, load_factor, newton, _solve(system, start, load_factor, newton, keep))
     if not result.ended.good:
         loses_digits(system, start, load_factor)
-    if MIXED in system.proven and not mixed:
+    if Proven.LOSES_DIGITS in system.proven and not mixed:
         return _with_digits(system, load_factor, newton, _solve(system, start, load_factor, newton, keep))
     return result
 
@@ -49,7 +48,7 @@ def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton
     """Iterate with the fastest method that the model allows, and with pivoting if that fails."""
     step = PrescribedStep(system, start, load_factor)
     result = None
-    if system.unknowns.pattern is None and MIXED not in system.proven:
+    if system.unknowns.pattern is None and Proven.LOSES_DIGITS not in system.proven:
         problem = BandProblem(system, start, load_factor, newton, step, keep)
         result = find_equilibrium(problem, newton, keep)
         problem.give_back()

@@ -4,7 +4,7 @@ import numpy as np
 
 from beamfem.assembly.equations import residual
 from beamfem.assembly.round_off import row_floors
-from beamfem.assembly.system import System, system_of
+from beamfem.assembly.system import Proven, System, system_of
 from beamfem.errors import ConvergenceError, LimitPointError
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
@@ -13,8 +13,6 @@ from beamfem.solve.statics.changing_loads import changing
 from beamfem.solve.statics.load_steps import reach
 from beamfem.solve.statics.prestressed import stiffened_start
 from beamfem.solve.statics.static_record import StaticRecord
-
-_AT_REST = "nothing acts at load factor 0"
 
 
 def first_equilibrium(system: System, newton: Newton) -> NewtonResult:
@@ -42,13 +40,13 @@ def _still(system: System, p: np.ndarray) -> bool:
 
 def nothing_acts(system: System) -> bool:
     """Return whether nothing acts at load factor 0."""
-    if _AT_REST not in system.proven:
+    if Proven.NOTHING_ACTS_AT_ZERO not in system.proven:
         # a load below the round-off of stiff rows may still bend the beam
         moved = system.moved and system.prescribed_changes(0.0).any()
         acts = not system.proportional and system.loads_at(0.0).any
         if moved or acts or not _free_of_force(system):
             return False
-        system.proven.add(_AT_REST)
+        system.proven.add(Proven.NOTHING_ACTS_AT_ZERO)
     return True
 
 

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.assembly.equations import STATICS, linearise, predicted_stresses
-from beamfem.assembly.system import System
+from beamfem.assembly.system import Proven, System
 from beamfem.solve.newton.iteration import Newton, NewtonResult
 from beamfem.solve.statics.path_direction import leaves_path
 from beamfem.solve.statics.static_record import StaticRecord
@@ -14,7 +14,6 @@ _OVERSHOOT = 3.0
 _SHORT = 1e-2  # of the movement so far
 # Iterations. Most models under constant forces start at rest and reach the end in one long step.
 _SLOW, _SLOW_FROM_REST = 7, 12
-_CONSTANT = "loads neither follow the beam nor impose strains"
 
 
 def skips_limit_points(system: System, done: StaticRecord, target: float, result: NewtonResult, newton: Newton) -> bool:
@@ -68,11 +67,11 @@ def _constant_forces(system: System, load_factor: float) -> bool:
     """Return whether forces alone act, which neither follow the beam nor come from imposed strains and supports."""
     if any(item.change(load_factor, system.static) for item in system.prescribed):
         return False
-    if _CONSTANT not in system.proven:
+    if Proven.CONSTANT_LOADS not in system.proven:
         follow = any(np.any(loads.follows) for loads in system.point_loads)
         if follow or any(block.imposed is not None for block in system.blocks):
             return False
-        system.proven.add(_CONSTANT)
+        system.proven.add(Proven.CONSTANT_LOADS)
     return True
 
 

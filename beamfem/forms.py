@@ -11,7 +11,7 @@ from skfem import Basis, BilinearForm, Functional, LinearForm
 from skfem.helpers import ddot, dot, eye, grad, identity, mul, trace, transpose
 
 from beamfem.element.skfem_element import BeamMapping, FieldElement
-from beamfem.model.mesh import BeamMesh
+from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.reference import sections_at
 from beamfem.quadrature import gauss
 from beamfem.section.protocol import CrossSection

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import beamfem as bf
 from beamfem.kernels.compiling import Routine
-from beamfem.view.page import Part, write_page
+from beamfem.view.html_page import Part, write_page
 from studies.paper import cantilever_small, curved, elements, locking, pendulum_page, rollup
 from studies.stability import page as stability
 

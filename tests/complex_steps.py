@@ -11,7 +11,7 @@ import beamfem as bf
 from beamfem.element.coordinates import Gradients, labels, nodal_rates
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.model.along_beam import jumps_along
-from beamfem.model.load import factor
+from beamfem.model.load_base import factor
 from beamfem.model.reference import (
     energy_points,
     energy_stiffness_at,

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 import beamfem as bf
-from beamfem.assembly import layout
+from beamfem.assembly import equation_numbering as layout
 from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.fields import Cubic, Lagrange
 

@@ -4,7 +4,7 @@ import meshio
 import numpy as np
 
 import beamfem as bf
-from beamfem.io.mesh import read_mesh
+from beamfem.io.line_mesh import read_mesh
 
 SECTION = bf.Rectangle(0.1, 0.1)
 STEEL = bf.Material(2e11, 0.3, 7850.0)

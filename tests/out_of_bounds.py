@@ -6,10 +6,10 @@ import math
 import numpy as np
 
 import beamfem as bf
-from beamfem.kernels.compiler.checks import CheckError
+from beamfem.kernels.compiler.bounds_checks import CheckError
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.lanes import as_rows
 from beamfem.kernels.pointers import address_of, at, caller, room, slots
+from beamfem.kernels.simd import as_rows
 
 
 @routine("nr")

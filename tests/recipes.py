@@ -275,7 +275,7 @@ def _point(parts, view: View, place: Place) -> bf.Point:
     return bf.Point(beam, 1.0 - fraction if view.backwards else fraction)
 
 
-def _support(support: Support, view: View, at: bf.Point) -> bf.model.support.Support:
+def _support(support: Support, view: View, at: bf.Point) -> bf.model.support_base.Support:
     if support.kind == "clamp":
         return bf.Clamp(at)
     if support.kind == "pin":
@@ -293,7 +293,7 @@ def _support(support: Support, view: View, at: bf.Point) -> bf.model.support.Sup
     return bf.Prescribed(at, ux, uy, turn)
 
 
-def _loads(load: Load, view: View, at: bf.Point, parts) -> list[bf.model.load.Load]:
+def _loads(load: Load, view: View, at: bf.Point, parts) -> list[bf.model.load_base.Load]:
     how = {"scale": load.scale}
     if load.kind == "gravity":
         return [bf.Gravity(view.vector(load.values, view.length), **how)]

@@ -6,7 +6,7 @@ import pytest
 import beamfem as bf
 from beamfem.assembly.equations import residual
 from beamfem.assembly.system import System
-from beamfem.results.acting import acting_on, rows_of
+from beamfem.results.element_loads import acting_on, rows_of
 from beamfem.results.nodal import nodal_vectors
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics

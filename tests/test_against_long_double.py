@@ -27,10 +27,10 @@ from scipy.linalg import solve_banded
 
 import beamfem as bf
 from beamfem.assembly.equations import STATICS, linearise, linearise_after
-from beamfem.assembly.round_off import LOSES, lost_digits
 from beamfem.assembly.system import Proven, system_of
 from beamfem.kernels.band import band
 from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
+from beamfem.precision.roundoff import LOSES, lost_digits
 
 ELEMENTS = (
     bf.ANCF(),

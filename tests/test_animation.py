@@ -11,9 +11,9 @@ from drawn import cantilever, frame, pendulum, share_of_ink
 from PIL import Image, ImageSequence
 
 import beamfem as bf
-from beamfem.view.acting import FORCE
 from beamfem.view.animation import _palette
-from beamfem.view.supports import PRESCRIBED
+from beamfem.view.load_drawing import FORCE
+from beamfem.view.support_symbols import PRESCRIBED
 
 
 @pytest.fixture(scope="module")

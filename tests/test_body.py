@@ -7,8 +7,9 @@ from matplotlib import image
 from matplotlib.figure import Figure
 
 import beamfem as bf
-from beamfem.view import body, rendering
-from beamfem.view.shapes import Shapes
+from beamfem.view import rendering
+from beamfem.view import solid_pyvista as body
+from beamfem.view.deformed_shapes import Shapes
 
 renders = pytest.mark.skipif("not __import__('beamfem.view.rendering').view.rendering.can_render()")
 

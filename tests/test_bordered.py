@@ -19,7 +19,7 @@ from connectors import (
 from section_laws import LinearLaw
 
 import beamfem as bf
-from beamfem.assembly import layout
+from beamfem.assembly import equation_numbering as layout
 from beamfem.assembly.equations import linearise
 from beamfem.assembly.system import System, system_of
 from beamfem.linalg.bordered import BorderedFactors, BorderedTangent, border_of

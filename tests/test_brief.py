@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.convergence.result import Convergence
+from beamfem.convergence.convergence_result import Convergence
 from beamfem.results.energies import Energy
 
 

@@ -10,7 +10,7 @@ import pyvista
 from test_cli import CANTILEVER, invoke
 
 import beamfem as bf
-from beamfem.cli import examples
+from beamfem.cli import bundled_examples as examples
 from beamfem.cli.model_file import read_model_file
 
 

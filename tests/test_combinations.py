@@ -8,7 +8,7 @@ from conftest import ELEMENTS, identify
 from integrated import Cantilever
 
 import beamfem as bf
-from beamfem.assembly.columns import coordinate_columns
+from beamfem.assembly.coordinate_columns import coordinate_columns
 from beamfem.assembly.equations import residual
 from beamfem.assembly.system import System
 from beamfem.results.postprocess import nodal_vectors

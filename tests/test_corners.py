@@ -5,8 +5,8 @@ import pytest
 
 import beamfem as bf
 from beamfem.assembly.equations import residual
-from beamfem.assembly.round_off import round_off_floor
 from beamfem.assembly.system import System
+from beamfem.precision.roundoff import round_off_floor
 
 
 @pytest.mark.parametrize(

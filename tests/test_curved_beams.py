@@ -6,7 +6,7 @@ from conftest import ELEMENTS, identify
 from test_kernels import dense
 
 import beamfem as bf
-from beamfem.assembly.columns import coordinate_columns
+from beamfem.assembly.coordinate_columns import coordinate_columns
 from beamfem.assembly.equations import linearise, residual
 from beamfem.assembly.system import System
 from beamfem.model.reference import energy_points, reference_axis

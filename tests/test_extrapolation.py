@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.kernels.extrapolation import MOST, complete, difference_rows, padded, predict
 from beamfem.kernels.motion_record import BEST_ORDER, KNOWN_DIFFERENCES, MotionStatistics
 from beamfem.kernels.motion_steps import check_convergence
+from beamfem.kernels.predictor import MOST, complete, difference_rows, padded, predict
 from studies.benchmarks.peer_cases import STRUCTURAL, pendulum, swing
 
 RULE = np.array([0.01, 0.5, 0.5, 0.5, 0.25])  # trapezoidal rule

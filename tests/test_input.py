@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.memory import installed_memory
-from beamfem.solve.start import memory
+from beamfem.installed_memory import installed_memory
+from beamfem.solve.start import check_states_memory as memory
 
 LINE = bf.Line((0, 0), (1, 0))
 SECTION = bf.Rectangle(0.01, 0.01)

@@ -39,7 +39,7 @@ def third_time(monkeypatch):
         return done
 
     monkeypatch.setattr(CompiledSteps, "advance", interrupted)
-    monkeypatch.setattr("beamfem.solve.motion.march._FIRST_CHUNK", 1000)
+    monkeypatch.setattr("beamfem.solve.motion.time_marching._FIRST_CHUNK", 1000)
     yield
     signal.signal(signal.SIGINT, handler)
 

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 import beamfem
-from beamfem.kernels import cache, compiling, inertia
+from beamfem.kernels import cache, compiling
+from beamfem.kernels import inertia_forces as inertia
 from beamfem.kernels.band import band
 from beamfem.kernels.bidirectional_lu import bidirectional_lu
 
@@ -235,7 +236,7 @@ def test_no_two_kernels_share_a_name():
     for nodes in (2, 3):
         inertia.add_inertia.fixed(nodes=nodes, vectors=2, others=4)
     names = [routine.name for routine in compiling.Routine.made if routine.__module__.startswith("beamfem.kernels")]
-    assert {f"beamfem.kernels.inertia.add_inertia_nodes_{nodes}_vectors_2" for nodes in (2, 3)} <= set(names)
+    assert {f"beamfem.kernels.inertia_forces.add_inertia_nodes_{nodes}_vectors_2" for nodes in (2, 3)} <= set(names)
     assert len(set(names)) == len(names)
 
 

@@ -8,8 +8,8 @@ from matplotlib.text import Text
 
 import beamfem as bf
 from beamfem.view.labels import write_labels
-from beamfem.view.places import place
 from beamfem.view.plots import new_figure
+from beamfem.view.point_text import place
 
 
 def boxes(figure):

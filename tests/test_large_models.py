@@ -13,10 +13,11 @@ import beamfem as bf
 from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import System
 from beamfem.model.beam import reference_positions
-from beamfem.model.grid import Grid, make_grid
-from beamfem.model.grids import make_grids
-from beamfem.model.nearest import distances, nearest
-from beamfem.results import last_digits, postprocess
+from beamfem.model.beam_grid import Grid, make_grid
+from beamfem.model.nearest_places import distances, nearest
+from beamfem.model.straight_grids import make_grids
+from beamfem.results import postprocess
+from beamfem.results import roundoff_corrections as last_digits
 from beamfem.solve.start.body_motions import Conditions, mechanisms
 
 

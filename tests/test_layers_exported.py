@@ -5,9 +5,9 @@ import pytest
 import pyvista
 
 import beamfem as bf
-from beamfem.results.along import AxisPoints
-from beamfem.view import body
-from beamfem.view.shapes import Shapes
+from beamfem.results.axis_fields import AxisPoints
+from beamfem.view import solid_pyvista as body
+from beamfem.view.deformed_shapes import Shapes
 
 STEEL, ALUMINIUM = bf.Material(2.1e11, 0.3, 7850.0), bf.Material(7e10, 0.33, 2700.0)
 RUBBER = bf.Material(1e7, 0.45, 1100.0)

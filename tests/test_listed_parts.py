@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 import beamfem as bf
-from beamfem.cli.kinds import ACTING
-from beamfem.model.listed_parts import listed_parts
+from beamfem.cli.part_kinds import ACTING
+from beamfem.model.parts_registry import listed_parts
 
 FILE = str(Path(__file__).parent / "trial_parts.py")
 PARTS = ("SnowLoad", "Slide", "Weld", "Buffer")

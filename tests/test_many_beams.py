@@ -8,10 +8,13 @@ import pytest
 
 import beamfem as bf
 from beamfem.io import axes_in_hdf5
-from beamfem.io.cells import Cells
-from beamfem.results import along, beam_stress, free_bodies, many_beams, neighbours
-from beamfem.results.along import QUANTITIES, AxisPoints
-from beamfem.results.many_beams import like_beams, of_each
+from beamfem.io.vtk_cells import Cells
+from beamfem.results import axis_fields as along
+from beamfem.results import batched_beams as many_beams
+from beamfem.results import beam_stress, free_bodies
+from beamfem.results import neighbouring_beams as neighbours
+from beamfem.results.axis_fields import QUANTITIES, AxisPoints
+from beamfem.results.batched_beams import like_beams, of_each
 from tests.many_beams import PLASTIC, SECTION, mixed_model
 
 FORCES = ("arc_length", "normal", "shear", "moment")

@@ -9,7 +9,7 @@ from mesh_parts import SECTION, THREE, frame, written
 
 import beamfem as bf
 from beamfem.io.frame import Frame
-from beamfem.io.mesh import LineMesh, read_mesh
+from beamfem.io.line_mesh import LineMesh, read_mesh
 
 MESHES = Path(__file__).parents[1] / "meshes"
 

@@ -10,7 +10,7 @@ import pytest
 from mesh_parts import THREE, ends, frame, written
 
 import beamfem as bf
-from beamfem.io.mesh import read_mesh
+from beamfem.io.line_mesh import read_mesh
 
 MESHES = Path(__file__).parents[1] / "meshes"
 

@@ -3,7 +3,7 @@
 from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier
 
-from beamfem.once import cached_property
+from beamfem.cached_properties import cached_property
 
 
 class Slow:

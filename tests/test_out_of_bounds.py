@@ -11,7 +11,7 @@ import out_of_bounds
 import pytest
 
 from beamfem.kernels.compiler import machine
-from beamfem.kernels.compiler.checks import CHECKED
+from beamfem.kernels.compiler.bounds_checks import CHECKED
 
 SCRIPT = Path(__file__).with_name("out_of_bounds.py")
 BEYOND = {

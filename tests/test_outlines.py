@@ -7,7 +7,7 @@ from scipy.integrate import quad
 
 import beamfem as bf
 from beamfem.forms import beam_basis
-from beamfem.view.shapes import Shapes
+from beamfem.view.deformed_shapes import Shapes
 
 STEEL = bf.Material(2.1e11, 0.3, 7850.0)
 IPE_200 = bf.Section(28.5e-4, 1943e-8, height=0.2)

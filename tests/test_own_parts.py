@@ -101,7 +101,7 @@ def test_parts_that_no_equation_would_see_are_refused():
     own = bar(bf.ANCFCRBF())
 
     @dataclass(frozen=True)
-    class Nothing(bf.model.load.Load):
+    class Nothing(bf.model.load_base.Load):
         place = None
         conservative = True
 

@@ -15,9 +15,9 @@ import pytest
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
 import beamfem as bf
-from beamfem.convergence.result import Convergence
-from beamfem.sweeps.result import Sweep
-from beamfem.view.page import Part, write_page
+from beamfem.convergence.convergence_result import Convergence
+from beamfem.sweeps.sweep_result import Sweep
+from beamfem.view.html_page import Part, write_page
 from studies import all as main_job
 from studies.paper import pendulum, pendulum_figures, pendulum_page
 

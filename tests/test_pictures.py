@@ -12,14 +12,14 @@ from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.quiver import Quiver
 
 import beamfem as bf
-from beamfem.results.along import AxisPoints, section_forces
+from beamfem.results.axis_fields import AxisPoints, section_forces
 from beamfem.view import symbols
-from beamfem.view.acting import FORCE, draw_loads
+from beamfem.view.deformed_shapes import Shapes, limits
 from beamfem.view.drawing import equal_axes
 from beamfem.view.frames import spread_rows
-from beamfem.view.history import plot_load_displacement
-from beamfem.view.shapes import Shapes, limits
-from beamfem.view.supports import supports_of
+from beamfem.view.history_curves import plot_load_displacement
+from beamfem.view.load_drawing import FORCE, draw_loads
+from beamfem.view.support_symbols import supports_of
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.memory import installed_memory
+from beamfem.installed_memory import installed_memory
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.io import description, own_parts, results
-from beamfem.io.results import load, save
-from beamfem.model.sampled import Sampled
+from beamfem.io import description
+from beamfem.io import results_hdf5 as results
+from beamfem.io import user_classes as own_parts
+from beamfem.io.results_hdf5 import load, save
+from beamfem.model.sampled_functions import Sampled
 from beamfem.results.solution import Solution
 
 
@@ -164,7 +166,7 @@ KILLED = """
 import os, sys
 import numpy as np
 import beamfem as bf
-from beamfem.io import results
+from beamfem.io import results_hdf5 as results
 from beamfem.results.solution import Statistics
 
 rows, blocks = 40, int(sys.argv[2])

@@ -7,7 +7,7 @@ from integrated import Cantilever
 from scipy.integrate import quad
 
 import beamfem as bf
-from beamfem.assembly.columns import coordinate_columns
+from beamfem.assembly.coordinate_columns import coordinate_columns
 from beamfem.assembly.equations import residual
 from beamfem.assembly.system import System
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly.columns import coordinate_columns
+from beamfem.assembly.coordinate_columns import coordinate_columns
 from beamfem.assembly.equations import STATICS, linearise
-from beamfem.assembly.round_off import _digits, remainder
 from beamfem.assembly.system import System
+from beamfem.precision.roundoff import _digits, remainder
 
 SECTION, SOFT = bf.Rectangle(0.1, 0.1), bf.Material(1e6, 0.3, 1.0)
 

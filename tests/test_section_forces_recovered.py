@@ -9,9 +9,9 @@ from drawn import EI as DRAWN
 from drawn import cantilever
 
 import beamfem as bf
-from beamfem.results.along import AxisPoints
-from beamfem.results.along import section_forces as along_axis
-from beamfem.view.shapes import Shapes
+from beamfem.results.axis_fields import AxisPoints
+from beamfem.results.axis_fields import section_forces as along_axis
+from beamfem.view.deformed_shapes import Shapes
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 SECTION = bf.Rectangle(0.01, 0.01)

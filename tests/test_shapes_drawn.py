@@ -8,7 +8,7 @@ from matplotlib.collections import LineCollection
 import beamfem as bf
 from beamfem.results.beam_stress import PARTS
 from beamfem.view.frames import moment_of, spread_rows
-from beamfem.view.supports import PRESCRIBED, supports_of
+from beamfem.view.support_symbols import PRESCRIBED, supports_of
 
 # the same numbers under the names of several units
 pytestmark = pytest.mark.filterwarnings("ignore::beamfem.UnitsWarning")
@@ -139,7 +139,7 @@ def test_unknown_colours_say_what_may_be_meant(bent):
     for wrong, meant in (("mises", "von_mises"), ("bending_moment", "moment"), ("shear stress", "shear_stress")):
         with pytest.raises(bf.InputError, match=f"did you mean {meant}?"):
             bent.plot(colour=wrong)
-    assert set(PARTS) - {"shear"} <= set(bf.results.along.QUANTITIES)
+    assert set(PARTS) - {"shear"} <= set(bf.results.axis_fields.QUANTITIES)
 
 
 def test_the_arrow_of_a_prescribed_motion_starts_at_its_point():

@@ -10,7 +10,7 @@ from zipfile import ZipFile
 import pytest
 from typer.testing import CliRunner
 
-from beamfem.cli import examples
+from beamfem.cli import bundled_examples as examples
 from beamfem.cli.app import app
 
 ROOT = Path(__file__).parent.parent

@@ -9,8 +9,8 @@ from conftest import beam as small_beam
 from scipy.sparse import csc_array
 
 import beamfem as bf
+from beamfem.assembly.equation_numbering import Unknowns
 from beamfem.assembly.equations import STATICS, linearise
-from beamfem.assembly.layout import Unknowns
 from beamfem.assembly.system import System
 from beamfem.element.axis import cross
 from beamfem.linalg.lapack import LinAlgError
@@ -25,7 +25,7 @@ MATERIAL = bf.Material(1e7, 0.3, 1000.0)
 @pytest.fixture
 def force_sparse(monkeypatch):
     """Return a function that makes every model from now on sparse."""
-    return lambda: monkeypatch.setattr("beamfem.assembly.layout._WIDEST_BAND", -1)
+    return lambda: monkeypatch.setattr("beamfem.assembly.equation_numbering._WIDEST_BAND", -1)
 
 
 def portal(loads=True):

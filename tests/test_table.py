@@ -6,7 +6,7 @@ from drawn import pendulum
 
 import beamfem as bf
 from beamfem.io.table import arrays
-from beamfem.tabulate import cell
+from beamfem.tables import cell
 
 
 def test_a_table_of_a_motion_has_the_values_of_its_points():

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.io.samples import centrelines
 from beamfem.io.table import arrays
+from beamfem.io.vtk_points import centrelines
 
 MOMENT = 4.0
 INERTIA = 0.5 * (1.0 + 0.05**2) / 3  # of a bar of 0.5 kg about its end

@@ -7,7 +7,7 @@ import pytest
 from connectors import SpringDamper
 
 import beamfem as bf
-from beamfem.model.unjoined import unjoined_ends
+from beamfem.model.missing_joints import unjoined_ends
 
 SECTION, STEEL = bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0)
 

@@ -5,11 +5,15 @@ import re
 
 import pytest
 
-from beamfem.kernels import field, inertia, linear_law, stiffness
+from beamfem.kernels import element_stiffness as stiffness
+from beamfem.kernels import field, linear_law
+from beamfem.kernels import inertia_forces as inertia
 from beamfem.kernels.band import band
 from beamfem.kernels.bidirectional_lu import bidirectional_lu
 from beamfem.kernels.compiler.machine import assembly_code
-from beamfem.kernels.generated import elastic_line, green_lagrange, structural
+from beamfem.kernels.generated import elastic_line_pass as elastic_line
+from beamfem.kernels.generated import green_lagrange_pass as green_lagrange
+from beamfem.kernels.generated import structural_pass as structural
 
 PASSES = [
     *(stiffness.columns, stiffness.combine, stiffness.products, inertia.add_inertia, inertia.add_mass),

@@ -17,8 +17,8 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 import beamfem as bf
-from beamfem.io import samples as cells
 from beamfem.io import vtk
+from beamfem.io import vtk_points as cells
 from beamfem.results import postprocess
 
 HEIGHT = 0.02

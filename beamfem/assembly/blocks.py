@@ -5,14 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.assembly.imposed import imposed_on
+from beamfem.assembly.imposed_strain_tables import imposed_on
 from beamfem.assembly.law_pass import LawPass
 from beamfem.element.coordinates import Gradients
 from beamfem.element.element import Element
 from beamfem.kernels.block import NO_HISTORY, Block
-from beamfem.model.classes import Classes, likenesses
-from beamfem.model.imposed_strain import ImposedStrain
-from beamfem.model.mesh import BeamMesh
+from beamfem.model.beam_mesh import BeamMesh
+from beamfem.model.element_types import Classes, likenesses
+from beamfem.model.imposed_strain_base import ImposedStrain
 
 PER_CLASS = tuple(name for name in Classes._fields if name != "kind")
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import LinAlgError
 
+from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
 from beamfem.model.contribution import At, Contribution, Remembering
-from beamfem.once import cached_property
 from beamfem.validation import called
 
 COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted

@@ -7,11 +7,11 @@ import numpy as np
 
 from beamfem.assembly.connector import COMPLEX_STEP, Connector, Motion
 from beamfem.assembly.connector_rates import TIMES, follows_time, gravity_of, resists_rates, somewhere_near
+from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
 from beamfem.model.contribution import remembered, uses_rotations
-from beamfem.model.load import factor
+from beamfem.model.load_base import factor
 from beamfem.model.model import Model
-from beamfem.once import cached_property
 
 _ROUND_OFF = 1e-13  # relative to the largest stiffness of a contribution
 _COORDINATES = ("r^x", "r^y", "theta")

@@ -15,9 +15,9 @@ from beamfem.kernels.block import (
     Layout,
     PointLoads,
 )
-from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.record import LANES, ROW
+from beamfem.kernels.simd import WIDTH
 
 _PADDING = np.zeros(WIDTH)  # vectors of lanes read beyond the last node
 _UPPER = {measures: np.flatnonzero(np.triu(np.ones((measures, measures)))) for measures in (4, 6)}

@@ -7,11 +7,11 @@ from scipy.sparse import csc_array
 
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.differences import differentiated
-from beamfem.assembly.mixed_tangent import MixedTangent, mixed
 from beamfem.assembly.system import Proven, System
 from beamfem.linalg.bordered import BorderedTangent, border_of
-from beamfem.linalg.saddle import SaddleTangent
 from beamfem.linalg.tangent import BandTangent, SparseTangent, Tangent
+from beamfem.precision.mixed_tangent import MixedTangent, mixed
+from beamfem.precision.saddle import SaddleTangent
 
 STATICS = (1.0, 0.0, 0.0)
 INERTIA = (0.0, 0.0, 1.0)

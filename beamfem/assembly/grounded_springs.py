@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.assembly.layout import Unknowns
+from beamfem.assembly.equation_numbering import Unknowns
 from beamfem.assembly.prescribed import COORDINATES
 from beamfem.kernels.block import Springs
 from beamfem.model.model import Model

@@ -19,9 +19,9 @@ from beamfem.kernels.block import (
     Layout,
     PointLoads,
 )
-from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.record import LANES, ROW
+from beamfem.kernels.simd import WIDTH
 
 _CACHE = 400  # workspace rows times elements of a batch, in units of `LANES`, that fit into the cache of a core
 _SMALLEST = 16

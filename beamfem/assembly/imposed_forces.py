@@ -3,7 +3,7 @@
 import numpy as np
 
 from beamfem.assembly.equations import STATICS
-from beamfem.assembly.loads_at import LoadsAt
+from beamfem.assembly.load_values import LoadsAt
 from beamfem.assembly.system import System
 
 

@@ -3,12 +3,12 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from beamfem.assembly.arena import Arena
+from beamfem.assembly.aligned_arrays import Arena
 from beamfem.assembly.rotating_vectors import runs_of
 from beamfem.assembly.system import System
 from beamfem.kernels import motion_record, record
-from beamfem.kernels.extrapolation import difference_rows, padded
 from beamfem.kernels.pointers import address_of
+from beamfem.kernels.predictor import difference_rows, padded
 
 _KEPT = 40_000_000  # entries of the largest tangent whose workspace is kept for the next motion of the model
 

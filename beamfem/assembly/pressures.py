@@ -4,8 +4,8 @@ from collections import defaultdict
 
 import numpy as np
 
+from beamfem.model.load_arrays import forces_of
 from beamfem.model.model import Model
-from beamfem.model.returned import forces_of
 
 
 def pressures_have_potential(model: Model, prescribed: set[int]) -> bool:

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.assembly.columns import Columns, columns_of, coordinate_columns
+from beamfem.assembly.coordinate_columns import Columns, columns_of, coordinate_columns
 from beamfem.assembly.system import System
-from beamfem.model.mesh import BeamMesh
+from beamfem.model.beam_mesh import BeamMesh
 from beamfem.validation import convert, finite, squared, vector
 
 

@@ -10,8 +10,6 @@ from beamfem.kernels import (
     element_passes,
     field,
     gathering,
-    imposed_strains,
-    inertia,
     linear_law,
     model_passes,
     node_passes,
@@ -19,17 +17,15 @@ from beamfem.kernels import (
     point_loads,
     record,
     reduction,
-    stiffness,
 )
+from beamfem.kernels import element_stiffness as stiffness
+from beamfem.kernels import imposed_strain_pass as imposed_strains
+from beamfem.kernels import inertia_forces as inertia
 from beamfem.kernels.compiling import Routine
-from beamfem.kernels.generated import (
-    elastic_line,
-    green_lagrange,
-    rotation_node,
-    shear_rigid_node,
-    stretch_node,
-    structural,
-)
+from beamfem.kernels.generated import elastic_line_pass as elastic_line
+from beamfem.kernels.generated import green_lagrange_pass as green_lagrange
+from beamfem.kernels.generated import rotation_node, shear_rigid_node, stretch_node
+from beamfem.kernels.generated import structural_pass as structural
 
 MEASURE_PASSES = green_lagrange, structural, elastic_line
 _KINDS = rotation_node, stretch_node, shear_rigid_node

@@ -5,8 +5,9 @@ from functools import cache
 
 import numpy as np
 
-from beamfem.assembly.layout import Unknowns
-from beamfem.kernels import model_passes, motion_stages, motion_steps, newton, record, rollers
+from beamfem.assembly.equation_numbering import Unknowns
+from beamfem.kernels import model_passes, motion_stages, motion_steps, record, rollers
+from beamfem.kernels import newton_loop as newton
 from beamfem.kernels.band import Band, band
 from beamfem.kernels.bidirectional_lu import SHORT, BidirectionalLU, bidirectional_lu
 from beamfem.kernels.compiling import Routine

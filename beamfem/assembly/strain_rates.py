@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beamfem.assembly.element_group import ElementGroup
-from beamfem.assembly.points import free_group, resultants
+from beamfem.assembly.stress_resultants import free_group, resultants
 from beamfem.kernels.block import Block
 
 

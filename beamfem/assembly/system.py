@@ -7,28 +7,28 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from beamfem.assembly import layout
-from beamfem.assembly.actions import Actions, build_actions
+from beamfem.assembly import equation_numbering as layout
+from beamfem.assembly.applied_loads import Actions, build_actions
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.blocks import build_block
 from beamfem.assembly.connectors import Connectors, connectors_of
 from beamfem.assembly.element_group import make_group
+from beamfem.assembly.equation_numbering import Unknowns
 from beamfem.assembly.grounded_springs import grounded_springs
-from beamfem.assembly.history import History
-from beamfem.assembly.layout import Unknowns
-from beamfem.assembly.loads_at import LoadsAt, body_loads
+from beamfem.assembly.history_variables import History
+from beamfem.assembly.load_values import LoadsAt, body_loads
 from beamfem.assembly.prescribed import PrescribedCoordinate, inclined_rollers, prescribed_coordinates
 from beamfem.assembly.pressures import pressures_have_potential
+from beamfem.assembly.reference_state import stress_free
 from beamfem.assembly.rotating_vectors import rotating_vectors
-from beamfem.assembly.row_errors import residual_errors, stress_errors
 from beamfem.assembly.solver_table import SolverTable
 from beamfem.assembly.strain_rates import StrainRates, strain_rates
-from beamfem.assembly.stress_free import stress_free
+from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
 from beamfem.kernels.block import Block, Layout, PointLoads, Springs
-from beamfem.model.load import factor
+from beamfem.model.load_base import factor
 from beamfem.model.model import Model
-from beamfem.once import cached_property
+from beamfem.precision.roundoff_bounds import residual_errors, stress_errors
 from beamfem.validation import shown
 
 _Table = TypeVar("_Table", covariant=True)

@@ -11,9 +11,9 @@ from beamfem.cli.schema import Kinds, Names, build, reader, shown, with_keys
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
 from beamfem.model.model import Model
-from beamfem.results.checks import warned
 from beamfem.results.path import PathState
 from beamfem.results.solution import Solution, State
+from beamfem.results.solution_checks import warned
 from beamfem.solve.modes.modes import Modes, solve_modes
 from beamfem.solve.motion.dynamics import simulate
 from beamfem.solve.motion.integrators import GeneralizedAlpha

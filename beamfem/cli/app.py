@@ -5,9 +5,9 @@ from typing import Annotated
 import typer
 
 from beamfem.cli import results_files
+from beamfem.cli.bundled_examples import examples, new
 from beamfem.cli.doctor import doctor
-from beamfem.cli.examples import examples, new
-from beamfem.cli.run import run
+from beamfem.cli.run_command import run
 from beamfem.cli.studies import study
 
 app = typer.Typer(

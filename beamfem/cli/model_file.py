@@ -10,8 +10,8 @@ from typing import Any
 
 from beamfem.assembly.system import System
 from beamfem.cli.analyses import ANALYSES, Analysis, Found, Imperfection
-from beamfem.cli.kinds import ACTING, NAMED, TYPES, BeamTable, in_keys
 from beamfem.cli.outputs import FILES, Output, OutputFile
+from beamfem.cli.part_kinds import ACTING, NAMED, TYPES, BeamTable, in_keys
 from beamfem.cli.schema import KeyFault, Kinds, Names, build, named_first, part, require_table, shown
 from beamfem.cli.toml_source import ModelFileError, Source, read_source
 from beamfem.errors import FileError, InputError

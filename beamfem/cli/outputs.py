@@ -14,7 +14,7 @@ from beamfem.errors import InputError
 from beamfem.io.description import describe
 from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
-from beamfem.results.along import QUANTITIES as COLOURS
+from beamfem.results.axis_fields import QUANTITIES as COLOURS
 from beamfem.results.path import Path as EquilibriumPath
 from beamfem.results.path import PathState
 from beamfem.results.solution import Solution

@@ -108,7 +108,7 @@ def summary(solution: "Solution") -> dict[str, Any]:
 
 def print_table(title: str, rows: Sequence[Mapping[str, Any]], units: Mapping[str, str] | None = None) -> None:
     """Print rows with the same keys as a table; lists in them become several lines. units: of columns, by name."""
-    from beamfem.tabulate import as_text
+    from beamfem.tables import as_text
 
     lines = [
         [value[number] if isinstance(value, list) else value for value in row.values()]

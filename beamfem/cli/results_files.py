@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from beamfem.cli.report import AsJson, Quiet, print_json, reported, require_target, summary, wrote
-from beamfem.cli.run import Colour
+from beamfem.cli.run_command import Colour
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -72,8 +72,8 @@ def plot(
 def _loaded(results: Path) -> "Solution":
     """Return the solution of a results file. Raises InputError."""
     from beamfem.errors import InputError
-    from beamfem.io.own_parts import NotImportedError
-    from beamfem.io.results import load
+    from beamfem.io.results_hdf5 import load
+    from beamfem.io.user_classes import NotImportedError
 
     try:
         return load(results)
@@ -88,8 +88,8 @@ def _described(path: Path, solution: "Solution") -> dict[str, Any]:
     """Return the contents of a results file as names, texts and numbers."""
     import h5py
 
+    from beamfem.io.descriptions import beam_in_words, part_in_words
     from beamfem.io.hdf5 import read_label
-    from beamfem.io.in_words import beam_in_words, part_in_words
 
     with h5py.File(path, "r") as file:
         version = read_label(file, "beamfem_version")

@@ -15,7 +15,7 @@ from typing import Annotated, Any
 
 import typer
 
-from beamfem.cli.examples import shipped
+from beamfem.cli.bundled_examples import shipped
 from beamfem.cli.report import AsJson, Quiet, print_json, reported
 
 

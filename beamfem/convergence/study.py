@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from beamfem import validation
-from beamfem.convergence.curve import Curve, judge
-from beamfem.convergence.expected import highest_order
-from beamfem.convergence.result import Convergence
+from beamfem.convergence.convergence_result import Convergence
+from beamfem.convergence.expected_order import highest_order
+from beamfem.convergence.refinement_curve import Curve, judge
 from beamfem.errors import InputError
 from beamfem.progress import progress
 from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, name_of, split

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.brief import brief
+from beamfem.cached_properties import cached_property
 from beamfem.curves.arc_length import ArcLength, measure
 from beamfem.curves.curve import along, numbers, points, turned, unit
 from beamfem.errors import InputError
-from beamfem.once import cached_property
+from beamfem.reprs import brief
 from beamfem.validation import convert, count, optional
 
 

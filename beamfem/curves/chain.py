@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.brief import brief
+from beamfem.cached_properties import cached_property
 from beamfem.curves.curve import GAP, Curve, along, turned
 from beamfem.errors import InputError
-from beamfem.once import cached_property
+from beamfem.reprs import brief
 from beamfem.validation import fulfils, items, shown
 
 

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.cached_properties import cached_property
 from beamfem.curves.arc_length import ArcLength, measure
 from beamfem.curves.bspline import BSpline
 from beamfem.curves.chebyshev import DEGREE, Panels, approximate, bernstein
 from beamfem.curves.curve import along, points, turned, unit
 from beamfem.errors import InputError
-from beamfem.once import cached_property
 from beamfem.validation import called, convert, finite, shown, vector
 
 PlaneFunction = Callable[[Any], Any]

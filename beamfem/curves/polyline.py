@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.brief import brief
+from beamfem.cached_properties import cached_property
 from beamfem.curves.curve import along, points, turned, unit
 from beamfem.errors import InputError
-from beamfem.once import cached_property
+from beamfem.reprs import brief
 
 
 @dataclass(frozen=True)

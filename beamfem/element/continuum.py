@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from beamfem.element.axis import Axis
-from beamfem.element.body import strain_of_measures
+from beamfem.element.body_strain import strain_of_measures
 from beamfem.element.coordinates import Coordinates, Gradients
 from beamfem.element.structural import section_frame
 from beamfem.element.uncoupled_stress import UncoupledStress

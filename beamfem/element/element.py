@@ -6,15 +6,15 @@ from typing import Any, Literal
 
 import numpy as np
 
+from beamfem.cached_properties import cached_property
 from beamfem.element import lobatto
 from beamfem.element.coordinates import Coordinates, Gradients, ShearFree, labels
 from beamfem.element.field_shapes import require_field
 from beamfem.element.fields import Cubic, Field
 from beamfem.element.forces import ElasticLine, Forces
-from beamfem.element.tables import Tables, tables_of
+from beamfem.element.shape_tables import Tables, tables_of
 from beamfem.errors import InputError
 from beamfem.kernels import block
-from beamfem.once import cached_property
 from beamfem.quadrature import gauss
 from beamfem.validation import one_of, optional, shown, text
 from beamfem.value_keys import by_value

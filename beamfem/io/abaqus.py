@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
+from beamfem.atomic_write import readable
 from beamfem.errors import InputError, NotReadWarning, warn
-from beamfem.files import readable
 from beamfem.io.mesh_file import MeshFile
 
 _STRAIGHT = re.compile(r"(T[23]D2|B[23][13]|PIPE[23]1|FRAME[23]D)")

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.io.scaled_arrays import scale, variable, write
-from beamfem.results.along import QUANTITIES, AxisPoints, rotation, section_forces
-from beamfem.results.many_beams import VALUES, LikeBeams, like_beams
+from beamfem.io.dimension_scales import scale, variable, write
+from beamfem.results.axis_fields import QUANTITIES, AxisPoints, rotation, section_forces
+from beamfem.results.batched_beams import VALUES, LikeBeams, like_beams
 from beamfem.results.solution import Solution
 
 AXES = "beams"

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.atomic_write import readable
 from beamfem.curves import Arc, BSpline, Chain, Curve, Line, Polyline, elliptic_arc
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
-from beamfem.files import readable
 from beamfem.validation import nearest, optional, text
 
 # distance from the plane z = 0, tilt and length of a piece that count as zero, as a fraction of the coordinates

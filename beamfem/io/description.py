@@ -12,15 +12,15 @@ from beamfem.element.element import Element
 from beamfem.element.fields import Cubic, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
 from beamfem.errors import InputError
-from beamfem.io.own_parts import made, name_of
+from beamfem.io.user_classes import made, name_of
 from beamfem.material import Material
 from beamfem.model.along_beam import AlongBeam, functions_along, jumps_along, kinks_along
 from beamfem.model.beam import Beam, Point
-from beamfem.model.listed_parts import listed_parts
-from beamfem.model.mesh import BeamMesh
+from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.model import Model
+from beamfem.model.parts_registry import listed_parts
 from beamfem.model.reference import energy_points, length_points, stations
-from beamfem.model.sampled import Sampled, SampledAlong, SampledSection
+from beamfem.model.sampled_functions import Sampled, SampledAlong, SampledSection
 from beamfem.model.time_functions import Interpolated
 from beamfem.section import Layer, Layered, Section, ShapedSection, StiffnessSection
 from beamfem.section.outline import RectangleOutline, TubeOutline

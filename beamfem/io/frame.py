@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from beamfem.brief import brief
 from beamfem.curves import BSpline, Chain, Curve, Line, Polyline
 from beamfem.errors import InputError
-from beamfem.io.chains import Piece, chains
+from beamfem.io.mesh_chains import Piece, chains
 from beamfem.model.beam import Beam, Point
 from beamfem.model.joints import Hinge, Joint, Rigid
+from beamfem.reprs import brief
 from beamfem.validation import count, items, one_of, require_known, shown, vector
 
 if TYPE_CHECKING:
-    from beamfem.io.mesh import LineMesh
+    from beamfem.io.line_mesh import LineMesh
 
 Members = Literal["cells", "chains"]
 _STRAIGHT = 1e-9  # of a chord: a smaller rise of the middle node is round-off

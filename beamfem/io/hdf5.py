@@ -11,9 +11,9 @@ from zlib import crc32
 import numpy as np
 
 from beamfem.assembly.callbacks import Deferred
+from beamfem.atomic_write import whole
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
-from beamfem.files import whole
 
 # object headers of this version have checksums; those of later ones mark a file whose writer was killed as unreadable
 _VERSIONS = ("v108", "v110")

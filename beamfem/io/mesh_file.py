@@ -10,7 +10,7 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
-from beamfem.io.ending_file import opened
+from beamfem.io.eof_guard import opened
 
 _DIMENSION = {"vertex": 0, "line": 1, "line3": 1}
 _NUMBERINGS = {"beam", "material", "section"}  # of the cells of centre lines that `Solution.to_vtk` wrote

@@ -8,11 +8,11 @@ import numpy as np
 
 from beamfem.extras import needed_for
 from beamfem.model.beam import Beam
+from beamfem.model.beam_names import names
 from beamfem.model.model import Model
-from beamfem.model.named import names
-from beamfem.results.along import QUANTITIES, AxisPoints, section_forces
+from beamfem.results.axis_fields import QUANTITIES, AxisPoints, section_forces
+from beamfem.results.batched_beams import LikeBeams, like_beams
 from beamfem.results.beam_stress import stress_at
-from beamfem.results.many_beams import LikeBeams, like_beams
 
 if TYPE_CHECKING:
     from beamfem.results.energies import Energy

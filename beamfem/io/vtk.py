@@ -14,12 +14,12 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from beamfem.assembly.callbacks import Deferred, uninterrupted
+from beamfem.atomic_write import make_folder, path_of, whole
 from beamfem.errors import FileError, InputError
 from beamfem.extras import needed_for
-from beamfem.files import make_folder, path_of, whole
-from beamfem.io.boundary import Boundary
-from beamfem.io.cells import LINE, Cells, Content, Geometry, Grid, times
-from beamfem.io.field_units import UNITS
+from beamfem.io.vtk_boundary import Boundary
+from beamfem.io.vtk_cells import LINE, Cells, Content, Geometry, Grid, times
+from beamfem.io.vtk_units import UNITS
 from beamfem.validation import items
 
 if TYPE_CHECKING:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamfem.io.cells import Grid, times
-from beamfem.io.field_units import UNITS
 from beamfem.io.hdf5 import write_hdf5
+from beamfem.io.vtk_cells import Grid, times
+from beamfem.io.vtk_units import UNITS
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import operation
-from beamfem.kernels.compiler.kinds import PAIRS, WHOLE, Value
+from beamfem.kernels.compiler.value_types import PAIRS, WHOLE, Value
 from beamfem.kernels.compiling import Routine, inlined, routine
 from beamfem.kernels.elimination import FAST, elimination
 from beamfem.kernels.pointers import at, room

@@ -5,9 +5,9 @@ ends that have prescribed coordinates, entries are not looked up then but added 
 """
 
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.lanes import COLUMNS, WIDTH, WRITES_PARTS, add_columns
 from beamfem.kernels.pointers import at
 from beamfem.kernels.record import ROW
+from beamfem.kernels.simd import COLUMNS, WIDTH, WRITES_PARTS, add_columns
 
 
 @inlined

@@ -17,8 +17,8 @@ from numpy import dtype, float64, int32, int64, ndarray
 
 from beamfem.kernels import cache
 from beamfem.kernels.compiler import machine
+from beamfem.kernels.compiler.bounds_checks import CHECKED, raise_violation
 from beamfem.kernels.compiler.callables import Inlined
-from beamfem.kernels.compiler.checks import CHECKED, raise_violation
 from beamfem.kernels.compiler.translation import translate
 from beamfem.kernels.pointers import address_of
 

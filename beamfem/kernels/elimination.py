@@ -5,8 +5,8 @@ the diagonal holds the inverse pivots. If the half width is known to the compile
 """
 
 from beamfem.kernels.compiling import Routine, inlined, routine
-from beamfem.kernels.lanes import WIDTH, as_rows, merged, power_of_two, zeros
 from beamfem.kernels.pointers import at
+from beamfem.kernels.simd import WIDTH, as_rows, merged, power_of_two, zeros
 
 FAST = {"contract", "reassoc", "nsz"}
 _IN_ORDER = {"contract", "nsz"}  # two multiplications with addition for a number, where reassociation takes three

@@ -4,9 +4,9 @@ Each table entry is a row of lanes, since the elements of a batch may all be dif
 """
 
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.lanes import WIDTH, zeros
 from beamfem.kernels.pointers import at, small_code
 from beamfem.kernels.record import ROW
+from beamfem.kernels.simd import WIDTH, zeros
 
 FAST = {"contract", "reassoc", "nsz"}
 

@@ -3,9 +3,9 @@
 from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.lanes import WIDTH, as_rows, merged, zeros
 from beamfem.kernels.pointers import at, reals, small_code, wholes
 from beamfem.kernels.record import LANES, ROW
+from beamfem.kernels.simd import WIDTH, as_rows, merged, zeros
 
 
 @inlined

@@ -6,10 +6,10 @@ row; reference: eps0.
 """
 
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.point import RATE, RESULTANT, STIFFNESS, STRAIN
 from beamfem.kernels.pointers import at, small_code
 from beamfem.kernels.record import ROW
+from beamfem.kernels.simd import WIDTH
 
 FAST = {"contract", "reassoc", "nsz"}
 

@@ -1,12 +1,13 @@
 """Stages of a time step; see `record` for the fields of the tables."""
 
-from beamfem.kernels import extrapolation, model_passes, motion_steps, rollers
+from beamfem.kernels import model_passes, motion_steps, rollers
 from beamfem.kernels import motion_record as m
+from beamfem.kernels import predictor as extrapolation
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.extrapolation import FAST
-from beamfem.kernels.lanes import WIDTH, as_rows
 from beamfem.kernels.pointers import at, caller, reals, slots, small_code, wholes
+from beamfem.kernels.predictor import FAST
+from beamfem.kernels.simd import WIDTH, as_rows
 
 _factor, _solve, _roll = caller("iisrr", "d"), caller("iirr"), caller("inrr")
 _rotate_pairs, _keep, _rotations = caller("idnirr"), caller("iiir"), caller("iiirr")

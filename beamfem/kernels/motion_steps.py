@@ -3,9 +3,8 @@
 import math
 
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.extrapolation import FAST, larger_of
-from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, zeros
 from beamfem.kernels.pointers import at, reals, small_code, wholes
+from beamfem.kernels.predictor import FAST, larger_of
 from beamfem.kernels.record import (
     CHUNKS,
     LANES,
@@ -22,6 +21,7 @@ from beamfem.kernels.record import (
     WEIGHT_A,
     WEIGHT_V,
 )
+from beamfem.kernels.simd import WIDTH, as_rows, larger, largest, zeros
 
 # of the tolerance: largest estimated error if the tangent is not that of the last iterate
 _REMAINDER = 1e-5

@@ -3,11 +3,11 @@
 from beamfem.kernels import record as r
 from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.lanes import WIDTH, as_rows
 from beamfem.kernels.nodes import put, take
 from beamfem.kernels.pointers import at, caller, reals, slots, small_code, wholes
 from beamfem.kernels.record import LANES, ROW
 from beamfem.kernels.reduction import add_node_forces
+from beamfem.kernels.simd import WIDTH, as_rows
 
 _rotate_frame, _rotate = caller("irrrrr"), caller("irrr")
 _clear, _place, _convect = caller("iir"), caller("ir"), caller("iddr")

@@ -3,9 +3,9 @@
 import numpy as np
 
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.lanes import WIDTH, as_rows, gathered
 from beamfem.kernels.pointers import at, small_code
 from beamfem.kernels.record import ROW
+from beamfem.kernels.simd import WIDTH, as_rows, gathered
 
 # pi / 2 as a sum of three parts, the first two with few digits, so that their products with integers are exact
 _PART_1, _PART_2, _PART_3 = 1.57079632673412561417, 6.07710050630396597660e-11, 2.02226624879595063154e-21

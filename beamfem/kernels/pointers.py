@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from llvmlite import ir
 
+from beamfem.kernels.compiler.bounds_checks import CHECKED, register
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import RESULTS, operation
-from beamfem.kernels.compiler.checks import CHECKED, register
-from beamfem.kernels.compiler.kinds import KINDS, REALS, SLOTS, WHOLES, Kind, Value
+from beamfem.kernels.compiler.value_types import KINDS, REALS, SLOTS, WHOLES, Kind, Value
 
 _PLACE = c_char * 0  # an array may be empty
 

@@ -6,9 +6,9 @@ numbered -1.
 """
 
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.lanes import WIDTH, as_rows
 from beamfem.kernels.pointers import at
 from beamfem.kernels.record import ROW
+from beamfem.kernels.simd import WIDTH, as_rows
 
 FAST = {"contract", "reassoc", "nsz"}
 

@@ -9,8 +9,8 @@ from scipy.linalg.lapack import dgetrf, dgetrs
 from scipy.sparse import coo_array, csc_array, csr_array
 
 from beamfem.linalg.lapack import LinAlgError
-from beamfem.linalg.saddle import SaddleTangent
 from beamfem.linalg.tangent import UNROTATED, BandTangent, Factorised, Rotated, SparseTangent
+from beamfem.precision.saddle import SaddleTangent
 
 
 class Border(NamedTuple):

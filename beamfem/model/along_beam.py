@@ -12,7 +12,7 @@ from beamfem.model.jumps import find_jumps
 from beamfem.validation import function_of_one, shown
 
 if TYPE_CHECKING:
-    from beamfem.model.load import Load
+    from beamfem.model.load_base import Load
 
 
 class AlongBeam(ABC):

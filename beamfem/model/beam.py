@@ -6,17 +6,17 @@ from typing import Literal, cast
 
 import numpy as np
 
+from beamfem.cached_properties import cached_property
 from beamfem.curves import BSpline, Curve, Line
 from beamfem.curves.curve import numbers
 from beamfem.element.element import Element
 from beamfem.element.fields import Cubic
 from beamfem.errors import InputError
 from beamfem.material import Material
+from beamfem.model.check_magnitudes import require_magnitudes
+from beamfem.model.check_section_law import require_law_fits
 from beamfem.model.damping import retardation_time
 from beamfem.model.jumps import find_jumps
-from beamfem.model.law_fits import require_law_fits
-from beamfem.model.magnitudes import require_magnitudes
-from beamfem.once import cached_property
 from beamfem.section.law import ConstitutiveLaw, law_of
 from beamfem.section.protocol import CrossSection
 from beamfem.section.thermal import expansion

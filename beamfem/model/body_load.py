@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from beamfem.model.load import Load
-from beamfem.model.placed import Displaced, Placed
-from beamfem.model.shapes import Acceleration, LoadShape
+from beamfem.model.load_base import Load
+from beamfem.model.load_shapes import Acceleration, LoadShape
+from beamfem.model.state_protocols import Displaced, Placed
 from beamfem.validation import squared, vector
 
 

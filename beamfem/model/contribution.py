@@ -6,9 +6,9 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from beamfem.brief import brief
 from beamfem.errors import InputError
 from beamfem.model.beam import Point, require_point
+from beamfem.reprs import brief
 from beamfem.validation import count, finite, flag, items
 
 

@@ -6,10 +6,10 @@ import numpy as np
 
 from beamfem.element.coordinates import Gradients
 from beamfem.model.along_beam import jumps_along
-from beamfem.model.grid import Grid
-from beamfem.model.imposed_strain import ImposedStrain
+from beamfem.model.beam_grid import Grid
+from beamfem.model.imposed_strain_base import ImposedStrain
+from beamfem.model.load_arrays import free_strain_of
 from beamfem.model.reference import energy_points, reference_axis
-from beamfem.model.returned import free_strain_of
 
 _THICKNESS = 3  # column of the thickness stretch
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.memory import USABLE_FRACTION, in_gib, installed_memory
+from beamfem.installed_memory import USABLE_FRACTION, in_gib, installed_memory
 from beamfem.validation import count, positive
 
 _ELEMENT = 64  # bytes per element: its fraction as a float in a tuple, and in intermediate arrays

@@ -9,8 +9,8 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.model.along_beam import ends_and_middle
 from beamfem.model.beam import Beam
-from beamfem.model.imposed_strain import ImposedStrain, require_followed
-from beamfem.model.load import Amplitude
+from beamfem.model.imposed_strain_base import ImposedStrain, require_followed
+from beamfem.model.load_base import Amplitude
 from beamfem.section.thermal import expands_evenly, thermal_strain
 
 Along = float | Callable[[float], float]

@@ -6,9 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from beamfem.model.mesh import BeamMesh
+from beamfem.cached_properties import cached_property
+from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.numbering import Nodes
-from beamfem.once import cached_property
 
 _NONE = np.empty(0)
 

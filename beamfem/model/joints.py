@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from beamfem.model.beam import Point, require_point_of
-from beamfem.model.shapes import JointShape, Ring
+from beamfem.model.load_shapes import JointShape, Ring
 from beamfem.validation import flag
 
 

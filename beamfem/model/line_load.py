@@ -10,10 +10,10 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.model.along_beam import AlongBeam, check_along, ends_and_middle
 from beamfem.model.beam import Beam, require_beam
-from beamfem.model.load import Load
-from beamfem.model.placed import Axes, Displaced, Placed, in_plane
-from beamfem.model.returned import forces_of
-from beamfem.model.shapes import ForcesAlong, LoadShape
+from beamfem.model.load_arrays import forces_of
+from beamfem.model.load_base import Load
+from beamfem.model.load_shapes import ForcesAlong, LoadShape
+from beamfem.model.state_protocols import Axes, Displaced, Placed, in_plane
 from beamfem.validation import called, flag, one_of, shown
 
 _ARROWS = 11  # along a beam

@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from beamfem.element.coordinates import labels
 from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS, ROTATION, STRETCH
-from beamfem.model.grid import Grid
+from beamfem.model.beam_grid import Grid
 from beamfem.model.reference import reference_angle
 
 Pairs = Sequence[tuple[int, ...]]

@@ -7,9 +7,9 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Point, require_point_of
-from beamfem.model.load import Load
-from beamfem.model.placed import Axes, Displaced, Placed, in_plane
-from beamfem.model.shapes import Force, LoadShape, Moment
+from beamfem.model.load_base import Load
+from beamfem.model.load_shapes import Force, LoadShape, Moment
+from beamfem.model.state_protocols import Axes, Displaced, Placed, in_plane
 from beamfem.validation import called, finite, flag, items, shown, squared
 
 

@@ -9,11 +9,11 @@ from beamfem.element.coordinates import across
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots, slots
 from beamfem.element.forces import Forces
+from beamfem.element.shape_tables import length_rule
 from beamfem.element.structural import section_frame
-from beamfem.element.tables import length_rule
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam
-from beamfem.model.grid import Grid
+from beamfem.model.beam_grid import Grid
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import of_package, shown
 

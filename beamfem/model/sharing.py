@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from beamfem.model.load import Load
+    from beamfem.model.load_base import Load
     from beamfem.model.model import Model
 
 

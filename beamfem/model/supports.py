@@ -6,7 +6,7 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
-from beamfem.model.support import LineSupport, PointSupport, Value
+from beamfem.model.support_base import LineSupport, PointSupport, Value
 from beamfem.validation import convert, finite, function_of_one, squared, vector
 
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.brief import brief
+from beamfem.cached_properties import cached_property
 from beamfem.curves.curve import numbers, points
 from beamfem.errors import InputError
-from beamfem.once import cached_property
+from beamfem.reprs import brief
 from beamfem.validation import function_of_one
 
 

@@ -191,15 +191,15 @@ def _module(title: str, functions: Sequence[str]) -> str:
     needs = "import math\n\n" if "math." in body else ""
     return (
         f'"""{title}\n\nA row has {ROW} numbers. Written by beamfem.physics.generate: do not edit.\n"""\n\n{needs}'
-        "from beamfem.kernels.compiling import routine\nfrom beamfem.kernels.lanes import WIDTH\n"
-        "from beamfem.kernels.pointers import at\n\n"
+        "from beamfem.kernels.compiling import routine\nfrom beamfem.kernels.pointers import at\n"
+        "from beamfem.kernels.simd import WIDTH\n\n"
         f'FAST = {{"contract", "reassoc", "nsz"}}\n\n\n{body}'
     )
 
 
 def sources() -> dict[str, str]:
     """Return the formatted source of all generated modules by file name."""
-    measures = {f"{measure.__name__}.py": measure_source(measure) for measure in MEASURES}
+    measures = {f"{measure.__name__}_pass.py": measure_source(measure) for measure in MEASURES}
     modules = measures | {f"{kind.name}_node.py": kinematics_source(kind) for kind in KINDS}
     return {name: _formatted(source) for name, source in modules.items()}
 

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from beamfem.cached_properties import cached_property
 from beamfem.model.beam import Beam, Point
-from beamfem.model.mesh import BeamMesh
+from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.reference import inertia_points, length_points, reference_axis, reference_position
-from beamfem.once import cached_property
 from beamfem.results import postprocess
-from beamfem.results.turns import rotations
+from beamfem.results.full_turns import rotations
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.brief import brief
 from beamfem.model.beam import Point
-from beamfem.model.load import Load, factor
+from beamfem.model.load_base import Load, factor
 from beamfem.model.model import Model
-from beamfem.results.connected import potential_of_connectors
+from beamfem.reprs import brief
+from beamfem.results.connector_results import potential_of_connectors
 from beamfem.results.displacements import Displacements
-from beamfem.results.loading import loading
+from beamfem.results.solution_system import loading
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution

@@ -10,7 +10,7 @@ from beamfem.assembly.equations import ROUND_OFF, residual, sizes
 from beamfem.assembly.system import System, system_of
 from beamfem.kernels.motion_record import MotionLimits
 from beamfem.model.time_functions import kinks_of
-from beamfem.results.connected import kinetic_of_connectors, potential_of_connectors
+from beamfem.results.connector_results import kinetic_of_connectors, potential_of_connectors
 from beamfem.results.energy_drift import FIRST, driven, with_rows
 from beamfem.results.resolution import resolved
 

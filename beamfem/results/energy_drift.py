@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamfem.assembly.system import system_of
-from beamfem.results.turns import start_rotations
+from beamfem.results.full_turns import start_rotations
 
 if TYPE_CHECKING:
     from beamfem.results.energies import Energy

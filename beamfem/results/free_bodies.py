@@ -11,13 +11,13 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from beamfem.assembly.blocks import classes_of
-from beamfem.assembly.points import elastic_forces
+from beamfem.assembly.stress_resultants import elastic_forces
 from beamfem.element.axis import cross, dot
 from beamfem.kernels.block import Block
-from beamfem.model.mesh import BeamMesh
+from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.reference import interpolate
-from beamfem.results.acting import Acting, Rows, acting_on, at_more_points
-from beamfem.results.distributions import fractions_before
+from beamfem.results.element_loads import Acting, Rows, acting_on, at_more_points
+from beamfem.results.lumped_values import fractions_before
 from beamfem.results.postprocess import direction
 
 

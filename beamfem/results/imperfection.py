@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 
 from beamfem.assembly.system import system_of
-from beamfem.brief import brief
 from beamfem.curves import Chain, Curve, spline_through_hermite
 from beamfem.element.coordinates import across
 from beamfem.errors import InputError
 from beamfem.model.along_beam import functions_along
 from beamfem.model.beam import Beam, Point
-from beamfem.model.load import Load
-from beamfem.model.mesh import BeamMesh
+from beamfem.model.beam_mesh import BeamMesh
+from beamfem.model.check_replaceable import require_remade
+from beamfem.model.load_base import Load
 from beamfem.model.model import Model
-from beamfem.model.remade import require_remade
+from beamfem.reprs import brief
 from beamfem.results.postprocess import axis, nodal_velocities
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import finite, number_below, of_package, shown, squared

@@ -8,14 +8,14 @@ from beamfem.assembly.system import System
 from beamfem.errors import InputError, LargeStrainWarning
 from beamfem.kernels.block import GREEN_LAGRANGE, STRUCTURAL
 from beamfem.material import Material
-from beamfem.model.distributions import layers
-from beamfem.model.mesh import BeamMesh
-from beamfem.model.named import beam_in_words
+from beamfem.model.beam_mesh import BeamMesh
+from beamfem.model.beam_names import beam_in_words
 from beamfem.model.reference import energy_points, energy_stiffness_at
+from beamfem.model.section_stress import layers
 from beamfem.results.beam_stress import peak_stress
 from beamfem.results.element_shapes import heights, pairs, rows_looked_at
 from beamfem.results.finding import Finding
-from beamfem.results.imposed import imposed_measures
+from beamfem.results.imposed_measures import imposed_measures
 from beamfem.results.nodal import axis, nodal_vectors
 from beamfem.section.protocol import CrossSection
 

@@ -14,18 +14,18 @@ from scipy.linalg import LinAlgError
 from beamfem.assembly.assembler import Equations
 from beamfem.assembly.blocks import build_block
 from beamfem.assembly.equations import STATICS, linearise, predicted_stresses, residual
-from beamfem.assembly.round_off import row_floors
 from beamfem.assembly.system import System, system_of
 from beamfem.element.coordinates import Gradients, ShearFree
 from beamfem.element.element import Element, has_stations
 from beamfem.errors import LockingWarning
 from beamfem.kernels.block import GREEN_LAGRANGE, Block
+from beamfem.model.beam_names import beam_in_words
 from beamfem.model.model import Model
-from beamfem.model.named import beam_in_words
+from beamfem.precision.roundoff import row_floors
 from beamfem.results import postprocess
 from beamfem.results.element_shapes import heights, pairs
 from beamfem.results.finding import Finding
-from beamfem.results.imposed import imposed_measures
+from beamfem.results.imposed_measures import imposed_measures
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution, State

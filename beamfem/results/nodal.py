@@ -6,7 +6,7 @@ import numpy as np
 
 from beamfem.element import coordinates
 from beamfem.element.axis import Axis
-from beamfem.model.mesh import BeamMesh
+from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.reference import interpolate
 
 

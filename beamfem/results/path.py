@@ -6,14 +6,14 @@ from typing import Any, SupportsIndex, overload
 
 import numpy as np
 
+from beamfem.cached_properties import cached_property
 from beamfem.model.beam import Beam, Point
-from beamfem.once import cached_property
-from beamfem.results.fitting import require_crossing
+from beamfem.results.check_arrays import require_crossing
+from beamfem.results.full_turns import start_rotations
 from beamfem.results.postprocess import Components, Fields
 from beamfem.results.section_forces import SectionForces
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
-from beamfem.results.turns import start_rotations
 
 _SHOWN = 6  # critical points of each kind in the text of a path
 

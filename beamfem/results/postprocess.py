@@ -5,13 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.brief import brief
-from beamfem.element import body, coordinates
+from beamfem.element import body_strain as body
+from beamfem.element import coordinates
 from beamfem.element.axis import Axis, cross, dot
 from beamfem.element.structural import section_frame
 from beamfem.element.thickness_law import THICKNESS, ThicknessLaw
-from beamfem.model.distributions import distributions
-from beamfem.model.mesh import BeamMesh
+from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.reference import (
     energy_points,
     energy_stiffness_at,
@@ -20,6 +19,8 @@ from beamfem.model.reference import (
     reference_axis,
     reference_position,
 )
+from beamfem.model.section_stress import distributions
+from beamfem.reprs import brief
 from beamfem.results.nodal import axis, axis_at, has_angles, nodal_angles, nodal_vectors, nodal_velocities
 from beamfem.section.law import ConstitutiveLaw
 

@@ -10,9 +10,9 @@ from beamfem.assembly.prescribed import COORDINATES, coordinate_of
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
-from beamfem.model.support import PointSupport
-from beamfem.results.last_digits import exactly
-from beamfem.results.loading import loading
+from beamfem.model.support_base import PointSupport
+from beamfem.results.roundoff_corrections import exactly
+from beamfem.results.solution_system import loading
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution

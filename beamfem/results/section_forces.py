@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
-from beamfem.brief import brief
 from beamfem.model.beam import Beam
-from beamfem.model.mesh import BeamMesh
-from beamfem.results.acting import Rows, rows_of
+from beamfem.model.beam_mesh import BeamMesh
+from beamfem.reprs import brief
+from beamfem.results.element_loads import Rows, rows_of
 from beamfem.results.extremes import Measure, extreme
 from beamfem.results.free_bodies import Cuts, Parted, cut_free, parted
-from beamfem.results.last_digits import exactly
-from beamfem.results.loading import loading
-from beamfem.results.neighbours import of_beam
+from beamfem.results.neighbouring_beams import of_beam
 from beamfem.results.peak import Force, Part, Peak
+from beamfem.results.roundoff_corrections import exactly
+from beamfem.results.solution_system import loading
 from beamfem.units import Units, units_of
 from beamfem.validation import require_known, shown
 

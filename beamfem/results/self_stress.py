@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem.model.along_beam import jumps_along
+from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.joined_mesh import JoinedMesh
-from beamfem.model.mesh import BeamMesh
-from beamfem.model.returned import heat_of
-from beamfem.results.loading import imposing
+from beamfem.model.load_arrays import heat_of
+from beamfem.results.solution_system import imposing
 from beamfem.section.protocol import CrossSection
 from beamfem.section.thermal import expands_evenly, thermal_strain
 

@@ -8,29 +8,29 @@ from typing import Any, Literal, SupportsIndex, TypeVar, overload
 
 import numpy as np
 
-from beamfem.brief import brief
+from beamfem.cached_properties import cached_property
 from beamfem.curves import BSpline, spline_through_hermite, without_removable_knots
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import Contribution
 from beamfem.model.model import Model
-from beamfem.once import cached_property
+from beamfem.reprs import brief
 from beamfem.results import postprocess
 from beamfem.results.beam_stress import BeamStress, Part, Peak, beam_stress, peak_stress
-from beamfem.results.checks import findings
-from beamfem.results.connected import connector_force, kinetic_of_connectors, momenta_of_connectors, multipliers
+from beamfem.results.check_arrays import made_read_only, require_rows, require_state
+from beamfem.results.connector_results import connector_force, kinetic_of_connectors, momenta_of_connectors, multipliers
 from beamfem.results.energies import Energy, dissipated, potential
 from beamfem.results.energy_drift import EnergyDrift, energy_drift
-from beamfem.results.fitting import made_read_only, require_rows, require_state
-from beamfem.results.imposed import imposed_measures
-from beamfem.results.last_digits import remainders
+from beamfem.results.full_turns import rotations, start_rotations, turned_of
+from beamfem.results.imposed_measures import imposed_measures
 from beamfem.results.nodal import rate_at
 from beamfem.results.postprocess import Fields
 from beamfem.results.reactions import reaction, support_forces
+from beamfem.results.roundoff_corrections import remainders
 from beamfem.results.section_forces import Cuts, SectionForces, at_points, section_forces
 from beamfem.results.self_stress import self_stress
+from beamfem.results.solution_checks import findings
 from beamfem.results.status import Statistics, Status, counted
-from beamfem.results.turns import rotations, start_rotations, turned_of
 from beamfem.validation import number_below, shown, whole
 
 _Value = TypeVar("_Value")
@@ -570,7 +570,7 @@ class Solution:
         --------
         >>> figure = solution.plot_history(beam.end, "uy", "tip.png")
         """
-        from beamfem.view.history import plot_history
+        from beamfem.view.history_curves import plot_history
 
         return plot_history(self, point, quantity, path)
 
@@ -606,7 +606,7 @@ class Solution:
         --------
         >>> figure = solution.plot_curve(("uy", beam.end), ("fy", beam.start), "curve.png")
         """
-        from beamfem.view.curve import plot_curve
+        from beamfem.view.quantity_curve import plot_curve
 
         return plot_curve(self, x, y, path)
 
@@ -631,7 +631,7 @@ class Solution:
         --------
         >>> figure = solution.plot_load_displacement(beam.end, "uy", "path.png")
         """
-        from beamfem.view.history import plot_load_displacement
+        from beamfem.view.history_curves import plot_load_displacement
 
         return plot_load_displacement(self, point, quantity, path)
 
@@ -710,7 +710,7 @@ class Solution:
         --------
         >>> window = solution.show(colour="moment")  # doctest: +SKIP
         """
-        from beamfem.view.body import show
+        from beamfem.view.solid_pyvista import show
 
         return show(self, colour=colour, size=size)
 
@@ -742,7 +742,7 @@ class Solution:
         --------
         >>> picture = solution.picture("body.png", row=-1, colour="stress")  # doctest: +SKIP
         """
-        from beamfem.view.body import picture
+        from beamfem.view.solid_pyvista import picture
 
         return picture(self, path, colour=colour, size=size, row=row)
 
@@ -842,7 +842,7 @@ class Solution:
         --------
         >>> solution.save("cantilever.h5")
         """
-        from beamfem.io.results import save
+        from beamfem.io.results_hdf5 import save
 
         save(self, path)
 

@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamfem.cached_properties import cached_property
 from beamfem.element.axis import Axis
-from beamfem.model.mesh import BeamMesh
-from beamfem.once import cached_property
+from beamfem.model.beam_mesh import BeamMesh
 from beamfem.results import postprocess
+from beamfem.results.full_turns import turned_of
 from beamfem.results.nodal import axis_at
-from beamfem.results.turns import turned_of
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution

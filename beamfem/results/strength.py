@@ -3,7 +3,7 @@
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.model.grid import Grid
+from beamfem.model.beam_grid import Grid
 from beamfem.model.reference import sections_at
 from beamfem.section.protocol import CrossSection
 

@@ -3,8 +3,8 @@
 from beamfem.section.law import RememberingLaw, SectionLaw
 from beamfem.section.layered import Layer, Layered
 from beamfem.section.moments import Section
-from beamfem.section.shapes import Circle, Rectangle, ShapedSection, Tube
-from beamfem.section.stiffness import StiffnessSection
+from beamfem.section.section_shapes import Circle, Rectangle, ShapedSection, Tube
+from beamfem.section.section_stiffness import StiffnessSection
 
 __all__ = [
     "Circle",

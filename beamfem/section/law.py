@@ -6,9 +6,9 @@ from typing import Any, Protocol, cast, runtime_checkable
 
 import numpy as np
 
+from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
 from beamfem.material import Material
-from beamfem.once import cached_property
 from beamfem.validation import called, finite, fulfils, items
 
 COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.brief import brief
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.quadrature import gauss_between
+from beamfem.reprs import brief
 from beamfem.section.outline import Part, RectangleOutline
 from beamfem.section.protocol import Inertia, Rigidity
 from beamfem.validation import convert, finite, items, positive, shown

@@ -9,7 +9,7 @@ from beamfem.material import Material
 from beamfem.quadrature import gauss_between
 from beamfem.section.outline import MomentsOutline, Part
 from beamfem.section.protocol import Inertia, Rigidity
-from beamfem.section.stiffness import StiffnessSection
+from beamfem.section.section_stiffness import StiffnessSection
 from beamfem.validation import convert, positive
 
 _ROUNDING = 1e-9  # relative, of values from tables

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.memory import USABLE_FRACTION, in_gib, installed_memory
+from beamfem.installed_memory import USABLE_FRACTION, in_gib, installed_memory
 from beamfem.results.solution import Solution
 from beamfem.validation import nearest
 

@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 
 import __main__
+from beamfem.atomic_write import path_of
 from beamfem.errors import ChangedCodeWarning, FileError, InputError, MissingPackageError, NotStoredWarning, warn
-from beamfem.files import path_of
-from beamfem.io.results import load
+from beamfem.io.results_hdf5 import load
 from beamfem.results.solution import Solution
 from beamfem.sweeps.code_digest import code_digests
 from beamfem.sweeps.keys import global_digests, point_key

@@ -9,8 +9,8 @@ import numpy as np
 
 from beamfem.progress import progress
 from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, name_of, split
-from beamfem.sweeps.result import Sweep
 from beamfem.sweeps.result_cache import ResultCache
+from beamfem.sweeps.sweep_result import Sweep
 from beamfem.sweeps.tasks import Failure, TaskRunner
 from beamfem.sweeps.workers import ExecutorFactory, Outcome
 from beamfem.validation import flag

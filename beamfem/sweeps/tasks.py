@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Any
 
-from beamfem.brief import brief
+from beamfem.reprs import brief
 from beamfem.sweeps.workers import ExecutorFactory, Outcome, Point, call, call_all, end_workers, open_executor, workers
-from beamfem.tabulate import cut
+from beamfem.tables import cut
 
 _LONGEST = 600  # characters of a failure, whose `error` has all
 _CHUNK_SECONDS = 0.05  # sending a chunk costs about 0.3 ms

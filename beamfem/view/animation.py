@@ -7,17 +7,17 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.atomic_write import path_of, whole
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
-from beamfem.files import path_of, whole
 from beamfem.results.solution import Solution
 from beamfem.validation import count, flag, positive
-from beamfem.view.acting import FORCE, draw_loads
+from beamfem.view.deformed_shapes import FIELD_COLOURS, Shapes, draw_undeformed, shade
 from beamfem.view.drawing import LINE, bar, equal_axes, legend_above
 from beamfem.view.frames import moment_of, spread_rows
-from beamfem.view.shapes import FIELD_COLOURS, Shapes, draw_undeformed, shade
-from beamfem.view.supports import PRESCRIBED, draw_joints, draw_supports
-from beamfem.view.written import WrittenFile
+from beamfem.view.load_drawing import FORCE, draw_loads
+from beamfem.view.notebook_paths import WrittenFile
+from beamfem.view.support_symbols import PRESCRIBED, draw_joints, draw_supports
 
 _POINTS = 600  # of all beams; what moves in a small picture needs no more
 _FINEST = 1000  # pixels an inch: pictures of some inches have a hundred million

@@ -10,12 +10,12 @@ from beamfem.errors import InputError
 from beamfem.results.path import Path
 from beamfem.results.solution import Solution
 from beamfem.validation import count, flag
-from beamfem.view.acting import draw_loads
-from beamfem.view.extreme import extreme_of
+from beamfem.view.deformed_shapes import FIELD_COLOURS, ORIGINAL, Shapes, draw_undeformed, shade
+from beamfem.view.field_extreme import extreme_of
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
+from beamfem.view.load_drawing import draw_loads
 from beamfem.view.plots import empty_figure, quiet, save_figure
-from beamfem.view.shapes import FIELD_COLOURS, ORIGINAL, Shapes, draw_undeformed, shade
-from beamfem.view.supports import draw_joints, draw_supports
+from beamfem.view.support_symbols import draw_joints, draw_supports
 
 _ROOM = 0.45  # [inch] around the shapes for symbols and arrows
 _LONGER_SIDE = 5.6  # [inch]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.results.along import AxisPoints
+from beamfem.results.axis_fields import AxisPoints
 from beamfem.results.path import Path
 from beamfem.results.solution import Solution
 

@@ -9,10 +9,10 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.results.solution import Solution
 from beamfem.validation import count
+from beamfem.view.deformed_shapes import Shapes, draw_undeformed
 from beamfem.view.drawing import entry, frame
 from beamfem.view.plots import empty_figure, save_figure
-from beamfem.view.shapes import Shapes, draw_undeformed
-from beamfem.view.supports import draw_joints, draw_supports
+from beamfem.view.support_symbols import draw_joints, draw_supports
 
 if TYPE_CHECKING:
     from beamfem.solve.modes.modes import Modes

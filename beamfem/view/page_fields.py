@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from beamfem.model.joined_mesh import join
-from beamfem.results.along import QUANTITIES, AxisPoints, section_forces
+from beamfem.results.axis_fields import QUANTITIES, AxisPoints, section_forces
+from beamfem.results.batched_beams import of_each
 from beamfem.results.beam_stress import stress_at
-from beamfem.results.many_beams import of_each
 from beamfem.results.solution import Solution
-from beamfem.view.shapes import Shapes, limits
+from beamfem.view.deformed_shapes import Shapes, limits
 
 _FORCES = ("moment", "normal", "shear")
 # names of fields and of the parts of `BeamStress`

@@ -5,11 +5,11 @@ from typing import Any, assert_never
 import numpy as np
 
 from beamfem.model.beam import Beam
-from beamfem.model.load import factor
-from beamfem.model.shapes import Acceleration, Force, ForcesAlong, Moment, Strains
-from beamfem.results.loading import loading
-from beamfem.view.placed import PlacedRow
-from beamfem.view.shapes import Shapes
+from beamfem.model.load_base import factor
+from beamfem.model.load_shapes import Acceleration, Force, ForcesAlong, Moment, Strains
+from beamfem.results.solution_system import loading
+from beamfem.view.deformed_shapes import Shapes
+from beamfem.view.load_symbols import PlacedRow
 
 _LONGEST, _SHORTEST, _SPREAD = 40.0, 18.0, 26.0  # [pixels]: the largest force, a small one, loads along beams
 _MOST = 40_000  # numbers of arrows on a page

@@ -9,17 +9,17 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.atomic_write import path_of, whole
 from beamfem.errors import InputError
-from beamfem.files import path_of, whole
 from beamfem.results.solution import Solution
 from beamfem.validation import count, optional, text
+from beamfem.view.deformed_shapes import Shapes
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
+from beamfem.view.notebook_paths import WrittenFile
 from beamfem.view.page_fields import FURTHER, as_text, fields_of, names_of
 from beamfem.view.page_loads import loads_of
-from beamfem.view.shapes import Shapes
 from beamfem.view.summary import model_rows, solution_rows
-from beamfem.view.supports import joints_of, supports_of
-from beamfem.view.written import WrittenFile
+from beamfem.view.support_symbols import joints_of, supports_of
 
 _BYTES = 560_000  # of numbers in a page; as text they grow by a third
 _LEVELS = 65534  # into which the box of all shapes is cut

@@ -4,9 +4,9 @@ from os import PathLike
 from typing import Any
 
 from beamfem.assembly.callbacks import uninterrupted
+from beamfem.atomic_write import path_of, whole
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
-from beamfem.files import path_of, whole
 
 # Paul Tol's bright palette: told apart by the colour-blind and in grey print
 COLOURS = ("#4477AA", "#EE6677", "#228833", "#CCBB44", "#66CCEE", "#AA3377", "#BBBBBB")
@@ -18,7 +18,7 @@ def empty_figure(width: float, height: float, layout: Any = "constrained") -> An
     with needed_for("a picture"):
         from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-        from beamfem.view.figure import ShownFigure
+        from beamfem.view.notebook_figure import ShownFigure
     figure = ShownFigure(figsize=(width, height), layout=layout, dpi=100)
     FigureCanvasAgg(figure)
     return figure

@@ -10,7 +10,7 @@ from beamfem.results.beam_stress import PARTS, BeamStress
 from beamfem.results.energies import Energy
 from beamfem.results.peak import Force
 from beamfem.results.section_forces import SectionForces, extreme_force
-from beamfem.tabulate import as_html
+from beamfem.tables import as_html
 from beamfem.validation import shown
 from beamfem.view.summary import largest_displacement, model_rows
 

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamfem.model.beam_names import names
 from beamfem.model.model import Model
-from beamfem.model.named import names
 from beamfem.solve.motion.period_error import lengthened_period
-from beamfem.tabulate import as_html
-from beamfem.view.places import place
+from beamfem.tables import as_html
+from beamfem.view.point_text import place
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.lanes import WIDTH
+from beamfem.kernels.simd import WIDTH
 
 _LARGE, _SMALL = 8_000_000, 12_000  # doubles of each of three arrays: beyond the caches, and within the second level
 _DEPTH = 16  # multiply-adds after one another on each number of a vector

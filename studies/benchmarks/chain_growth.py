@@ -17,7 +17,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 import beamfem as bf
-from beamfem.tabulate import as_text, write_csv
+from beamfem.tables import as_text, write_csv
 from studies.benchmarks.peer_cases import STRUCTURAL, cantilever, pendulum, static_error
 
 OUT = Path("out/bench")

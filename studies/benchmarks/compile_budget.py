@@ -14,7 +14,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from beamfem.tabulate import as_text, write_csv
+from beamfem.tables import as_text, write_csv
 
 OUT = Path("out/bench")
 HEADER = ("kernel", "s")
@@ -25,7 +25,7 @@ _IMPORTS += "b = time.process_time(); import beamfem; c = time.process_time(); p
 def first_solves() -> dict[str, Any]:
     """Solve first problems one after the other; return seconds of each and of each kernel that was compiled."""
     import beamfem as bf
-    from beamfem.assembly.compiled import compiled_here
+    from beamfem.assembly.compilation_notice import compiled_here
 
     section, material = bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0)
 

@@ -9,7 +9,7 @@ from itertools import count
 from pathlib import Path
 
 import beamfem as bf
-from beamfem.tabulate import as_text, write_csv
+from beamfem.tables import as_text, write_csv
 from studies.benchmarks.peer_cases import STRUCTURAL
 from studies.benchmarks.peer_clock import in_turns
 

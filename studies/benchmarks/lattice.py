@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 import beamfem as bf
-from beamfem.io.mesh import read_mesh
+from beamfem.io.line_mesh import read_mesh
 from beamfem.results.postprocess import nodal_vectors
 from beamfem.view.plots import new_figure, save_figure
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from beamfem.tabulate import as_text, write_csv
+from beamfem.tables import as_text, write_csv
 
 OUT = Path("out/bench")
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 from beamfem.kernels.model_passes import balance
-from beamfem.tabulate import as_text, write_csv
+from beamfem.tables import as_text, write_csv
 from studies.benchmarks.ceilings import Ceilings, least_seconds, measure
 from studies.benchmarks.flop_counts import count_all
 from studies.benchmarks.roofline_cases import (

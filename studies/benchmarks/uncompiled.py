@@ -15,7 +15,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import beamfem.kernels
-from beamfem.kernels import lanes, nodes, pairs, pointers
+from beamfem.kernels import nodes, pointers
+from beamfem.kernels import simd as lanes
+from beamfem.kernels import simd_pairs as pairs
 from beamfem.kernels.compiler.callables import Inlined, Operation
 from beamfem.kernels.compiling import Routine
 

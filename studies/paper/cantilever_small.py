@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 import beamfem as bf
-from beamfem.convergence.orders import fit_order
-from beamfem.view.page import Entry, Part, Table
+from beamfem.convergence.observed_order import fit_order
+from beamfem.view.html_page import Entry, Part, Table
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 from studies.paper.elastica import tip_displacement
 from studies.paper.terminal import show

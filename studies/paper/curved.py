@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 
 import beamfem as bf
-from beamfem.convergence.orders import fit_order
+from beamfem.convergence.observed_order import fit_order
 from beamfem.element.coordinates import Gradients
 from beamfem.element.fields import Lagrange
-from beamfem.view.page import Entry, Part, Table
+from beamfem.view.html_page import Entry, Part, Table
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 from studies.paper.elastica import tip_displacement
 from studies.paper.terminal import show

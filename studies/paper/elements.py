@@ -15,11 +15,11 @@ from pathlib import Path
 import numpy as np
 
 import beamfem as bf
-from beamfem.convergence.extrapolation import extrapolate
-from beamfem.convergence.orders import fit_order, order_of_three
+from beamfem.convergence.limit_estimate import extrapolate
+from beamfem.convergence.observed_order import fit_order, order_of_three
 from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.fields import Cubic, Lagrange
-from beamfem.view.page import Entry, Part, Table
+from beamfem.view.html_page import Entry, Part, Table
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 from studies.paper.elastica import tip_displacement
 from studies.paper.terminal import show

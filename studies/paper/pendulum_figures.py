@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from beamfem.view.page import Entry, Table
+from beamfem.view.html_page import Entry, Table
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 from studies.paper.pendulum import Run
 

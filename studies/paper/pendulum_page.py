@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from beamfem.view.page import Part
+from beamfem.view.html_page import Part
 from studies.paper import pendulum
 from studies.paper.pendulum_figures import FIGURES, draw, table_of_times
 

@@ -18,7 +18,7 @@ import beamfem as bf
 from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.fields import Cubic, Lagrange
 from beamfem.element.forces import Forces
-from beamfem.view.page import Entry, Part, Table
+from beamfem.view.html_page import Entry, Part, Table
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 from studies.paper.terminal import show
 

@@ -1,7 +1,7 @@
 """A study's part of the page as text."""
 
-from beamfem.tabulate import as_text
-from beamfem.view.page import Part
+from beamfem.tables import as_text
+from beamfem.view.html_page import Part
 
 
 def show(part: Part) -> None:

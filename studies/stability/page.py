@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from beamfem.view.page import Entry, Part, Table
+from beamfem.view.html_page import Entry, Part, Table
 from studies.stability import becks_column, column, deep_arches, follower_cantilever, lee_frame, williams_toggle
 
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from llvmlite import ir
 
+from beamfem.kernels.compiler.bounds_checks import CHECKED
 from beamfem.kernels.compiler.build import Build
-from beamfem.kernels.compiler.checks import CHECKED
-from beamfem.kernels.compiler.kinds import FLAG, LANES, NUMBER, WHOLE, WIDTH, Kind, Value
+from beamfem.kernels.compiler.value_types import FLAG, LANES, NUMBER, WHOLE, WIDTH, Kind, Value
 
 _OF_WHOLES = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul"}
 _OF_NUMBERS = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}

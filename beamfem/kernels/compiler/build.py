@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 from llvmlite import ir
 
-from beamfem.kernels.compiler.checks import CHECKED
-from beamfem.kernels.compiler.kinds import (
+from beamfem.kernels.compiler.bounds_checks import CHECKED
+from beamfem.kernels.compiler.value_types import (
     FLAG,
     LANES,
     NUMBER,

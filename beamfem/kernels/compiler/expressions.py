@@ -10,7 +10,7 @@ from llvmlite import ir
 from beamfem.kernels.compiler.arithmetic import FUNCTIONS, combined, compared, negative
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import Inlined, Operation
-from beamfem.kernels.compiler.kinds import FLAG, NUMBER, WHOLE, Value
+from beamfem.kernels.compiler.value_types import FLAG, NUMBER, WHOLE, Value
 
 # what an operand of a comparison must not contain where Python might not evaluate it
 _MAY_FAIL = (ast.Call, ast.Subscript, ast.FloorDiv, ast.Mod)

@@ -8,7 +8,7 @@ from functools import cache
 from llvmlite import binding as llvm
 from llvmlite import ir
 
-from beamfem.kernels.compiler.checks import CHECKED, SYMBOLS
+from beamfem.kernels.compiler.bounds_checks import CHECKED, SYMBOLS
 
 SYMBOL = "kernel"  # name of the only function of each module
 # functions of the C library that LLVM calls if the processor has no instruction, and for loops that copy or clear

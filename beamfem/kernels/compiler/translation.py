@@ -30,8 +30,8 @@ from beamfem.kernels.compiler.arithmetic import combined
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import RESULTS, Inlined
 from beamfem.kernels.compiler.expressions import Scope, index_of, object_of, one_value, truth, values
-from beamfem.kernels.compiler.kinds import KINDS, WHOLE, Value
 from beamfem.kernels.compiler.source import definition, outside
+from beamfem.kernels.compiler.value_types import KINDS, WHOLE, Value
 
 
 def translate(

@@ -6,8 +6,8 @@ A row has 72 numbers. Written by beamfem.physics.generate: do not edit.
 """
 
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.pointers import at
+from beamfem.kernels.simd import WIDTH
 
 FAST = {"contract", "reassoc", "nsz"}
 

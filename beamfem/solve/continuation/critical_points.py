@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.once import cached_property
+from beamfem.cached_properties import cached_property
 from beamfem.solve.continuation.continuation import Continuation, PathPoint
 from beamfem.solve.newton.convergence import balance_of
 

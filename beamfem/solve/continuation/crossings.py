@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.assembly.equations import STATICS, linearise, residual
-from beamfem.once import cached_property
+from beamfem.cached_properties import cached_property
 from beamfem.solve.continuation.condensed import Condensed
 from beamfem.solve.continuation.continuation import Continuation, PathPoint
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError, interpolation_weights

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from beamfem.assembly.equations import STATICS, linearise, predicted_stresses
-from beamfem.assembly.points import free_group, resultants
+from beamfem.assembly.stress_resultants import free_group, resultants
 from beamfem.assembly.system import System
 from beamfem.linalg.tangent import UNROTATED
 

@@ -6,28 +6,28 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.assembly.round_off import LOSES
 from beamfem.assembly.system import Proven, system_of
+from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
 from beamfem.linalg.eigenpairs import Pairs, digits_for, nothing_known
 from beamfem.linalg.general_pairs import general_pairs
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
-from beamfem.once import cached_property
-from beamfem.results.checks import may_lock, warn_of
+from beamfem.precision.roundoff import LOSES
 from beamfem.results.locking import frequency_locking
 from beamfem.results.solution import Solution, State
+from beamfem.results.solution_checks import may_lock, warn_of
 from beamfem.results.status import Statistics, Status, counted
-from beamfem.solve.modes.lowest import WRONG, lowest_pairs
+from beamfem.solve.modes.lowest_modes import WRONG, lowest_pairs
+from beamfem.solve.modes.mode_sizes import largest_translation, upright
 from beamfem.solve.modes.pencil import Pencil
-from beamfem.solve.modes.rigid import unresisted
-from beamfem.solve.modes.shapes import largest_translation, upright
-from beamfem.solve.start.balance import left_over
-from beamfem.solve.start.memory import require_room
+from beamfem.solve.modes.rigid_modes import unresisted
+from beamfem.solve.start.check_states_memory import require_room
+from beamfem.solve.start.equilibrium_check import left_over
 from beamfem.solve.start.multipliers import refuse_dampers, refuse_multipliers
 from beamfem.solve.start.start_state import resting_state
-from beamfem.tabulate import as_pandas
+from beamfem.tables import as_pandas
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
 

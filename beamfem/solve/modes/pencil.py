@@ -7,10 +7,10 @@ from scipy.linalg import LinAlgError
 from scipy.sparse import csr_array
 
 from beamfem.assembly.equations import INERTIA, STATICS, linearise, residual, with_stresses
-from beamfem.assembly.round_off import LAST_DIGITS, lost_digits
 from beamfem.assembly.system import Proven, System
+from beamfem.cached_properties import cached_property
 from beamfem.linalg.tangent import UNROTATED, Factorised, Stresses, Tangent
-from beamfem.once import cached_property
+from beamfem.precision.roundoff import LAST_DIGITS, lost_digits
 
 _RANGE = 80.0  # logarithm of the largest ratio of eigenvalues
 _AWAY = 0.75  # of a shift: least distance of an eigenvalue from it

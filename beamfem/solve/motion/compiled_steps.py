@@ -6,12 +6,12 @@ from beamfem.assembly.callbacks import Deferred
 from beamfem.assembly.motion_workspace import MotionWorkspace
 from beamfem.assembly.system import System
 from beamfem.kernels import record
-from beamfem.kernels.march import march
 from beamfem.kernels.motion_record import TIME_STEP
 from beamfem.kernels.pointers import address_of
+from beamfem.kernels.time_loop import march
 from beamfem.solve.motion.coupled_stages import CoupledStages
-from beamfem.solve.motion.limits import BAND, BORDERED, SPARSE, not_converged
-from beamfem.solve.motion.saving import Saving
+from beamfem.solve.motion.step_tolerances import BAND, BORDERED, SPARSE, not_converged
+from beamfem.solve.motion.stored_states import Saving
 
 
 class CompiledSteps:

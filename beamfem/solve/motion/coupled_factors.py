@@ -10,8 +10,8 @@ from beamfem.assembly.system import System
 from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 from beamfem.kernels.pointers import address_of
 from beamfem.linalg.bordered import BorderedFactors, border_of
-from beamfem.linalg.saddle import SaddleTangent
 from beamfem.linalg.tangent import UNROTATED, Factorised, SparseTangent
+from beamfem.precision.saddle import SaddleTangent
 
 # smallest ratio of a pivot to the original diagonal entry with which a band alone has digits enough to be bordered
 _WEAK = 1e-10

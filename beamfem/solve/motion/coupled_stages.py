@@ -10,7 +10,7 @@ from beamfem.assembly.callbacks import Deferred, KeptErrors
 from beamfem.assembly.motion_workspace import MotionWorkspace
 from beamfem.assembly.system import System
 from beamfem.kernels import motion_stages, record, rollers
-from beamfem.kernels.march import march
+from beamfem.kernels.time_loop import march
 from beamfem.linalg.lapack import LinAlgError
 from beamfem.solve.motion.coupled_factors import BandFactorisation, CoupledFactors, SparseFactorisation
 

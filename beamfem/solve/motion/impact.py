@@ -4,7 +4,7 @@ import numpy as np
 
 from beamfem.assembly.equations import INERTIA, linearise, residual
 from beamfem.assembly.system import System
-from beamfem.solve.motion.conditions import constrained_acceleration
+from beamfem.solve.motion.constraints import constrained_acceleration
 
 
 def impact(system: System, p: np.ndarray, change: np.ndarray) -> np.ndarray:

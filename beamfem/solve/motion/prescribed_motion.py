@@ -6,7 +6,7 @@ import numpy as np
 
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
-from beamfem.model.sampled import Sampled
+from beamfem.model.sampled_functions import Sampled
 
 _ORDER = 4  # of the filter
 _WIDTH = 0.02  # of a step: width of the differences that give velocities

@@ -4,11 +4,11 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.assembly.band_workspace import band_workspace
-from beamfem.assembly.round_off import load_size
 from beamfem.assembly.system import System
 from beamfem.kernels import newton_record as r
-from beamfem.kernels.newton import count_after_step, iterate
+from beamfem.kernels.newton_loop import count_after_step, iterate
 from beamfem.linalg.tangent import SMALLEST_PIVOT
+from beamfem.precision.roundoff import load_size
 from beamfem.solve.newton.convergence import LARGEST, STAGNANT, Balance, Correction
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.newton.prescribed_step import PrescribedStep

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from beamfem.assembly.equations import STATICS, residual
-from beamfem.assembly.round_off import MOST_DIGITS, load_size, row_floors
 from beamfem.assembly.system import System
+from beamfem.precision.roundoff import MOST_DIGITS, load_size, row_floors
 from beamfem.solve.newton.iteration import Newton, Termination
 
 STAGNANT = 1e-6  # corrections below this that no longer decrease are round-off, if the residual agrees

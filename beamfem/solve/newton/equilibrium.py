@@ -7,7 +7,7 @@ import numpy as np
 from beamfem.assembly.system import System
 from beamfem.solve.newton.convergence import Balance, Correction, check_convergence
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
-from beamfem.solve.newton.loop import iterate
+from beamfem.solve.newton.iteration_loop import iterate
 
 
 class Equilibrium(Protocol):

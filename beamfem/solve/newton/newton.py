@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from beamfem.assembly.round_off import ENOUGH, digits_of, loses_digits, remainder
 from beamfem.assembly.system import Proven, System
+from beamfem.precision.roundoff import ENOUGH, digits_of, loses_digits, remainder
 from beamfem.solve.newton.banded import BandProblem
 from beamfem.solve.newton.equilibrium import find_equilibrium
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination

@@ -7,8 +7,8 @@ from beamfem.assembly.system import System
 from beamfem.linalg.tangent import Factorised, Stresses
 from beamfem.solve.newton.convergence import Balance, balance_of
 from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.newton.iteration_loop import SingleCorrections
 from beamfem.solve.newton.linear_step import count_after
-from beamfem.solve.newton.loop import SingleCorrections
 from beamfem.solve.newton.prescribed_step import PrescribedStep
 
 

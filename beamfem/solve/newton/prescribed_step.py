@@ -5,7 +5,7 @@ import numpy as np
 from beamfem.assembly.differences import differentiated
 from beamfem.assembly.equations import residual
 from beamfem.assembly.system import System
-from beamfem.once import cached_property
+from beamfem.cached_properties import cached_property
 
 
 class PrescribedStep:

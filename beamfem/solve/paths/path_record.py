@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from beamfem.assembly.round_off import FEW_DIGITS, remainder
 from beamfem.assembly.system import system_of
 from beamfem.model.model import Model
+from beamfem.precision.roundoff import FEW_DIGITS, remainder
+from beamfem.results.full_turns import first_turns
 from beamfem.results.path import Bifurcation, Path, PathState
 from beamfem.results.status import Statistics, Status
-from beamfem.results.turns import first_turns
 from beamfem.solve.continuation.continuation import Continuation, PathPoint
 from beamfem.solve.continuation.steps import Step
 

@@ -12,9 +12,9 @@ from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
 from beamfem.progress import progress
-from beamfem.results.bent import advice
-from beamfem.results.checks import warned
+from beamfem.results.mesh_advice import advice
 from beamfem.results.path import Bifurcation, Path, PathState
+from beamfem.results.solution_checks import warned
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 from beamfem.solve.continuation.steps import Refused, Step, longest_step, take_step, too_small
@@ -22,10 +22,10 @@ from beamfem.solve.newton.iteration import Newton, require_newton
 from beamfem.solve.paths.branches import leave
 from beamfem.solve.paths.path_record import PathRecord
 from beamfem.solve.start.functions_of_time import functions_of_time
-from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.kinks import SAME, Jump, jumps_between, kinks_between
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import refuse_memory, refuse_multipliers
+from beamfem.solve.start.partial_results import kept
 from beamfem.solve.statics.preload import first_equilibrium, nothing_acts
 from beamfem.validation import count, finite, function_of_one, optional, positive, shown
 

@@ -8,7 +8,7 @@ from scipy.sparse import coo_array, csr_array
 from beamfem.assembly.connector import Connector
 from beamfem.assembly.differences import differentiated
 from beamfem.assembly.equations import STATICS, linearise, load_change, predicted_stresses
-from beamfem.assembly.points import free_group, resultants
+from beamfem.assembly.stress_resultants import free_group, resultants
 from beamfem.assembly.system import System
 from beamfem.linalg.lapack import eigh
 from beamfem.linalg.tangent import UNROTATED, Factorised

@@ -14,7 +14,7 @@ from beamfem.linalg.tangent import Factorised
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
 from beamfem.solve.modes.pencil import is_symmetric
 from beamfem.solve.stability.linear_solution import LinearSolution
-from beamfem.solve.stability.movement import largest_movement
+from beamfem.solve.stability.model_size import largest_movement
 
 _CHANGE = 1e-3  # of the stiffness: effect of loads whose symmetry is judged
 _NONE = 1e-10  # of the effect of the loads on the stiffness: smaller fractions of it are round-off

@@ -11,10 +11,10 @@ from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.continuation.continuation import PathPoint, begin
 from beamfem.solve.continuation.steps import longest_step, too_small
-from beamfem.solve.modes.lowest import lowest_pairs
+from beamfem.solve.modes.lowest_modes import lowest_pairs
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.newton.iteration import Newton, Termination
-from beamfem.solve.stability.movement import largest_displacement, size_of
+from beamfem.solve.stability.model_size import largest_displacement, size_of
 
 _ITERATIONS = 15
 _FIRST_STEP = 0.02

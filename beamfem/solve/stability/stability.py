@@ -3,9 +3,9 @@
 import numpy as np
 
 from beamfem.assembly.equations import STATICS, linearise, with_stresses
-from beamfem.assembly.mixed_tangent import MixedTangent
-from beamfem.assembly.round_off import counts_with_stresses
 from beamfem.assembly.system import System, system_of
+from beamfem.precision.mixed_tangent import MixedTangent
+from beamfem.precision.roundoff import counts_with_stresses
 from beamfem.results.solution import Solution
 from beamfem.solve.modes.modes import solve_modes
 

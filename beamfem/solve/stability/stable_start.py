@@ -3,14 +3,14 @@
 import numpy as np
 
 from beamfem.assembly.equations import load_change
-from beamfem.assembly.round_off import counts_with_stresses
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, InputError
+from beamfem.precision.roundoff import counts_with_stresses
 from beamfem.results.solution import Solution, State
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.newton.newton import solve_equilibrium
 from beamfem.solve.stability.stability import unstable_directions
-from beamfem.solve.start.balance import left_over
+from beamfem.solve.start.equilibrium_check import left_over
 from beamfem.solve.start.start_state import resting_state
 from beamfem.solve.statics.preload import first_equilibrium
 

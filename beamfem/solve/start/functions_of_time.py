@@ -7,9 +7,9 @@ import numpy as np
 
 from beamfem.assembly.system import System
 from beamfem.model.beam import Beam
-from beamfem.model.load import Load
+from beamfem.model.beam_names import beam_in_words
+from beamfem.model.load_base import Load
 from beamfem.model.model import Model
-from beamfem.model.named import beam_in_words
 from beamfem.model.time_functions import kinks_of
 from beamfem.validation import function_value
 

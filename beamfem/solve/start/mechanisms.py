@@ -6,9 +6,9 @@ import numpy as np
 
 from beamfem.assembly.system import System
 from beamfem.errors import FreeMotionError
-from beamfem.model.named import beam_in_words
-from beamfem.model.support import PointSupport
-from beamfem.model.unjoined import Pair, in_words, unjoined_ends
+from beamfem.model.beam_names import beam_in_words
+from beamfem.model.missing_joints import Pair, in_words, unjoined_ends
+from beamfem.model.support_base import PointSupport
 from beamfem.solve.start.body_motions import NEGLIGIBLE, Conditions, bodies_of, mechanisms
 
 _PROVEN = "supported"

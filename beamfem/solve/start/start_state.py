@@ -4,9 +4,9 @@ import numpy as np
 
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
-from beamfem.results.fitting import require_finite
+from beamfem.results.check_arrays import require_finite
 from beamfem.results.solution import Solution, State
-from beamfem.solve.start.balance import left_over
+from beamfem.solve.start.equilibrium_check import left_over
 from beamfem.solve.start.transfer import transferred, warn_of_lost_history
 
 _SAME = 1e-9  # of the size of the model, or rad: tolerance of prescribed coordinates

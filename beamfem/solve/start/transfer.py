@@ -2,17 +2,17 @@
 
 import numpy as np
 
-from beamfem.assembly.columns import coordinate_columns
+from beamfem.assembly.coordinate_columns import coordinate_columns
 from beamfem.assembly.system import System, system_of
 from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import across
 from beamfem.errors import InputError, warn
 from beamfem.kernels.block import ROTATED_GRADIENTS
-from beamfem.model.mesh import BeamMesh
+from beamfem.model.beam_mesh import BeamMesh
+from beamfem.model.beam_names import beam_in_words
 from beamfem.model.model import Model
-from beamfem.model.named import beam_in_words
-from beamfem.model.nodes_asked import nodes_asked
 from beamfem.model.reference import reference_angle
+from beamfem.model.required_nodes import nodes_asked
 from beamfem.results import postprocess
 from beamfem.results.solution import State
 from beamfem.value_keys import equal

@@ -3,9 +3,9 @@
 from copy import copy
 from dataclasses import dataclass
 
-from beamfem.model.load import Load, factor
+from beamfem.model.load_base import Load, factor
 from beamfem.model.model import Model
-from beamfem.model.support import DIRECTIONS, PointSupport, Value
+from beamfem.model.support_base import DIRECTIONS, PointSupport, Value
 from beamfem.model.supports import Prescribed, Roller, Spring
 from beamfem.validation import function_value
 

@@ -8,8 +8,8 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.assembly.system import System
+from beamfem.cached_properties import cached_property
 from beamfem.errors import BeamfemError
-from beamfem.once import cached_property
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 from beamfem.solve.continuation.steps import Step, longest_step, take_step, too_small

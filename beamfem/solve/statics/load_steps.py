@@ -5,11 +5,11 @@ from typing import Literal
 
 import numpy as np
 
-from beamfem.assembly.round_off import ENOUGH, digits_of, largest_force
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, LimitPointError
+from beamfem.precision.roundoff import ENOUGH, digits_of, largest_force
 from beamfem.progress import progress
-from beamfem.results.bent import advice
+from beamfem.results.mesh_advice import advice
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
 from beamfem.solve.statics.load_path import (
@@ -19,8 +19,8 @@ from beamfem.solve.statics.load_path import (
     PathLostError,
     TurnsBackError,
 )
-from beamfem.solve.statics.skipped import is_short, skips_limit_points
-from beamfem.solve.statics.snap import rest_state, same_point
+from beamfem.solve.statics.skipped_limit_points import is_short, skips_limit_points
+from beamfem.solve.statics.snap_through import rest_state, same_point
 from beamfem.solve.statics.stable_branch import BESIDE, leave
 from beamfem.solve.statics.static_record import StaticRecord, is_unstable
 

@@ -3,9 +3,9 @@
 import numpy as np
 
 from beamfem.assembly.equations import residual
-from beamfem.assembly.round_off import row_floors
 from beamfem.assembly.system import Proven, System, system_of
 from beamfem.errors import ConvergenceError, LimitPointError
+from beamfem.precision.roundoff import row_floors
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
 from beamfem.solve.start.mechanisms import free_motion

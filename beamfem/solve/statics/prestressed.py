@@ -5,9 +5,9 @@ from scipy.sparse import block_array, csc_array
 from scipy.sparse.linalg import splu
 
 from beamfem.assembly.equations import STATICS, linearise, residual
-from beamfem.assembly.round_off import largest_force
 from beamfem.assembly.system import System
 from beamfem.linalg.tangent import UNROTATED
+from beamfem.precision.roundoff import largest_force
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
 from beamfem.solve.start.mechanisms import FreeMotion
 

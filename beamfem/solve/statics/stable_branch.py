@@ -6,7 +6,7 @@ from beamfem.assembly.system import System
 from beamfem.errors import LimitPointError
 from beamfem.solve.newton.iteration import Newton, Termination
 from beamfem.solve.statics.load_path import LOCATED, BifurcatesError
-from beamfem.solve.statics.snap import rest_state
+from beamfem.solve.statics.snap_through import rest_state
 from beamfem.solve.statics.static_record import StaticRecord
 
 BESIDE = 1e-4  # of the load factor of a critical point, which is located to about 1e-8

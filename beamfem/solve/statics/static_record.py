@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from beamfem.assembly.round_off import FEW_DIGITS
 from beamfem.errors import RoundOffWarning, UnstableWarning, warn
 from beamfem.model.model import Model
+from beamfem.precision.roundoff import FEW_DIGITS
+from beamfem.results.full_turns import continued_rotations
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics, Status
-from beamfem.results.turns import continued_rotations
 from beamfem.solve.newton.iteration import Termination
 
 

@@ -1,0 +1,191 @@
+"""Forces, moments and springs at points of elements, in the form that the kernels expect."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from beamfem.cached_properties import cached_property
+from beamfem.element.element import Element
+from beamfem.element.fields import d_slots, r_slots
+from beamfem.kernels.block import PointLoads
+from beamfem.model.beam import Beam
+from beamfem.model.beam_mesh import BeamMesh
+from beamfem.model.line_load import LineLoad
+from beamfem.model.load_arrays import forces_of
+from beamfem.model.load_base import factor
+from beamfem.model.model import Model
+from beamfem.model.point_load import PointLoad
+from beamfem.model.reference import jacobians, length_points, reference_axis, scales
+
+
+@dataclass(frozen=True)
+class Actions:
+    """Point loads of a block and their values at a time.
+
+    unit (nl, 3): force [N] and moment [N m] of each, without its factor; source (nl,): index of the load in `loads`, -1
+    for springs; xi (nl,): position in the element; rule (nl,): number of Gauss points per element over which a load or
+    foundation along a beam is distributed, 0 at a point.
+    """
+
+    points: PointLoads
+    unit: np.ndarray
+    source: np.ndarray
+    xi: np.ndarray
+    rule: np.ndarray
+    loads: tuple[PointLoad | LineLoad, ...]
+
+    @cached_property
+    def _distributed(self) -> tuple[np.ndarray, np.ndarray]:
+        """Distributed loads and foundations (m,), ordered by element, and their elements (m,)."""
+        distributed = np.flatnonzero(self.rule > 0)
+        order = distributed[np.argsort(self.points.element[distributed], kind="stable")]
+        return order, self.points.element[order]
+
+    @cached_property
+    def _at_points(self) -> list[tuple[int, int]]:
+        """Number of each load at a point and its number in `loads`."""
+        rows = np.flatnonzero(self.rule == 0)
+        return list(zip(rows.tolist(), self.source[rows].tolist(), strict=True))
+
+    def distributed_on(self, elements: np.ndarray) -> np.ndarray:
+        """Return the numbers (k,) of the distributed loads and foundations on elements of the block, ascending."""
+        order, owner = self._distributed
+        first, last = (np.searchsorted(owner, elements, side=side) for side in ("left", "right"))
+        count = last - first
+        return np.sort(order[np.repeat(first - np.cumsum(count) + count, count) + np.arange(count.sum())])
+
+    def of(self, model: Model) -> "Actions":
+        """Return the actions on a model whose loads differ from the own ones only in their size."""
+        loads: tuple[Any, ...] = (*model.point_loads, *_lines(model))
+        unit = self.unit.copy()
+        for row, number in self._at_points:
+            unit[row] = loads[number].value
+        return Actions(self.points, unit, self.source, self.xi, self.rule, loads)
+
+    def values(self, time: float, static: bool) -> np.ndarray:
+        """Return forces and moments (nl, 3) at a time."""
+        factors = [factor(load, time, static) for load in self.loads]
+        return self.unit * np.array([*factors, 1.0])[self.source, None]
+
+
+def build_actions(model: Model, block: int) -> Actions:
+    """Return the point loads of a block; loads and foundations along beams act at Gauss points."""
+    points, lines = model.point_loads, _lines(model)
+    parts: list[dict[str, np.ndarray]] = []
+    for number, load in enumerate(points):
+        mesh = _mesh(model, load.point.beam, block)
+        if mesh is not None:
+            where, at = mesh.locate(load.point.fraction)
+            unit = np.array([load.value])
+            parts.append(_part(mesh, np.array([where]), np.array([at]), unit, number, load.follower))
+    for number, line in enumerate(lines, len(points)):
+        mesh = _mesh(model, line.beam, block)
+        if mesh is not None:
+            parts.append(_line(mesh, line, number))
+    for foundation in model.line_supports:
+        mesh = _mesh(model, foundation.beam, block)
+        if mesh is not None:
+            element, xi, weight = length_points(mesh)
+            part = _part(mesh, element, xi, np.zeros((len(xi), 3)), -1, False, len(xi) // mesh.elements)
+            part["spring"] = np.outer(weight, foundation.stiffness)
+            parts.append(part)
+    if len(parts) == 1:
+        joined = dict(parts[0])
+    else:
+        size = len(model.groups[block].field.nodes) * len(model.groups[block].field.vectors)
+        joined = {
+            name: np.concatenate([values, *(part[name] for part in parts)]) for name, values in _empty(size).items()
+        }
+    values = {name: joined.pop(name) for name in ("unit", "source", "xi", "rule")}
+    return Actions(PointLoads(**joined), **values, loads=(*points, *lines))
+
+
+def _lines(model: Model) -> list[LineLoad]:
+    """Return the loads along beams that act at points of elements: all but uniform ones in the axes of the plane."""
+    return [load for load in model.line_loads if not load.even]
+
+
+def _mesh(model: Model, beam: Beam, block: int) -> BeamMesh | None:
+    mesh = model.meshes[model.number_of(beam)]
+    return mesh if mesh.block == block else None
+
+
+def _line(mesh: BeamMesh, load: LineLoad, source: int) -> dict[str, np.ndarray]:
+    """Return the rows of the point loads for a load along a beam."""
+    element, xi, weight = length_points(mesh)
+    unit, rule = np.zeros((len(xi), 3)), len(xi) // mesh.elements
+    unit[:, :2] = weight[:, None] * forces_of(load, mesh.arc_length(element, xi))
+    if load.axes != "axis":
+        return _part(mesh, element, xi, unit, source, load.axes == "section", rule)
+    # the forces are along and normal to r0', which therefore replaces the director
+    part = _part(mesh, element, xi, unit, source, True, rule)
+    part["direction"] = _slope(mesh, element, xi) * scales(mesh.beam.element, mesh.lengths[element])
+    part["follows"] = np.tile([1.0, 0.0], (len(xi), 1))
+    part["stretches"] = np.ones(len(xi), dtype=bool)
+    return part
+
+
+def _slope(mesh: BeamMesh, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
+    """Return the table (n, nv) that gives r0' at points from the scaled nodal vectors."""
+    field = mesh.beam.element.field
+    table = np.zeros((len(xi), len(field.nodes) * len(field.vectors)))
+    table[:, r_slots(field)] = field.centreline(xi, 1) / jacobians(mesh, element, xi)[0][:, None]
+    return table
+
+
+def _empty(size: int) -> dict[str, np.ndarray]:
+    pair = np.zeros((0, 2))
+    whole = np.zeros(0, dtype=np.int64)
+    table = np.zeros((0, size))
+    return {
+        "element": whole,
+        "position": table,
+        "direction": table,
+        "follows": pair,
+        "stretches": np.zeros(0, dtype=bool),
+        "spring": pair,
+        "anchor": pair,
+        "unit": np.zeros((0, 3)),
+        "source": whole,
+        "xi": np.zeros(0),
+        "rule": whole,
+    }
+
+
+def _part(
+    mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, unit: np.ndarray, source: int, follower: bool, rule: int = 0
+) -> dict[str, np.ndarray]:
+    """Return the rows of the point loads at points (element, xi) of a beam."""
+    element_type, count = mesh.beam.element, len(element)
+    scale = scales(element_type, mesh.lengths[element])
+    position, direction = _tables(element_type, xi)
+    if element_type.forces.turns_with == "r_x":
+        direction = _slope(mesh, element, xi)
+    # from the interpolated reference, not the curve: on a curved beam they differ by the interpolation error
+    reference = reference_axis(mesh, element, xi)
+    along = reference.r_s if element_type.forces.turns_with == "r_x" else reference.d
+    (follows, spring), none = np.zeros((2, count, 2)), np.zeros(count, dtype=bool)
+    if follower:
+        follows[:] = along / np.linalg.norm(along, axis=1, keepdims=True)
+    return {
+        "element": mesh.first_element + element,
+        "position": position * scale,
+        "direction": direction * scale,
+        "follows": follows,
+        "stretches": none,
+        "spring": spring,
+        "anchor": mesh.position[mesh.node[element, 0]] + reference.r,
+        "unit": unit,
+        "source": np.full(count, source),
+        "xi": xi,
+        "rule": np.full(count, rule),
+    }
+
+
+def _tables(element: Element, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the tables (n, nv) that give r0 and d at points from the scaled nodal vectors."""
+    field = element.field
+    position, direction = np.zeros((2, len(xi), len(field.nodes) * len(field.vectors)))
+    position[:, r_slots(field)], direction[:, d_slots(field)] = field.centreline(xi), field.director(xi)
+    return position, direction

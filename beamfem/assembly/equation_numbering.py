@@ -1,0 +1,238 @@
+"""Equation numbers of the unknown coordinates, and positions of element matrices in a band or sparse matrix.
+
+A sparse matrix is ordered here, once, for low fill-in, so that no factorisation has to reorder it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import csc_array
+
+from beamfem.assembly.reordering import Mesh, narrow_order, scattered_order, towards_support
+from beamfem.assembly.sparsity import sparsity_pattern
+from beamfem.cached_properties import cached_property
+from beamfem.kernels.block import Block, Layout
+
+_FEW = 20_000  # coordinates; the order of larger models is not cached
+_NONE = np.empty(0, dtype=np.int64)
+_WIDEST_BAND = 64  # half width; wider models are solved faster by a sparse factorisation
+WIDEST_BORDER = 24  # unknowns coupled beyond a band; with more, a sparse factorisation is faster
+
+
+@dataclass(frozen=True, eq=False)
+class Unknowns:
+    """Equation numbers of the unknown coordinates and positions of matrix entries.
+
+    free (n,): equation number of each coordinate, -1 if it is prescribed; dofs (unknown,): the coordinates in the
+    order of the equations; layouts: one per block; pattern: the sparse matrix with room for its data, None for a band;
+    coupled: positions of the entries (k, k) of each coupling that is not an element, -1 for entries without one;
+    border: equation numbers (k,) of each of them that reaches beyond a band, which has no positions then, else none;
+    reach (2, banded): see `reaches`, empty for a sparse matrix.
+    """
+
+    free: np.ndarray
+    dofs: np.ndarray
+    layouts: tuple[Layout, ...]
+    pattern: csc_array | None
+    coupled: tuple[np.ndarray, ...] = ()
+    border: tuple[np.ndarray, ...] = ()
+    reach: np.ndarray = field(default_factory=lambda: np.empty((2, 0), dtype=np.int32))
+
+    @property
+    def banded(self) -> int:
+        """Number of the equations of a band; those of multipliers follow."""
+        return self.reach.shape[1]
+
+    @cached_property
+    def first(self) -> int:
+        """The first of the unknown coordinates if they follow one another, else -1."""
+        in_a_row = len(self.dofs) > 0 and (self.dofs[1:] - self.dofs[:-1] == 1).all()
+        return int(self.dofs[0]) if in_a_row else -1
+
+    @cached_property
+    def chosen(self) -> slice | np.ndarray:
+        """What the unknown coordinates are among all, as an index."""
+        return slice(self.first, self.first + len(self.dofs)) if self.first >= 0 else self.dofs
+
+    def diagonal(self, numbers: np.ndarray) -> np.ndarray:
+        """Return the positions of the diagonal entries of unknowns (k,) in the matrix data."""
+        if self.pattern is None:
+            half = self.layouts[0].half_width
+            return numbers * (2 * half + 1) + half
+        starts, rows = self.pattern.indptr, self.pattern.indices
+        positions = [starts[i] + np.searchsorted(rows[starts[i] : starts[i + 1]], i) for i in numbers.tolist()]
+        return np.array(positions, dtype=np.int64)
+
+
+class Couplings(NamedTuple):
+    """Couplings of coordinates that are not elements.
+
+    coordinates: those (k,) of each; multipliers: coordinates that come last, since they have no stiffness; border: how
+    many unknowns they may couple beyond a band before the matrix is sparse, None if any coupling makes it sparse.
+    """
+
+    coordinates: Sequence[np.ndarray] = ()
+    multipliers: Sequence[int] = ()
+    border: int | None = None
+
+
+def order_unknowns(
+    blocks: Sequence[Block],
+    size: int,
+    prescribed: np.ndarray,
+    joined: bool,
+    couplings: Couplings,
+    constrained: np.ndarray,
+) -> Unknowns:
+    """Return the order of the unknown coordinates: that of the nodes for a single chain, renumbered for joined beams.
+
+    prescribed: coordinates that are known; joined: whether beams are joined; constrained: coordinates that supports
+    prescribe, at which a band of statics ends.
+    """
+    if len(blocks) == 1 and not joined and not couplings.coordinates and size <= _FEW:
+        node, dof = blocks[0].node, blocks[0].dof
+        numbers = node.tobytes(), node.shape, dof.tobytes(), dof.shape
+        return _cached_order(*numbers, size, prescribed.tobytes(), constrained.tobytes())
+    mesh = [Mesh(block.node, block.dof) for block in blocks]
+    return _order(mesh, size, prescribed, joined, couplings, constrained)
+
+
+@lru_cache(maxsize=64)  # studies repeatedly make models with the same numbering
+def _cached_order(
+    node: bytes,
+    nodes: tuple[int, int],
+    dof: bytes,
+    dofs: tuple[int, int],
+    size: int,
+    prescribed: bytes,
+    constrained: bytes,
+) -> Unknowns:
+    whole = np.frombuffer(node, dtype=np.int64).reshape(nodes), np.frombuffer(dof, dtype=np.int64).reshape(dofs)
+    known, supported = (np.frombuffer(each, dtype=np.int64) for each in (prescribed, constrained))
+    return _order([Mesh(*whole)], size, known, False, Couplings(), supported)
+
+
+def _order(
+    blocks: Sequence[Mesh],
+    size: int,
+    prescribed: np.ndarray,
+    joined: bool,
+    couplings: Couplings,
+    constrained: np.ndarray,
+) -> Unknowns:
+    mask = np.ones(size, dtype=bool)
+    mask[prescribed] = False
+    order = np.arange(size)
+    if joined:
+        narrow = narrow_order(blocks, size)
+        widths = [_half_width(blocks, _numbers(each[mask[each]], size)) for each in (narrow, order)]
+        order = narrow if widths[0] < widths[1] else order
+    half_width = _half_width(blocks, _numbers(order[mask[order]], size))
+    if not joined:
+        # short beams get the band width of long ones, for which there is compiled code
+        half_width = max(half_width, *(int((block.dof[block.node[0]] >= 0).sum()) - 1 for block in blocks))
+    if half_width > _WIDEST_BAND:
+        return _sparse(blocks, size, mask, couplings)
+    dofs = order[mask[order]]
+    turned = towards_support(blocks, order, mask, constrained)
+    # joined nodes that share some coordinates only may be further apart then
+    if turned is not None and _half_width(blocks, _numbers(turned, size)) <= half_width:
+        dofs = turned
+    banded = _banded(blocks, size, _multipliers_last(dofs, couplings.multipliers), half_width, couplings)
+    return banded or _sparse(blocks, size, mask, couplings)
+
+
+def _banded(
+    blocks: Sequence[Mesh], size: int, dofs: np.ndarray, half_width: int, couplings: Couplings
+) -> Unknowns | None:
+    """Return the unknowns of a band in the order of `dofs`, None if too many are coupled beyond it."""
+    free, rows = _numbers(dofs, size), len(dofs) - len(couplings.multipliers)
+    coupled = [free[coordinates] for coordinates in couplings.coordinates]
+    beyond = tuple(_beyond(numbers, half_width, rows) for numbers in coupled)
+    if coupled and couplings.border is None:
+        return None
+    if len(np.unique(np.concatenate([_NONE, *beyond]))) > (couplings.border or 0):
+        return None
+    none = np.empty((0, 0, 0), dtype=np.int32)
+    inside = [own for own, numbers in zip(coupled, beyond, strict=True) if not len(numbers)]
+    places = (_places(own, half_width, not len(numbers)) for own, numbers in zip(coupled, beyond, strict=True))
+    layouts = tuple(Layout(free, half_width, none) for _ in blocks)
+    return Unknowns(free, dofs, layouts, None, tuple(places), beyond, reaches(blocks, free, rows, inside))
+
+
+def _sparse(blocks: Sequence[Mesh], size: int, unknown: np.ndarray, couplings: Couplings) -> Unknowns:
+    """Return the unknowns of a sparse matrix; unknown (size,): mask of the coordinates."""
+    dofs = scattered_order(blocks, size, couplings.coordinates)
+    dofs = _multipliers_last(dofs[unknown[dofs]], couplings.multipliers)
+    free = _numbers(dofs, size)
+    coupled = [free[coordinates][None] for coordinates in couplings.coordinates]
+    pattern, slots = sparsity_pattern([*(_numbers_of(block, free) for block in blocks), *coupled], len(dofs))
+    layouts = tuple(Layout(free, -1, slot) for slot in slots[: len(blocks)])
+    return Unknowns(free, dofs, layouts, pattern, tuple(slot[0] for slot in slots[len(blocks) :]))
+
+
+def _multipliers_last(dofs: np.ndarray, multipliers: Sequence[int]) -> np.ndarray:
+    last = np.isin(dofs, multipliers)
+    return np.concatenate([dofs[~last], dofs[last]])
+
+
+def _numbers(dofs: np.ndarray, size: int) -> np.ndarray:
+    free = np.full(size, -1, dtype=np.int64)
+    free[dofs] = np.arange(len(dofs))
+    return free
+
+
+def _numbers_of(block: Mesh, free: np.ndarray) -> np.ndarray:
+    """Return the equation numbers (ne, nn npn) of each element's coordinates, -1 where there is none."""
+    numbers = np.where(block.dof >= 0, free[block.dof], -1)
+    return np.asarray(numbers[block.node].reshape(len(block.node), -1))
+
+
+def _half_width(blocks: Sequence[Mesh], free: np.ndarray) -> int:
+    """Return the largest difference between two equation numbers of an element."""
+    widest = 0
+    for block in blocks:
+        numbers, size = np.where(block.dof >= 0, free[block.dof], -1), len(free)
+        high, low = numbers.max(axis=1), np.where(numbers >= 0, numbers, size).min(axis=1)
+        widths = high[block.node].max(axis=1) - low[block.node].min(axis=1)
+        widest = max(widest, int(widths.max(initial=0)))
+    return widest
+
+
+def _beyond(numbers: np.ndarray, half_width: int, rows: int) -> np.ndarray:
+    """Return the equation numbers (k,) of a coupling if they reach beyond a band of `rows` equations, else none."""
+    unknown = numbers[numbers >= 0]
+    fits = not len(unknown) or (int(np.ptp(unknown)) <= half_width and int(unknown.max()) < rows)
+    return _NONE if fits else numbers
+
+
+def _places(numbers: np.ndarray, half_width: int, inside: bool) -> np.ndarray:
+    """Return the positions (k, k) of the entries of a coupling in a band, -1 where it has none."""
+    row, column = numbers[:, None], numbers[None, :]
+    places = row * (2 * half_width + 1) + half_width + column - row
+    return np.where((row >= 0) & (column >= 0) & inside, places, -1)
+
+
+def reaches(blocks: Sequence[Mesh], free: np.ndarray, unknown: int, coupled: Sequence[np.ndarray] = ()) -> np.ndarray:
+    """Return the envelope (2, unknown) of a band: the end of what an equation and those before it are coupled to.
+
+    The second row is the same with the equations counted from the last one, in the order of the first. coupled:
+    equation numbers (k,) of each coupling that is not an element, -1 for what is no unknown.
+    """
+    numbers = np.arange(unknown, dtype=np.int32)
+    end, begin = numbers + 1, numbers.copy()
+    for block in blocks:
+        equations = _numbers_of(block, free)
+        high, low = equations.max(axis=1), np.where(equations >= 0, equations, unknown).min(axis=1)
+        mask = high >= 0
+        np.maximum.at(end, low[mask], (high[mask] + 1).astype(np.int32))
+        np.minimum.at(begin, high[mask], low[mask].astype(np.int32))
+    for own in (each[each >= 0] for each in coupled):
+        if len(own):
+            end[own.min()] = max(int(end[own.min()]), int(own.max()) + 1)
+            begin[own.max()] = min(int(begin[own.max()]), int(own.min()))
+    first = np.minimum.accumulate(begin[::-1])[::-1]
+    return np.stack([np.maximum.accumulate(end), unknown - first])

@@ -1,0 +1,76 @@
+"""Committed history: history variables of connectors and section laws after an accepted step, as part of a state."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.assembly.connector import Motion
+from beamfem.assembly.connectors import Connectors
+from beamfem.assembly.element_group import ElementGroup
+from beamfem.assembly.stress_resultants import free_group, resultants
+from beamfem.cached_properties import cached_property
+from beamfem.kernels.block import Block
+from beamfem.section.law import ConstitutiveLaw
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """History variables of a model; in a state they follow the coordinates, and only accepted steps change them."""
+
+    connectors: Connectors
+    blocks: tuple[Block, ...]
+
+    @cached_property
+    def laws(self) -> tuple[tuple[ConstitutiveLaw, Block], ...]:
+        """Section laws with history, each with its block."""
+        laws = {mesh.block: mesh.beam.law for mesh in self.connectors.model.meshes}
+        return tuple((law, self.blocks[number]) for number, law in laws.items() if law is not None and law.remembers)
+
+    @cached_property
+    def numbers(self) -> np.ndarray:
+        """Numbers (h,) of all history variables among the coordinates."""
+        numbers = [block.history.ravel() for _, block in self.laws]
+        return np.concatenate([self.connectors.memory, *numbers]) if numbers else self.connectors.memory
+
+    @cached_property
+    def start(self) -> np.ndarray:
+        """Initial values (h,) of all history variables."""
+        values = [np.broadcast_to(law.start, block.history.shape).ravel() for law, block in self.laws]
+        return np.concatenate([self.connectors.start, *values]) if values else self.connectors.start
+
+    @property
+    def holders(self) -> tuple[tuple[str, str], ...]:
+        """Kind, in words, and name of each connector or section law with history."""
+        connectors = (("connectors", item.name) for item in self.connectors.items if len(item.memory))
+        return (*connectors, *(("section laws", law.name) for law, _ in self.laws))
+
+    def committed(self, motion: Motion, time: float, imposing: np.ndarray, dt: float = 0.0) -> np.ndarray:
+        """Return p (n,) with the history variables after an accepted step to this state.
+
+        imposing (k,): factors of the loads that impose strains; dt [s]: time step, 0 in statics. Raises InputError.
+        """
+        p = motion[0]
+        if not len(self.numbers):
+            return p
+        result = p.copy()
+        result[self.connectors.memory] = self.connectors.remember(motion, time)
+        for (law, block), group in zip(self.laws, self.strains, strict=True):
+            strain = resultants(group, np.ascontiguousarray(p), [np.zeros(len(p))], imposing)[0]
+            past = p[block.history]
+            flat = strain[:, : past.shape[1], :3].reshape(-1, 3)
+            result[block.history] = law.remember(flat, past.reshape(len(flat), -1), dt).reshape(past.shape)
+        return result
+
+    def in_equilibrium(self, p: np.ndarray, load_factor: float, imposing: np.ndarray) -> np.ndarray:
+        """Return p (n,) with the history variables after an accepted load step to this equilibrium."""
+        if not len(self.numbers):
+            return p
+        zeros = np.zeros(len(p))
+        return self.committed((p, zeros, zeros), load_factor, imposing)
+
+    @cached_property
+    def strains(self) -> tuple[ElementGroup, ...]:
+        """Elements of each law with unit stiffness: their resultants are the strains from the stress-free state."""
+        unit = [np.broadcast_to(np.eye(block.reference.shape[-1]), block.stiffness.shape) for _, block in self.laws]
+        blocks = [block.resisting(stiffness) for (_, block), stiffness in zip(self.laws, unit, strict=True)]
+        return tuple(free_group(block, self.connectors.model.size) for block in blocks)

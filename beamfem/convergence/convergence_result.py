@@ -1,0 +1,274 @@
+"""The result of a convergence study, as tables, Markdown, CSV, picture and page."""
+
+import textwrap
+from dataclasses import dataclass, field
+from html import escape
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beamfem import tables as tabulate
+from beamfem.convergence.refinement_curve import Curve
+from beamfem.sweeps.parameters import is_solution
+from beamfem.sweeps.tasks import Failure
+from beamfem.validation import flag
+
+EXPLANATION = (
+    "Order between a value and the one before it; order of a curve: slope of the least-squares line of log error over "
+    "log h through its asymptotic part (the finest points above round-off, as far back as the orders between "
+    "neighbours stay within 15 % of the finest one), with the 95 % confidence interval of the slope, which does not "
+    "hold the uncertainty of the limit. GCI: grid convergence index of Roache with safety factor 1.25, an estimate of "
+    "the relative error that needs no reference but takes the order of three values as it is. Estimated error: of the "
+    "finest value; it trusts an order only where four values agree on it, else it is the change between levels."
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Convergence:
+    """Curves of a convergence study, one for each combination of the parameters that are not refined.
+
+    Parameters
+    ----------
+    function : str
+        Name of the function.
+    quantity : str
+        Name of the quantity whose error is studied.
+    refine : str
+        Name of the parameter of refinement.
+    reference : float or None
+        The given limit, None if each curve is extrapolated.
+    curves : tuple
+        Curves of the study, each a `beamfem.convergence.refinement_curve.Curve`.
+    failures : tuple of Failure
+        The calls that failed.
+
+    Examples
+    --------
+    >>> study = bf.converge(lambda n: 1.0 + 1.0 / n**2, refine="n", n=[4, 8, 16, 32], reference=1.0)
+    >>> round(study.curves[0].fit.order, 3)
+    2.0
+    """
+
+    function: str
+    quantity: str
+    refine: str
+    reference: float | None
+    curves: tuple[Curve, ...]
+    failures: tuple[Failure, ...] = field(default=())
+
+    @property
+    def error_name(self) -> str:
+        """What the errors are: "relative error", or "error" if the limit of a curve is zero."""
+        return "relative error" if all(curve.relative for curve in self.curves) else "error"
+
+    @property
+    def _counted(self) -> str:
+        points = sum(len(curve.refinement) for curve in self.curves)
+        curves = "1 curve" if len(self.curves) == 1 else f"{len(self.curves)} curves"
+        return f"{curves} of {points} points, {len(self.failures)} failed"
+
+    def __repr__(self) -> str:
+        return f"Convergence({self.quantity} over {self.refine}: {self._counted})"
+
+    def __str__(self) -> str:
+        return self.report()
+
+    def report(self) -> str:
+        """Return all points and curves as tables, an explanation of the columns, and every failure, as text."""
+        points = tabulate.as_text(*self.points(rounded=True), title=self.title)
+        curves = tabulate.as_text(*self.summary())
+        return "\n\n".join([points, curves, textwrap.fill(EXPLANATION, 110), *map(str, self.failures)])
+
+    def _repr_html_(self) -> str:
+        points, curves = (tabulate.as_html(*table) for table in (self.points(rounded=True), self.summary()))
+        return f"<b>{escape(self.title)}</b>{points}{curves}"
+
+    @property
+    def title(self) -> str:
+        """Title of the study, such as "Convergence of deflection over elements"."""
+        return f"Convergence of {self.quantity} over {self.refine}"
+
+    def points(self, rounded: bool = False) -> tuple[list[str], list[list[Any]]]:
+        """Return the table of points.
+
+        Parameters
+        ----------
+        rounded : bool, default False
+            Whether to return values, errors and orders as short text instead of numbers.
+
+        Returns
+        -------
+        header : list of str
+            Names of the columns: parameters, refinement, value, error, order, GCI, other numbers and seconds [s].
+        rows : list of list
+            One row per point. Solutions are left out; `curves` holds them.
+
+        Raises
+        ------
+        InputError
+            If `rounded` is not a bool.
+        """
+        names = list(dict.fromkeys(name for curve in self.curves for name in curve.texts))
+        whole = {
+            name for curve in self.curves for name, values in curve.others.items() if any(map(is_solution, values))
+        }
+        others = [name for name in dict.fromkeys(n for curve in self.curves for n in curve.others) if name not in whole]
+        flag("rounded", rounded)
+        header = [*names, self.refine, self.quantity, self.error_name, "order", "GCI", *others, "seconds"]
+        rows = []
+        for curve in self.curves:
+            for i, refinement in enumerate(curve.refinement):
+                numbers = [curve.error[i], curve.order[i], curve.gci[i]]
+                judged = [_short(x, form) for x, form in zip(numbers, (".2e", ".2f", ".2e"), strict=True)]
+                rows.append(
+                    [
+                        *(curve.texts[name] for name in names),
+                        refinement,
+                        f"{curve.value[i]:.10g}" if rounded else float(curve.value[i]),
+                        *(judged if rounded else map(float, numbers)),
+                        *(curve.others[name][i] if name in curve.others else None for name in others),
+                        f"{curve.seconds[i]:.3g}" if rounded else float(curve.seconds[i]),
+                    ]
+                )
+        return header, rows
+
+    def summary(self) -> tuple[list[str], list[list[str]]]:
+        """Return the table of curves.
+
+        Returns
+        -------
+        header : list of str
+            Names of the columns: curve, order, its 95 % confidence band, fitted range, limit, estimated error, remark.
+        rows : list of list of str
+            One row per curve, as text.
+        """
+        header = ["curve", "order", "95 % band", f"fitted over {self.refine}", "limit", "estimated error", "remark"]
+        rows = []
+        for curve in self.curves:
+            fit = curve.fit
+            over = f"{curve.refinement[fit.first]} to {curve.refinement[fit.last]}" if fit else ""
+            rows.append(
+                [
+                    curve.label,
+                    f"{fit.order:.3f}" if fit else "",
+                    f"± {fit.band:.3f}" if fit and not np.isnan(fit.band) else "",
+                    over,
+                    f"{curve.limit:.12g}",
+                    _short(curve.estimated_error, ".2e"),
+                    "; ".join(curve.notes),
+                ]
+            )
+        return header, rows
+
+    def to_markdown(self) -> str:
+        """Return the tables of points and curves, with explanation and failures, as Markdown text."""
+        points, curves = tabulate.as_markdown(*self.points(rounded=True)), tabulate.as_markdown(*self.summary())
+        failed = "\n".join(f"- {failure}" for failure in self.failures)
+        return "\n\n".join(part for part in (points, curves, EXPLANATION, failed) if part) + "\n"
+
+    def to_csv(self, path: str | PathLike[str]) -> None:
+        """Write the table of points with all digits; nan if there is no error or order.
+
+        Parameters
+        ----------
+        path : path
+            File to write; folders are created.
+
+        Raises
+        ------
+        FileError
+            If the system refuses to write.
+        """
+        tabulate.write_csv(path, *self.points())
+
+    def to_pandas(self) -> Any:
+        """Return the table of points, without solutions.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row per point.
+
+        Raises
+        ------
+        MissingPackageError
+            Without pandas.
+        """
+        return tabulate.as_pandas(*self.points())
+
+    def to_xarray(self) -> Any:
+        """Return the numbers of the study over curves and refinement.
+
+        Returns
+        -------
+        xarray.Dataset
+            Value, error, order, GCI, seconds [s] and the other numbers (curve, refinement), nan where a curve has no
+            such point; fitted_order, limit and estimated_error (curve,).
+
+        Raises
+        ------
+        MissingPackageError
+            Without xarray.
+        """
+        from beamfem.convergence.study_arrays import as_grid
+
+        return as_grid(self)
+
+    def plot(self, path: str | PathLike[str] | None = None) -> Any:
+        """Plot the error against the refinement on logarithmic axes, one line per curve.
+
+        Hollow markers are errors at round-off, which the fitted order leaves out.
+
+        Parameters
+        ----------
+        path : path, optional
+            File to write (PNG, SVG, PDF); folders are created.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure.
+
+        Raises
+        ------
+        InputError
+            For another suffix.
+        MissingPackageError
+            Without matplotlib.
+
+        Examples
+        --------
+        >>> study = bf.converge(lambda n: 1.0 + 1.0 / n**2, refine="n", n=[4, 8, 16, 32], reference=1.0)
+        >>> figure = study.plot("convergence.png")
+        """
+        from beamfem.convergence.convergence_figure import plot_errors
+
+        return plot_errors(self, path)
+
+    def to_html(self, path: str | PathLike[str]) -> Path:
+        """Write an HTML page with the picture and the tables: a single file that works offline.
+
+        Parameters
+        ----------
+        path : path
+            File to write, .html; folders are created.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        MissingPackageError
+            Without matplotlib.
+        """
+        from beamfem.convergence.convergence_page import write_study
+
+        return write_study(self, path)
+
+
+def _short(number: float, form: str) -> str:
+    return "" if np.isnan(number) else f"{number:{form}}"

@@ -1,0 +1,242 @@
+"""The cells of ParaView files: bodies or centrelines of all beams, and what is written of them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, Protocol
+
+import numpy as np
+
+from beamfem.io.descriptions import material_in_words, section_in_words
+from beamfem.io.vtk_points import Samples, bodies, centrelines
+from beamfem.material import Material
+from beamfem.model.beam import Beam
+from beamfem.model.beam_names import names
+from beamfem.model.model import Model
+from beamfem.results.stress_warnings import warn_of_unknown_stress
+from beamfem.section import Layered
+from beamfem.validation import flag, one_of, require_known, shown
+from beamfem.value_keys import by_value
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+Geometry = Literal["deformed", "reference"]
+# numbers of cell types, from vtkCellType.h
+VERTEX, LINE, LAGRANGE_QUADRILATERAL = 1, 3, 70
+# of bodies, only where they are asked for: VTK tessellates curved cells with at most 18 numbers at a point
+_TENSORS = ("cauchy_stress", "second_piola_kirchhoff_stress")
+
+
+@dataclass(frozen=True)
+class Content:
+    """What files hold: points of the deformed or the reference geometry, which fields, numbers of 4 or 8 bytes."""
+
+    geometry: Geometry = "deformed"
+    fields: tuple[str, ...] | None = None
+    single: bool = False
+
+    def __post_init__(self) -> None:
+        one_of("geometry", self.geometry, ("deformed", "reference"))
+        flag("single", self.single)
+
+    def chosen(self, names: Sequence[str]) -> list[str]:
+        """Return the points and those of the names that are wanted."""
+        return [name for name in names if self.fields is None or name in ("points", *self.fields)]
+
+    def require_known(self, known: Sequence[str]) -> None:
+        """Raise InputError for a field that there is not."""
+        for name in self.fields or ():
+            require_known(f"fields has {shown(name)}, which is not there", name, known)
+
+
+WHOLE = Content()
+
+
+class Grid(Protocol):
+    """What is written: cells of one type, the fields at their points, and numbers of the cells."""
+
+    @property
+    def cell_type(self) -> int:
+        """Number of the type of the cells in VTK."""
+        ...
+
+    @property
+    def points(self) -> int:
+        """Number of points."""
+        ...
+
+    @property
+    def connectivity(self) -> np.ndarray:
+        """Points of all cells, one cell after the other."""
+        ...
+
+    @property
+    def offsets(self) -> np.ndarray:
+        """Where in the connectivity each cell begins, and its length."""
+        ...
+
+    @property
+    def degrees(self) -> np.ndarray | None:
+        """Degrees of the Lagrange cells (cells, 3), None for other cells."""
+        ...
+
+    @property
+    def numbers(self) -> dict[str, np.ndarray]:
+        """Cell data (cells,) by name."""
+        ...
+
+    def unit(self, unit: str) -> str:
+        """Return the name of the model's unit for one of SI."""
+        ...
+
+    @property
+    def legend(self) -> dict[str, list[str]]:
+        """What numbers of cells stand for, by name."""
+        ...
+
+    def arrays(self, solution: "Solution", rows: slice) -> dict[str, np.ndarray]:
+        """Return points and fields (steps, points) and (steps, points, 3 or 6) of some rows of a solution."""
+        ...
+
+
+class Cells:
+    """The cells of all beams: bodies, one cell an element and layer, or lines; elements share no points with others.
+
+    alike: of one degree in both directions; readers of VTKHDF files before VTK 9.7 take no others.
+    """
+
+    def __init__(self, model: Model, whole: bool, alike: bool = False, content: Content = WHOLE) -> None:
+        self.whole, self.content = whole, content
+        self.beams, self.unit = model.beams, model.unit
+        self.samples: Sequence[Samples] = bodies(model, alike) if whole else centrelines(model)
+        self.materials = _distinct(_materials(model))
+        self.sections = _distinct([beam.section for beam in model.beams])
+        # elements by beams and their layers, of all samples
+        beam = np.concatenate([part.beam for part in self.samples])
+        sample = np.repeat(np.arange(len(self.samples)), [len(part.element) for part in self.samples])
+        layer = np.array([part.layer or 0 for part in self.samples])
+        order = np.lexsort((layer[sample], beam))
+        pieces = np.array([1 if whole else part.points.pieces for part in self.samples])
+        cells = np.repeat(sample[order], pieces[sample[order]])  # the sample of each cell
+        self.beam = np.repeat(beam[order], pieces[sample[order]])
+        material = _numbers([part.material for part in self.samples], self.materials)
+        section = _numbers([part.mesh.beam.section for part in self.samples], self.sections)
+        self.material, self.section, self.layer = np.array(material)[cells], np.array(section)[cells], layer[cells]
+        self.degree = np.array([(part.points.pieces, part.across) for part in self.samples])[cells]
+        self.cell_type = LAGRANGE_QUADRILATERAL if whole else LINE
+        self.points = sum(part.size for part in self.samples)
+        corners = np.array([len(part.order) for part in self.samples])[sample]
+        self._order = _ordered(corners, order)
+        if whole:
+            self.connectivity, self.offsets = np.arange(self.points), np.append(0, np.cumsum(corners[order]))
+        else:
+            # the last point of an element begins no line
+            last = np.cumsum(corners[order]) - 1
+            first = np.setdiff1d(np.arange(self.points), last, assume_unique=True)
+            self.connectivity, self.offsets = np.column_stack([first, first + 1]).ravel(), 2 * np.arange(len(first) + 1)
+
+    @property
+    def degrees(self) -> np.ndarray | None:
+        """Degrees of the Lagrange cells (cells, 3), None for lines."""
+        if not self.whole:
+            return None
+        return np.column_stack([self.degree, np.ones(len(self.degree))]).astype(float)
+
+    @property
+    def numbers(self) -> dict[str, np.ndarray]:
+        """Cell data (cells,) by name: beam, material and section, and the layer of bodies from the bottom up."""
+        numbers = {"beam": self.beam, "material": self.material, "section": self.section}
+        return numbers | {"layer": self.layer} if self.whole else numbers
+
+    @property
+    def legend(self) -> dict[str, list[str]]:
+        """What the numbers of materials and sections stand for, and those of beams where some have names."""
+        unit = self.unit
+        return {
+            **legend_of_beams(self.beams),
+            "materials": [material_in_words(item, unit) for item in self.materials],
+            "sections": [section_in_words(item, unit) for item in self.sections],
+        }
+
+    def warn_of_unknown_stress(self) -> None:
+        """Warn of beams whose stress is left out, or nan beside that of others."""
+        unknown = sorted({number for part in self.samples for number in part.unknown})
+        warn_of_unknown_stress(self.beams, unknown, "left out" if len(unknown) == len(self.beams) else "nan")
+
+    def names(self, solution: "Solution") -> list[str]:
+        """Return the fields that there are."""
+        parts = [part.arrays(solution, slice(1)) for part in self.samples]
+        return [name for name in self._known(parts) if name != "points"]
+
+    def arrays(self, solution: "Solution", rows: slice) -> dict[str, np.ndarray]:
+        """Return the fields at all points, (steps, points) and (steps, points, 3 or 6), of some rows of a solution.
+
+        A stress that is known nowhere is left out, and so are what `content` does not name and, unless it names them,
+        the stress tensors of bodies.
+        """
+        parts = [part.arrays(solution, rows) for part in self.samples]
+        chosen = self.content.chosen(self._known(parts))
+        if self.whole and self.content.fields is None:
+            chosen = [name for name in chosen if name not in _TENSORS]
+        result = {name: self._joined([part[name] for part in parts]) for name in chosen}
+        if self.content.geometry == "reference":
+            at_rest = self._joined([part.at_rest for part in self.samples])
+            result["points"] = np.repeat(at_rest, len(result["points"]), axis=0)
+        return by_precision(result, self.content)
+
+    def _known(self, parts: Sequence[dict[str, np.ndarray]]) -> list[str]:
+        """Return the names of the arrays of samples but for a stress that is known nowhere."""
+        known = {name for part in self.samples for name, told in part.known.items() if told}
+        return [name for name in parts[0] if "stress" not in name or name in known]
+
+    def _joined(self, parts: Sequence[np.ndarray]) -> np.ndarray:
+        """Return values (steps, points, ...) of all samples in the order of the cells."""
+        values = parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
+        return values if self._order is None else values[:, self._order]
+
+
+def _ordered(counts: np.ndarray, order: np.ndarray) -> np.ndarray | None:
+    """Return the points of elements with so many points each, put in another order; None if it is the same."""
+    if np.array_equal(order, np.arange(len(order))):
+        return None
+    first, own = np.cumsum(counts) - counts, counts[order]
+    return np.repeat(first[order] - np.cumsum(own) + own, own) + np.arange(int(own.sum()))
+
+
+def by_precision(arrays: dict[str, np.ndarray], content: Content) -> dict[str, np.ndarray]:
+    """Return arrays with numbers of four bytes where `content` asks for them."""
+    return {name: values.astype(np.float32) for name, values in arrays.items()} if content.single else arrays
+
+
+def _materials(model: Model) -> list[Material | None]:
+    """Return the materials of beams and layers; last, so that lines count as bodies do, None for what has its own."""
+    materials: list[Material | None] = []
+    for beam in model.beams:
+        layers = beam.section.layers if isinstance(beam.section, Layered) else ()
+        materials += [layer.material for layer in layers] or [beam.material]
+    lines = [None for beam in model.beams if beam.material is None or isinstance(beam.section, Layered)]
+    return [*(material for material in materials if material is not None), *lines]
+
+
+def _distinct(items: Sequence[Any]) -> list[Any]:
+    """Return different items in the order of their first."""
+    first: dict[Any, Any] = {}
+    for item in items:
+        first.setdefault(by_value(item), item)
+    return list(first.values())
+
+
+def _numbers(items: Sequence[Any], distinct: Sequence[Any]) -> list[int]:
+    """Return the place of each item among different ones."""
+    places = {by_value(item): number for number, item in enumerate(distinct)}
+    return [places[by_value(item)] for item in items]
+
+
+def legend_of_beams(beams: Sequence[Beam]) -> dict[str, list[str]]:
+    """Return the names of beams as the legend of their numbers, nothing where none has a name."""
+    return {"beams": names(beams)} if any(beam.name is not None for beam in beams) else {}
+
+
+def times(at: np.ndarray) -> np.ndarray:
+    """Return what ParaView takes for time: `at` where it rises, else the numbers of the rows."""
+    return at if np.all(np.diff(at) > 0.0) else np.arange(len(at), dtype=float)

@@ -1,0 +1,217 @@
+"""The meshes of all beams of a model, with the numbers of its coordinates."""
+
+from collections import defaultdict
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, fields
+from math import prod
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from beamfem.cached_properties import cached_property
+from beamfem.element.element import Element
+from beamfem.kernels.block import NO_HISTORY
+from beamfem.model.beam import Beam, Point
+from beamfem.model.beam_grid import Grid
+from beamfem.model.beam_mesh import BeamMesh
+from beamfem.model.check_body import require_body
+from beamfem.model.check_memory import require_room
+from beamfem.model.close_gaps import close_gaps
+from beamfem.model.contribution import remembered, uses_rotations
+from beamfem.model.numbering import number_nodes
+from beamfem.model.required_nodes import nodes_asked
+from beamfem.model.straight_grids import make_grids
+from beamfem.model.support_base import PointSupport
+from beamfem.value_keys import by_value
+
+if TYPE_CHECKING:
+    from beamfem.model.model import Model
+
+_GRID = tuple(each.name for each in fields(Grid))
+_NO_PAIRS = np.empty((0, 4), dtype=np.int64)
+
+
+@dataclass(frozen=True, eq=False)
+class NumberedMeshes:
+    """The meshes of all beams of a model.
+
+    meshes: that of each beam; groups: the element of each block of beams; coordinates: number of coordinates of the
+    beams; size: number of all variables of the model.
+    """
+
+    meshes: tuple[BeamMesh, ...]
+    groups: tuple[Element, ...]
+    coordinates: int
+    size: int
+
+    @cached_property
+    def uncounted(self) -> list[BeamMesh]:
+        """The meshes (m,) of the beams without a node whose rotation is a coordinate."""
+        return [mesh for mesh in self.meshes if mesh.has_gradients_only]
+
+    @cached_property
+    def numbers_uncounted(self) -> dict[BeamMesh, int]:
+        """The number of each mesh of `uncounted` in it."""
+        return {mesh: number for number, mesh in enumerate(self.uncounted)}
+
+    @cached_property
+    def rotation_pairs(self) -> np.ndarray:
+        """Coordinates x and y (m, 2) of the vector that determines the rotation at the start of each of `uncounted`."""
+        pairs = []
+        for mesh in self.uncounted:
+            vector = "r_x" if mesh.beam.element.forces.turns_with == "r_x" else "r_y"
+            column = mesh.labels(0).index(f"{vector}^x")
+            pairs.append(mesh.kinematics.dof[0, column : column + 2])
+        return np.array(pairs, dtype=np.int64).reshape(-1, 2)
+
+    @cached_property
+    def joinable(self) -> list[list[int]]:
+        """The numbers of the beams of each group whose meshes can be joined, in the order of their first."""
+        groups: defaultdict[Hashable, list[int]] = defaultdict(list)
+        for number, mesh in enumerate(self.meshes):
+            groups[self._kind(mesh)].append(number)
+        return list(groups.values())
+
+    def _kind(self, mesh: BeamMesh) -> Hashable:
+        """Return a key that meshes share if they can be joined."""
+        beam = mesh.beam
+        if beam.elements == "knots":  # the mesh coordinate is that of its spline
+            return mesh
+        counted = mesh not in self.numbers_uncounted
+        return mesh.block, mesh.straight, counted, by_value(beam.section), by_value(beam.material)
+
+    @cached_property
+    def places(self) -> dict[int, "Place"]:
+        """The place of each beam in its group of `joinable`."""
+        result = dict[int, Place]()
+        for group in self.joinable:
+            largest = max(self.meshes[number].elements for number in group)
+            result |= {number: Place(group, at, largest) for at, number in enumerate(group)}
+        return result
+
+
+class Place(NamedTuple):
+    """The numbers of beams whose meshes can be joined, the place of one among them, and the most elements of any."""
+
+    group: list[int]
+    at: int
+    largest: int
+
+
+class NodesNeeded(NamedTuple):
+    """All that the meshes of a model depend on besides its beams and joints.
+
+    fractions: those of each beam [-] at which there has to be a node; angled: number of the beam and fraction of each
+    node that has an angle as a coordinate; further: number of variables that are not coordinates of beams.
+    """
+
+    fractions: list[list[float]]
+    angled: list[tuple[int, float]]
+    further: int
+
+
+def nodes_needed(model: "Model") -> NodesNeeded:
+    """Return the nodes that supports, loads and connectors of a model need."""
+    asked = zip(model.beams, nodes_asked(model), strict=True)
+    fractions = [_inside(beam, {fraction for fraction, _ in requested}) for beam, requested in asked]
+    points = [support.point for support in model.point_supports if _turns(support)]
+    points += [point for connector in model.connectors if uses_rotations(connector) for point in connector.points]
+    angled = sorted({(model.number_of(point.beam), point.fraction) for point in points})
+    further = sum(connector.unknowns + len(remembered(connector)) for connector in model.connectors)
+    return NodesNeeded(fractions, angled, further)
+
+
+def _inside(beam: Beam, fractions: set[float]) -> list[float]:
+    """Return the fractions in ascending order, none if the elements of the beam end at all of them anyway."""
+    count = beam.elements
+    if isinstance(count, int) and not beam.curve.corners and all((at * count).is_integer() for at in fractions):
+        return []
+    return sorted(fractions)
+
+
+def numbered_meshes(model: "Model") -> NumberedMeshes:
+    """Return the meshes of a model. Raises InputError for a beam that cannot be meshed."""
+    require_room(model.beams)
+    needed = model.nodes_needed
+    grids = make_grids(model.beams, needed.fractions)
+    places = [(number, grids[number].node_at(fraction)) for number, fraction in needed.angled]
+    angled = np.array(places, dtype=np.int64).reshape(-1, 2)
+    turning, moving = _joined(model, grids)
+    grids = close_gaps(grids, moving)
+    for grid in grids:
+        require_body(grid, model.unit)
+    nodes, size = number_nodes(grids, angled, moving, turning)
+    groups, blocks = _blocks(model.beams)
+    filled, meshes = [0] * len(groups), []
+    behind = size + needed.further
+    for grid, kinematics, block in zip(grids, nodes, blocks, strict=True):
+        parts = {name: getattr(grid, name) for name in _GRID}
+        history = _history(grid, behind)
+        meshes.append(
+            BeamMesh(**parts, kinematics=kinematics, first_element=filled[block], block=block, history=history)
+        )
+        filled[block] += grid.elements
+        behind += history.size
+    return NumberedMeshes(tuple(meshes), groups, size, behind)
+
+
+def _blocks(beams: Sequence[Beam]) -> tuple[tuple[Element, ...], list[int]]:
+    """Return the element of each block of beams, in order of appearance, and the number of the block of each beam.
+
+    Beams of one block have the same element and section law.
+    """
+    blocks: dict[tuple[Element, Hashable], int] = {}
+    numbers = [blocks.setdefault(_block_key(beam), len(blocks)) for beam in beams]
+    return tuple(element for element, _ in blocks), numbers
+
+
+def _block_key(beam: Beam) -> tuple[Element, Hashable]:
+    law = beam.law
+    return beam.element, None if law is None else (by_value(law.section), by_value(law.material))
+
+
+def _joined(model: "Model", grids: Sequence[Grid]) -> tuple[np.ndarray, np.ndarray]:
+    """Return pairs (grid, node, grid, node) (n, 4) of nodes with a common rotation, and with a common position."""
+    corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]
+    if not corners and not model.joints:
+        return _NO_PAIRS, _NO_PAIRS
+    rigid, hinged = (_pairs(model, grids, keeps_angle) for keeps_angle in (True, False))
+    turning = np.concatenate([np.array(corners, dtype=np.int64).reshape(-1, 4), rigid])
+    return turning, np.concatenate([turning, hinged])
+
+
+def _pairs(model: "Model", grids: Sequence[Grid], keeps_angle: bool) -> np.ndarray:
+    """Return grid and node of both points (n, 4) of the joints that keep the angle, or of those that do not."""
+    joints = [joint for joint in model.joints if joint.keeps_angle == keeps_angle]
+    a, b = [joint.a for joint in joints], [joint.b for joint in joints]
+    return np.hstack([_places(model, grids, a), _places(model, grids, b)])
+
+
+def _places(model: "Model", grids: Sequence[Grid], points: Sequence[Point]) -> np.ndarray:
+    """Return grid and node (n, 2) of points at nodes."""
+    if not points:
+        return np.empty((0, 2), dtype=np.int64)
+    numbers = [model.number_of(point.beam) for point in points]
+    pairs = [(i, grids[i].node_at(point.fraction)) for i, point in zip(numbers, points, strict=True)]
+    return np.array(pairs, dtype=np.int64)
+
+
+def _history(grid: Grid, first: int) -> np.ndarray:
+    """Return the numbers (ne, nl, k) of the history variables at the points of a beam where its law acts."""
+    law = grid.beam.law
+    if law is None or not law.remembers:
+        return NO_HISTORY
+    shape = grid.elements, grid.beam.element.law_points, len(law.start)
+    return np.arange(first, first + prod(shape), dtype=np.int64).reshape(shape)
+
+
+def _turns(support: PointSupport) -> bool:
+    """Return whether a support involves the rotation."""
+    return "rotation" in support.prescribed() or "rotation" in support.springs()
+
+
+def _corners(grid: Grid) -> Sequence[int]:
+    """Return the first of the two nodes at each corner."""
+    if not grid.beam.curve.corners:
+        return ()
+    return grid.node[:-1, -1][grid.node[:-1, -1] != grid.node[1:, 0]].tolist()

@@ -1,0 +1,22 @@
+"""The parts that the package lists, by what they are in a model."""
+
+from typing import Any
+
+from beamfem.model import parts
+from beamfem.model.joints import Joint
+from beamfem.model.load_base import Load
+from beamfem.model.support_base import Support
+
+BASES: dict[str, Any] = {"supports": Support, "loads": Load, "joints": Joint}
+
+
+def listed_parts() -> tuple[Any, ...]:
+    """Return all classes that are listed in `beamfem.model.parts`."""
+    return tuple(kind for kind in vars(parts).values() if isinstance(kind, type))
+
+
+def parts_in(name: str) -> tuple[Any, ...]:
+    """Return the classes whose objects a list of a `Model` takes; connectors derive from none of the base classes."""
+    if name in BASES:
+        return tuple(kind for kind in listed_parts() if issubclass(kind, BASES[name]))
+    return tuple(kind for kind in listed_parts() if not issubclass(kind, tuple(BASES.values())))

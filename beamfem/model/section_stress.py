@@ -1,0 +1,84 @@
+"""Stress over the sections, and their layers, at points of a beam."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.model.beam_grid import Grid
+from beamfem.model.reference import curvature, sections_at
+from beamfem.section.distribution import Distribution, distribution, layers_of
+from beamfem.section.protocol import CrossSection
+
+# indices of points (n,), consecutive over all groups, and the distribution of forces at them
+_Group = tuple[np.ndarray, Distribution]
+
+
+@dataclass(frozen=True, eq=False)
+class Distributions:
+    """Distribution of section forces over the height, at points (n,) of a beam.
+
+    groups: one for all points of a prismatic beam, otherwise one per point; layers: lower and upper y (n, layers, 2)
+    [m], from the bottom up. If a section has fewer layers than others, the missing ones have no thickness and lie on
+    its upper face.
+    """
+
+    groups: tuple[_Group, ...]
+    layers: np.ndarray
+
+    def normal_stress(self, layer: int | None, y: np.ndarray, normal: np.ndarray, moment: np.ndarray) -> np.ndarray:
+        """Return the stress along the beam [Pa] (steps, n, heights) due to N [N] and M [N m] (steps, n).
+
+        y (n, heights) [m]; layer: the layer that y belongs to, None for the one at the axis.
+        """
+        return self._stress(
+            layer, y, lambda own, at, y, here: own.normal_stress(at, y, normal[:, here, None], moment[:, here, None])
+        )
+
+    def shear_stress(self, layer: int | None, y: np.ndarray, shear: np.ndarray) -> np.ndarray:
+        """Return the shear stress [Pa] (steps, n, heights) due to V (steps, n) [N]; y, layer: see `normal_stress`."""
+        return self._stress(layer, y, lambda own, at, y, here: own.shear_stress(at, y, shear[:, here, None]))
+
+    def _stress(self, layer: int | None, y: np.ndarray, of: Callable[..., np.ndarray]) -> np.ndarray:
+        parts = []
+        for points, dist in self.groups:
+            at = dist.layer_at(0.0) if layer is None else min(layer, len(dist.layers) - 1)
+            parts.append(of(dist, at, y[points], points))
+        return np.concatenate(parts, axis=1)
+
+    @property
+    def number(self) -> np.ndarray:
+        """Number of layers at each point (n,)."""
+        result = np.empty(len(self.layers), dtype=int)
+        for points, dist in self.groups:
+            result[points] = len(dist.layers)
+        return result
+
+
+def distributions(grid: Grid, element: np.ndarray, xi: np.ndarray) -> Distributions:
+    """Return the distribution of section forces over the height at points (element, xi) of a beam."""
+    bend = curvature(grid, element, xi)[:, None]
+    material = grid.beam.material
+    groups: list[_Group]
+    if isinstance(grid.beam.section, CrossSection):
+        groups = [(np.arange(len(element)), distribution(grid.beam.section, material, bend))]
+    else:
+        groups = [
+            (np.array([i]), distribution(section, material, bend[i]))
+            for i, section in enumerate(sections_at(grid, element, xi))
+        ]
+    return Distributions(tuple(groups), layers(grid, element, xi))
+
+
+def layers(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
+    """Return lower and upper y (n, layers, 2) [m] of the layers at points (element, xi); see `Distributions`."""
+    material = grid.beam.material
+    if isinstance(grid.beam.section, CrossSection):
+        edges = np.array(layers_of(grid.beam.section, material))
+        return np.broadcast_to(edges, (len(element), *edges.shape))
+    layer_lists = [layers_of(section, material) for section in sections_at(grid, element, xi)]
+    result = np.empty((len(element), max(map(len, layer_lists)), 2))
+    for point, at in enumerate(layer_lists):
+        result[point, : len(at)] = at
+        result[point, len(at) :] = at[-1][1]
+    return result

@@ -1,0 +1,1 @@
+"""What guards the last digits of results."""

@@ -1,0 +1,196 @@
+"""Tangent with stress resultants as additional unknowns, for models whose plain tangent loses its digits.
+
+    [ G      B^T W ] [ x ]   [ f ]        K = G + B^T W C B,   G: geometric part, loads, springs, inertia
+    [ W B  -W / C  ] [ s ] = [ 0 ]
+
+Round-off in K is of size eps C, which may exceed the stiffness of adjacent soft parts. Here the stiffness enters by its
+inverse and may be arbitrarily large: round-off is of size eps^2 C. Zienkiewicz and Taylor, The Finite Element Method,
+mixed formulations.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_array, csc_array, csr_array
+from scipy.sparse.linalg import SuperLU
+
+from beamfem.assembly.system import System
+from beamfem.cached_properties import cached_property
+from beamfem.linalg.inertia import negative_eigenvalues
+from beamfem.linalg.lapack import LinAlgError
+from beamfem.linalg.superlu import superlu
+from beamfem.linalg.tangent import Rotated, Stresses, Tangent, rotation_to_normals
+
+_FLEXIBILITY = 1e-10  # of the stiffest part, beside derivatives of strains of one
+_REFINEMENTS = 2  # make each equation accurate relative to its own terms, however large others are (Skeel 1980)
+
+
+@dataclass(frozen=True, eq=False)
+class MixedFactors:
+    """Factors of the mixed tangent.
+
+    scale (n + m,): scaling of the coordinates, then of the resultants; kept (n,): mask of the coordinates without the
+    normals of inclined rollers; rotation (n, n): rotation of these normals to x, None if there are none.
+    """
+
+    lu: SuperLU
+    scale: np.ndarray
+    matrix: csc_array
+    kept: np.ndarray
+    tangent: "MixedTangent"
+    rotated: Rotated
+    rotation: csr_array | None
+
+    @cached_property
+    def negative_pivots(self) -> int:
+        """Number of negative eigenvalues of a symmetric tangent (Sylvester's law of inertia).
+
+        Each positive eigenvalue of a section stiffness gives the mixed matrix one more, which is subtracted.
+        """
+        count = negative_eigenvalues(csr_array(self.matrix))
+        if count is None or count < self.tangent.positive:  # round-off prevents a count
+            return self.tangent.plain.factorised(self.rotated).negative_pivots
+        return count - self.tangent.positive
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """Return x (n,) with A x = right, zero along the normals of inclined rollers. Raises LinAlgError."""
+        return self._solve(right, np.zeros(len(self.scale) - int(self.kept.sum())))[0]
+
+    def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
+        """Return the Newton step (n,) for the strains and loads of the tangent, and the stress resultants after it.
+
+        Raises LinAlgError.
+        """
+        tangent = self.tangent
+        x, resultants = self._solve(-tangent.loads, -tangent.weight * tangent.strain)
+        stresses, first = [], 0
+        for shape, resists in tangent.places:
+            table = np.zeros(shape)
+            last = first + table[..., resists].size
+            table[..., resists] = resultants[first:last].reshape(*shape[:2], -1)
+            stresses.append(table)
+            first = last
+        return x, tuple(stresses)
+
+    def _solve(self, right: np.ndarray, strain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        rotation, n = self.rotation, int(self.kept.sum())
+        rhs = np.concatenate([(right if rotation is None else rotation @ right)[self.kept], strain])
+        rhs = self.scale * rhs
+        solution = self.lu.solve(rhs)
+        for _ in range(_REFINEMENTS):
+            solution += self.lu.solve(rhs - self.matrix @ solution)
+        solution *= self.scale
+        if not np.isfinite(solution).all():
+            raise LinAlgError("the tangent is singular")
+        x = np.zeros(len(right))
+        x[self.kept] = solution[:n]
+        return x if rotation is None else np.asarray(rotation.T @ x), solution[n:]
+
+
+@dataclass(frozen=True, eq=False)
+class MixedTangent:
+    """A tangent in mixed form.
+
+    zeros (n, n): tangent without the elastic part; slopes (m, n): weights times derivatives of the strains by the
+    unknowns; flexibility (m, m): weights times inverse stiffness; weight (m,): quadrature weights; loads (n,): residual
+    without elastic forces; strain (m,): strains; places: shape (ne, nq, ns) of the stress resultants of each block, and
+    the measures that have a stiffness; positive: number of positive eigenvalues of the section stiffnesses; plain: K;
+    unit (n,): size of the model for positions [m], 1 for other coordinates.
+    """
+
+    zeros: csr_array
+    slopes: coo_array
+    flexibility: coo_array
+    weight: np.ndarray
+    loads: np.ndarray
+    strain: np.ndarray
+    places: tuple[tuple[tuple[int, ...], np.ndarray], ...]
+    positive: int
+    plain: Tangent
+    unit: np.ndarray
+
+    def factorised(self, rotated: Rotated) -> MixedFactors:
+        """Factorise the mixed matrix. Raises LinAlgError."""
+        n, zeros, couples = self.zeros.shape[0], self.zeros, self.slopes
+        kept, rotation = np.ones(n, dtype=bool), None
+        if len(rotated[0]):
+            kept[rotated[0]] = False
+            rotation = rotation_to_normals(n, rotated)
+            zeros, couples = (rotation @ zeros @ rotation.T)[kept][:, kept], csr_array(couples @ rotation.T)[:, kept]
+        unknown = zeros.shape[0]
+        above, beside, below = coo_array(zeros), coo_array(couples), self.flexibility
+        row = np.concatenate([above.row, unknown + beside.row, beside.col, unknown + below.row])
+        column = np.concatenate([above.col, beside.col, unknown + beside.row, unknown + below.col])
+        data = np.concatenate([above.data, beside.data, beside.data, -below.data])
+        entries = data != 0.0
+        row, column, data = row[entries], column[entries], data[entries]
+        sizes, scale = np.abs(data), self._units(self.unit[kept], beside)
+        for _ in range(3):
+            largest = np.zeros(len(scale))
+            np.maximum.at(largest, row, scale[row] * sizes * scale[column])
+            scale /= np.sqrt(np.where(largest > 0.0, largest, 1.0))
+        scale = 2.0 ** np.round(np.log2(scale))  # powers of two round nothing
+        shape = len(scale), len(scale)
+        matrix = csc_array(coo_array((scale[row] * data * scale[column], (row, column)), shape=shape))
+        return MixedFactors(superlu(matrix), scale, matrix, kept, self, rotated, rotation)
+
+    def _units(self, length: np.ndarray, couples: coo_array) -> np.ndarray:
+        """Return the scale (n + m,) in which the matrix is nearly the same in any units.
+
+        In it the least flexibility is well above round-off beside the derivatives of the strains, which would otherwise
+        hide how stresses with the same resultants share them. length (n,): `unit` of the coordinates; couples (m, n):
+        `slopes` of them.
+        """
+        below, couple = self.flexibility, np.abs(couples.data) * length[couples.col]
+        flexible, strains, stiff = np.zeros(len(self.weight)), np.zeros(len(self.weight)), np.zeros(len(length))
+        own = below.row == below.col
+        flexible[below.row[own]] = np.abs(below.data[own])
+        known = flexible[couples.row] > 0.0
+        np.maximum.at(strains, couples.row, couple)
+        np.add.at(stiff, couples.col[known], couple[known] ** 2 / flexible[couples.row[known]])
+        size = 1.0 / np.sqrt(_FLEXIBILITY * stiff.max(initial=0.0)) if stiff.any() else 1.0
+        with np.errstate(divide="ignore"):
+            resultant = np.fmin(1.0 / (size * strains), 1.0 / np.sqrt(flexible))
+        return np.concatenate([size * length, np.where(np.isfinite(resultant), resultant, 1.0)])
+
+    def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:
+        """Return x with A x = right. Raises LinAlgError."""
+        return self.factorised(rotated).solve(right)
+
+    def lost(self, rotated: Rotated) -> float:
+        """Return the relative error of a solution with the plain tangent, for random forces on all coordinates.
+
+        The reference is the solution with the mixed tangent. Raises LinAlgError.
+        """
+        force = np.random.default_rng(0).standard_normal(self.zeros.shape[0])
+        plain, exact = self.plain.factorised(rotated), self.factorised(rotated).solve(force)
+        return float(np.max(np.abs(plain.solve(force) - exact)) / np.max(np.abs(exact)))
+
+    def sparse(self, rotated: Rotated) -> csr_array:
+        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and constrained there."""
+        return self.plain.sparse(rotated)
+
+
+def mixed(
+    system: System, p: np.ndarray, time: float, factor: float, loads: np.ndarray, zeros: Tangent, plain: Tangent
+) -> MixedTangent:
+    """Return the mixed tangent of a state p (n,) at a time.
+
+    factor: weight of the elastic part; loads (n,), zeros: residual and tangent without the elastic part; plain: the
+    complete tangent.
+    """
+    none = np.empty(0, dtype=np.int64), np.empty((0, 2))
+    tables, imposing = system.strain_rates, system.imposing(time)
+    rates, strain, flexible_at, positive = zip(*(table.at(p, imposing) for table in tables), strict=True)
+    weight = np.concatenate([table.weight for table in tables])
+    before = np.cumsum([0, *(len(table.weight) for table in tables)])
+    pairs = list(zip(tables, before, strict=False))
+    point = np.concatenate([table.point + first for table, first in pairs])
+    column = np.concatenate([table.column for table in tables])
+    slopes = coo_array((np.concatenate(rates) * weight[point], (point, column)), shape=(len(weight), len(loads)))
+    above, below = (np.concatenate([table.flexibility[side] + first for table, first in pairs]) for side in (0, 1))
+    inverse = np.concatenate(flexible_at) / factor
+    flexible = coo_array((inverse, (above, below)), shape=(len(weight),) * 2)
+    places = tuple((table.shape, table.resists) for table in tables)
+    fields = zeros.sparse(none), slopes, flexible, weight, loads, np.concatenate(strain), places, sum(positive), plain
+    return MixedTangent(*fields, system.scale[system.free_dofs])

@@ -1,0 +1,223 @@
+"""Fields along the axes of beams, at points suited to plotting and export."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from beamfem.cached_properties import cached_property
+from beamfem.model.beam import Beam
+from beamfem.model.beam_mesh import BeamMesh
+from beamfem.model.reference import reference_axis
+from beamfem.model.section_stress import Distributions, distributions, layers
+from beamfem.results import postprocess
+from beamfem.results.beam_stress import stress_at, stress_over_height
+from beamfem.results.free_bodies import Cuts
+from beamfem.results.full_turns import turned_of
+from beamfem.results.section_forces import at_points
+from beamfem.validation import require_known, shown
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+
+@dataclass(frozen=True, eq=False)
+class AxisPoints:
+    """Points of a beam's axis: `pieces` equal intervals per element; adjacent elements both include their common end.
+
+    element, xi (points,).
+    """
+
+    mesh: BeamMesh
+    pieces: int
+
+    @cached_property
+    def element(self) -> np.ndarray:
+        return np.repeat(np.arange(self.mesh.elements), self.pieces + 1)
+
+    @cached_property
+    def xi(self) -> np.ndarray:
+        return np.tile(np.arange(self.pieces + 1) / self.pieces, self.mesh.elements)
+
+    @cached_property
+    def arc_length(self) -> np.ndarray:
+        """Arc length in the reference configuration (points,) [m]."""
+        return self.mesh.arc_length(self.element, self.xi)
+
+    @cached_property
+    def distributions(self) -> Distributions:
+        """The layers of the section at each point, and the distribution of section forces over their height."""
+        return distributions(self.mesh, self.element, self.xi)
+
+    @cached_property
+    def layers(self) -> np.ndarray:
+        """Lower and upper y of each layer of the section (points, layers, 2) [m], from the bottom up."""
+        return layers(self.mesh, self.element, self.xi)
+
+    @cached_property
+    def faces(self) -> np.ndarray:
+        """Lower and upper y of the section (points, 2) [m]."""
+        return self.layers[:, [0, -1], [0, 1]]
+
+    @cached_property
+    def reference(self) -> np.ndarray:
+        """Position in the reference configuration (points, 2) [m]."""
+        return self.mesh.position[self.mesh.node[self.element, 0]] + self._reference_axis.r
+
+    @cached_property
+    def _reference_axis(self) -> postprocess.Axis:
+        return reference_axis(self.mesh, self.element, self.xi)
+
+    def positions(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return r [m] and d [-] (steps, points, 2) in the states p (steps, n)."""
+        now = self.now(p)
+        return now.r, now.d
+
+    def now(self, p: np.ndarray) -> postprocess.Axis:
+        """Return the deformed axis at the points in the states p (steps, n)."""
+        return postprocess.axis(self.mesh, postprocess.nodal_vectors(self.mesh, p), self.element, self.xi)
+
+    def velocities(self, p: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Return the velocity of the axis (steps, points, 2) [m/s]."""
+        rates = postprocess.nodal_velocities(self.mesh, p, v)
+        return postprocess.axis(self.mesh, rates, self.element, self.xi).r
+
+
+@dataclass(frozen=True, eq=False)
+class PointsAt(AxisPoints):
+    """Points at any places `cuts` of a beam."""
+
+    cuts: Cuts
+
+    @cached_property
+    def element(self) -> np.ndarray:
+        return self.cuts.element
+
+    @cached_property
+    def xi(self) -> np.ndarray:
+        return self.cuts.xi
+
+
+def section_forces(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> dict[str, np.ndarray]:
+    """Return normal and shear force [N] and moment [N m] (rows, points) of some rows of a solution, by name."""
+    cuts = Cuts(points.element, points.xi)
+    forces = at_points(solution, points.mesh, cuts, rows)
+    return {name: forces[:, i] for i, name in enumerate(("normal", "shear", "moment"))}
+
+
+def rotation(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+    """Return the rotation of the section from the reference configuration (rows, points) [rad]."""
+    turned, p = turned_of(solution, points.mesh), solution.p[rows]
+    counted = None if turned is None else turned[rows]
+    return postprocess.section_rotation(points.mesh, p, points.now(p), points.element, points.xi, counted)
+
+
+Values = Callable[[AxisPoints, "Solution", slice | np.ndarray], np.ndarray]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A field along the axis: label for plots, unit, and values(points, solution, rows) -> (rows, points).
+
+    unknown: what the model must define if the values are nan; over_height: the same, (rows, points, layers, heights)
+    at `HEIGHTS` of each layer, of a field whose `values` are the extremes over them; None for others.
+    """
+
+    label: str
+    unit: str
+    values: Values
+    unknown: str = ""
+    over_height: Values | None = None
+
+    def unknown_of(self, beams: Iterable[Beam]) -> str:
+        """Return why it is not known of any of these beams."""
+        laws = [beam.law for beam in beams]
+        named = next((law.name for law in laws if law is not None), None)
+        if named is None:
+            return self.unknown
+        why = f"the section law {named} tells resultants, but no stress"
+        return why if all(laws) else f"{why}; besides, {self.unknown}"
+
+
+def _section_force(name: str) -> Callable[..., np.ndarray]:
+    def values(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+        return section_forces(points, solution, rows)[name]
+
+    return values
+
+
+def _axial_strain(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+    return postprocess.strain_at_axis(points.mesh, points.now(solution.p[rows]), points.element, points.xi).xx
+
+
+def _shear_angle(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+    return postprocess.shear_angle(points.now(solution.p[rows]))
+
+
+def _displacement(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+    return np.asarray(np.linalg.norm(points.positions(solution.p[rows])[0] - points.reference, axis=-1))
+
+
+def _speed(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+    return np.asarray(np.linalg.norm(points.velocities(solution.p[rows], solution.v[rows]), axis=-1))
+
+
+def _stress(name: str) -> Callable[..., np.ndarray]:
+    def values(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+        return stress_at(solution, points.mesh, points.element, points.xi, rows)[name]
+
+    return values
+
+
+def _outer(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+    stress = stress_at(solution, points.mesh, points.element, points.xi, rows)
+    return np.where(np.abs(stress["upper"]) >= np.abs(stress["lower"]), stress["upper"], stress["lower"])
+
+
+_NO_STRESS = "stresses need sections with a material and a height"
+
+
+def _of_stress(label: str, name: str) -> Quantity:
+    return Quantity(label, "Pa", _stress(name), _NO_STRESS)
+
+
+def _over_height(name: Literal["von_mises", "utilisation"]) -> Values:
+    def values(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+        return stress_over_height(solution, points.mesh, Cuts(points.element, points.xi), rows, name)
+
+    return values
+
+
+_VON_MISES = Quantity("von Mises stress", "Pa", _stress("von_mises"), _NO_STRESS, _over_height("von_mises"))
+QUANTITIES = {
+    "moment": Quantity("bending moment", "N m", _section_force("moment")),
+    "normal": Quantity("normal force", "N", _section_force("normal")),
+    "shear": Quantity("shear force", "N", _section_force("shear")),
+    "stress": _VON_MISES,
+    "von_mises": _VON_MISES,
+    "upper": _of_stress("stress at the upper face", "upper"),
+    "lower": _of_stress("stress at the lower face", "lower"),
+    "outer": Quantity("stress at the outer fibre", "Pa", _outer, _NO_STRESS),
+    "tension": _of_stress("largest tension", "tension"),
+    "compression": _of_stress("largest compression", "compression"),
+    "shear_stress": _of_stress("shear stress", "shear"),
+    "utilisation": Quantity(
+        "utilisation of the strength",
+        "-",
+        _stress("utilisation"),
+        "give a material its strength, Material(..., strength=)",
+        _over_height("utilisation"),
+    ),
+    "rotation": Quantity("rotation", "rad", rotation),
+    "displacement": Quantity("displacement", "m", _displacement),
+    "speed": Quantity("speed", "m/s", _speed),
+    "axial_strain": Quantity("axial Green strain", "-", _axial_strain),
+    "shear_angle": Quantity("shear angle", "rad", _shear_angle),
+}
+
+
+def quantity(name: str) -> Quantity:
+    """Return a quantity by its name. Raises InputError."""
+    require_known(f"there is no quantity {shown(name)} along a beam", name, QUANTITIES)
+    return QUANTITIES[name]

@@ -1,0 +1,65 @@
+"""Energies and momenta of the connectors of a model."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamfem.assembly.connector import Connector, Motion
+from beamfem.errors import InputError
+from beamfem.model.contribution import Contribution
+from beamfem.results.solution_system import loading
+from beamfem.validation import shown
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+
+def kinetic_of_connectors(solution: "Solution") -> np.ndarray:
+    """Return their kinetic energy (steps,) [J]."""
+    return _energies(solution)[:, 0]
+
+
+def potential_of_connectors(solution: "Solution") -> np.ndarray:
+    """Return their potential (steps,) [J]."""
+    return _energies(solution)[:, 1]
+
+
+def momenta_of_connectors(solution: "Solution") -> np.ndarray:
+    """Return their linear momentum [kg m/s] and moment of momentum about the origin [kg m^2/s] (steps, 3)."""
+    system, times = loading(solution)
+    momenta = [system.connectors.momenta(state, at) for state, at in _states(solution, times)]
+    return np.array(momenta).reshape(-1, 3)
+
+
+def connector_force(solution: "Solution", connector: Contribution) -> np.ndarray:
+    """Return the forces of a connector on its points (steps, m, 3): fx, fy [N], moment [N m]. Raises InputError."""
+    system, times = loading(solution)
+    item = _bound(solution, connector)
+    forces = [
+        item.by_point(-item.force(item.at(motion, at, system.connectors.gravity(at)))[: len(item.dofs)])
+        for motion, at in _states(solution, times)
+    ]
+    return np.array(forces).reshape(len(solution), -1, 3)
+
+
+def multipliers(solution: "Solution", connector: Contribution) -> np.ndarray:
+    """Return the additional unknowns of a connector (steps, k), such as multipliers. Raises InputError."""
+    return solution.p[:, _bound(solution, connector).own]
+
+
+def _bound(solution: "Solution", connector: Contribution) -> Connector:
+    for item in loading(solution)[0].connectors.items:
+        if item.item is connector:
+            return item
+    raise InputError(f"{shown(connector)} is not a connector of this model; use one of model.connectors")
+
+
+def _energies(solution: "Solution") -> np.ndarray:
+    system, times = loading(solution)
+    energies = [system.connectors.energies(state, at) for state, at in _states(solution, times)]
+    return np.array(energies).reshape(-1, 2)
+
+
+def _states(solution: "Solution", times: np.ndarray) -> list[tuple[Motion, float]]:
+    rows = zip(solution.p, solution.v, solution.a, strict=True)
+    return list(zip(rows, np.asarray(times, dtype=float).tolist(), strict=True))

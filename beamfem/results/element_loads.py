@@ -1,0 +1,220 @@
+"""Forces acting on elements isolated as free bodies: weight, inertia, loads and foundations, at points."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamfem.assembly.system import System
+from beamfem.element.axis import cross, dot
+from beamfem.element.coordinates import across
+from beamfem.element.fields import d_slots, r_slots
+from beamfem.model.beam_mesh import BeamMesh
+from beamfem.model.reference import inertia_points, length_points, scales
+from beamfem.quadrature import gauss
+from beamfem.results.lumped_values import nearest, to_more_points
+from beamfem.results.solution_system import loading
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Rows of a solution and the forces that act in them.
+
+    p, v, a (steps, n); body (steps, beams, 4): see `System.body`; values: for each block (steps, nl, 3), see `Actions`;
+    imposing (steps, k): factors of the loads that impose strains.
+    """
+
+    system: System
+    p: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    body: np.ndarray
+    values: tuple[np.ndarray, ...]
+    imposing: np.ndarray
+
+
+def rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:
+    """Return some rows of a solution with the forces that act in them, kept until other rows are asked for.
+
+    The beams of a model ask for the same rows one after another.
+    """
+    key = rows if isinstance(rows, slice) else np.asarray(rows).tobytes()
+    latest = solution.computed(_latest)
+    kept = latest.get("rows")
+    if kept is None or kept[0] != key:
+        kept = latest["rows"] = key, _rows_of(solution, rows)
+    return kept[1]
+
+
+def _latest(solution: "Solution") -> dict[str, tuple[slice | bytes, Rows]]:
+    """Return the latest rows of a solution, none at first."""
+    return {}
+
+
+def _rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:
+    system, at = loading(solution)
+    times = at[rows].tolist()
+    body = np.array([system.body(time) for time in times]).reshape(len(times), -1, 4)
+    points = [system.point_values(time) for time in times]
+    values = tuple(
+        np.array([own[block] for own in points]).reshape(len(times), -1, 3) for block in range(len(system.blocks))
+    )
+    imposing = np.array([system.imposing(time) for time in times]).reshape(len(times), -1)
+    return Rows(system, solution.p[rows], solution.v[rows], solution.a[rows], body, values, imposing)
+
+
+@dataclass(frozen=True, eq=False)
+class Acting:
+    """Forces at points of elements; virtual work f . delta r + h . delta g, where g is a vector that turns with them.
+
+    element (m,): index among the elements cut free; xi (m,); rule (m,): number of Gauss points over which the
+    distributed force is lumped; position, direction (m, nv): r = sum position_i e_i, likewise g;
+    force f (steps, m, 2) [N], couple h (steps, m, 2) [N m over the unit of g].
+    """
+
+    element: np.ndarray
+    xi: np.ndarray
+    rule: np.ndarray
+    position: np.ndarray
+    direction: np.ndarray
+    force: np.ndarray
+    couple: np.ndarray
+
+    def moments(self, e: np.ndarray, origin: np.ndarray) -> np.ndarray:
+        """Return the moments (steps, m) [N m] about an origin (steps, elements, 2) of each element; e: `vectors`."""
+        arm = _at(self.position, e, self.element) - origin[:, self.element]
+        return cross(arm, self.force) + cross(_at(self.direction, e, self.element), self.couple)
+
+    def nodal(self, elements: int) -> np.ndarray:
+        """Return the forces (steps, elements, nv, 2) on the nodal vectors of each element."""
+        result = np.zeros((elements, len(self.force), self.position.shape[1], 2))
+        parts = np.einsum("smc,mi->msic", self.force, self.position)
+        parts += np.einsum("smc,mi->msic", self.couple, self.direction)
+        np.add.at(result, self.element, parts)
+        return np.moveaxis(result, 0, 1)
+
+
+def acting_on(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, acceleration: np.ndarray) -> Acting:
+    """Return the forces on elements (ne,) of a beam with nodal vectors e and accelerations e'' (steps, ne, nv, 2).
+
+    Point loads are excluded: they act at nodes, that is between elements.
+    """
+    parts = [
+        _of_mass(rows, mesh, elements, e, acceleration),
+        _along(rows, mesh, elements, e),
+        _distributed(rows, mesh, elements, e),
+    ]
+    joined = {
+        name: np.concatenate([getattr(part, name) for part in parts], axis=1 if name in ("force", "couple") else 0)
+        for name in Acting.__dataclass_fields__
+    }
+    return Acting(**joined)
+
+
+def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acting:
+    """Return the same forces, distributed ones at as many Gauss points of elements (ne,) as their moments need.
+
+    The moment of an interpolated density is a polynomial whose degree is higher by that of the field.
+    """
+    if not len(acting.rule):
+        return acting
+    field = mesh.beam.element.field
+    extra = max(field.degree, field.director_degree)
+    parts = []
+    for rule in np.unique(acting.rule).tolist():
+        mask = acting.rule == rule
+        index = acting.element[mask], nearest(gauss(rule)[0], acting.xi[mask])
+        finer = to_more_points(rule, rule + extra)
+        distributed = []
+        for values in (acting.force[:, mask], acting.couple[:, mask]):
+            summed = np.zeros((len(elements), rule, len(values), 2))
+            np.add.at(summed, index, np.moveaxis(values, 1, 0))
+            distributed.append(np.einsum("jn,ensc->sejc", finer, summed).reshape(len(values), -1, 2))
+        element, xi = np.repeat(np.arange(len(elements)), len(finer)), np.tile(gauss(len(finer))[0], len(elements))
+        # distributed moments come from inertia alone, which turns with d
+        tables = _tables(mesh, elements[element], xi)
+        parts.append((element, xi, np.full(len(xi), len(finer)), *tables, *distributed))
+    joined = zip(*parts, strict=True)
+    return Acting(*(np.concatenate(values, axis=1 if values[0].ndim == 3 else 0) for values in joined))
+
+
+def _of_mass(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, acceleration: np.ndarray) -> Acting:
+    """Return weight less mass times acceleration of the body r0 + y d."""
+    pull = rows.body[:, _beams(rows, mesh, elements), :2]
+    if not pull.any() and not acceleration.any():
+        return _nothing(e)
+    where, xi, inertia = inertia_points(mesh, elements)
+    element, (position, direction) = _numbers(elements, where), _tables(mesh, where, xi)
+    mass, first, rotary = inertia.T[:, None, :, None]
+    free = pull[:, element] - _at(position, acceleration, element)
+    turn = _at(direction, acceleration, element)
+    rule = np.full(len(xi), len(xi) // len(elements))
+    return Acting(element, xi, rule, position, direction, mass * free - first * turn, first * free - rotary * turn)
+
+
+def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
+    """Return forces per length that keep their direction."""
+    load = rows.body[:, _beams(rows, mesh, elements), 2:]
+    if not load.any():
+        return _nothing(e)
+    where, xi, weight = length_points(mesh, elements)
+    element = _numbers(elements, where)
+    force = load[:, element] * weight[:, None]
+    rule = np.full(len(xi), len(xi) // len(elements))
+    position, direction = _tables(mesh, where, xi)
+    return Acting(element, xi, rule, position, direction, force, np.zeros_like(force))
+
+
+def _distributed(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
+    """Return follower and varying loads along beams, and foundation springs, as evaluated by the kernels."""
+    actions = rows.system.actions[mesh.block]
+    points, own = actions.points, mesh.in_block(elements)
+    order = np.argsort(own)
+    chosen = actions.distributed_on(own[order])
+    if not len(chosen):
+        return _nothing(e)
+    element = order[np.searchsorted(own, points.element[chosen], sorter=order)]
+    position, direction = points.position[chosen], points.direction[chosen]
+    values = rows.values[mesh.block][:, chosen]
+    r, g, at_rest = _at(position, e, element), _at(direction, e, element), points.follows[chosen]
+    square = dot(g, g)[..., None]
+    follows = np.any(at_rest, axis=1, keepdims=True)
+    unit = np.where(points.stretches[chosen][:, None], 1.0, np.sqrt(square))
+    co, si = dot(g, at_rest)[..., None] / unit, cross(at_rest, g)[..., None] / unit
+    dead = values[..., :2]
+    force = np.where(follows, co * dead + si * across(dead), dead) - points.spring[chosen] * (r - points.anchor[chosen])
+    couple = values[..., 2:] * across(g) / square
+    return Acting(element, actions.xi[chosen], actions.rule[chosen], position, direction, force, couple)
+
+
+def _nothing(e: np.ndarray) -> Acting:
+    none, table = np.zeros(0, dtype=np.int64), np.zeros((0, e.shape[2]))
+    return Acting(none, np.zeros(0), none, table, table, *np.zeros((2, len(e), 0, 2)))
+
+
+def _beams(rows: Rows, mesh: BeamMesh, elements: np.ndarray) -> np.ndarray:
+    """Return the number in the model of the beam of each element (ne,)."""
+    return np.asarray(rows.system.blocks[mesh.block].beam[mesh.in_block(elements)])
+
+
+def _numbers(elements: np.ndarray, where: np.ndarray) -> np.ndarray:
+    """Return the indices of elements among those cut free, which are in ascending order."""
+    return np.searchsorted(elements, where)
+
+
+def _tables(mesh: BeamMesh, element: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the shape function tables (m, nv) of r and of d at points (element, xi) of a beam."""
+    formulation = mesh.beam.element
+    scale = scales(formulation, mesh.lengths[element])
+    position, direction = np.zeros_like(scale), np.zeros_like(scale)
+    position[:, r_slots(formulation.field)] = formulation.field.centreline(xi)
+    direction[:, d_slots(formulation.field)] = formulation.field.director(xi)
+    return position * scale, direction * scale
+
+
+def _at(table: np.ndarray, vectors: np.ndarray, element: np.ndarray) -> np.ndarray:
+    """Return the interpolation (steps, m, 2) of nodal vectors (steps, ne, nv, 2) at points."""
+    return np.einsum("mi,smic->smc", table, vectors[:, element])

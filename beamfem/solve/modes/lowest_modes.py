@@ -1,0 +1,129 @@
+"""The lowest eigenpairs of K phi = lambda M phi, complete and accurate for slender beams."""
+
+import numpy as np
+
+from beamfem.assembly.system import Proven
+from beamfem.errors import ConvergenceError
+from beamfem.linalg.eigenpairs import Pairs, largest_pairs, nothing_known
+from beamfem.linalg.lapack import LinAlgError, eigh
+from beamfem.linalg.tangent import Tangent
+from beamfem.precision.roundoff import LOSES
+from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
+from beamfem.solve.modes.pencil import Pencil
+from beamfem.solve.modes.sturm_check import complete
+
+_SPARE = 4  # eigenvalues found beyond those asked for, so that a gap can be seen
+_RANGE = 1e6  # largest ratio of eigenvalues that are computed together from the stiffness
+_SEARCHES = 8
+WRONG = 1e-5  # of vectors: largest acceptable error by round-off of the tangent
+_SOLVES = 2  # for vectors with noticeable round-off: each reduces their error to about a hundredth
+
+
+def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | None = None) -> Pairs:
+    """Return the lowest lambda (m,) [1/s^2], ascending, and vectors (unknown, m), of a symmetric pencil, m >= count.
+
+    rigid (unknown, r): M-orthonormal vectors with lambda = 0, which the result does not contain; shift: below all
+    eigenvalues, if one is known. Raises ConvergenceError if some were missed.
+    """
+    n, available = pencil.mass.shape[0], pencil.size - rigid.shape[1]
+    if count == 0:
+        return nothing_known(n)
+    start = pencil.shift(rigid.shape[1]) if shift is None else shift
+    factors = pencil.shifted(start).factorised(pencil.system.rotated)
+    lost = pencil.lost(start, factors)
+    if lost > LOSES:
+        pencil.system.proven.add(Proven.LOSES_DIGITS)
+        start = pencil.shift(rigid.shape[1]) if shift is None else shift
+        factors = pencil.shifted(start).factorised(pencil.system.rotated)
+    wanted = min(count + _SPARE, available)
+    known = rigid
+    correction = np.zeros_like(pencil.p)
+    correction[pencil.system.free_dofs] = -factors.solve(pencil.unbalanced)
+    pairs, missing = nothing_known(n), wanted
+    for _ in range(_SEARCHES):
+        more = largest_pairs(pencil.mass, factors, min(missing, available - len(pairs[0])), known)
+        pairs = _sorted(np.append(pairs[0], start + 1.0 / more[0]), np.column_stack([pairs[1], more[1]]))
+        squares, vectors = _refined(pencil, *_sharpened(pencil, *pairs, start if lost > WRONG else None), correction)
+        if len(squares) == available:
+            return squares, vectors
+        checked = complete(pencil, squares, count, rigid.shape[1])
+        if checked.missing == 0:
+            return squares[: checked.found], vectors[:, : checked.found]
+        missing = max(checked.missing, _SPARE)
+        known = np.column_stack([known, more[1]])
+    below_cut = f"{np.sqrt(max(checked.cut, 0.0)) / (2.0 * np.pi):.6g} {pencil.system.model.unit('Hz')}"
+    raise ConvergenceError(f"modes below {below_cut} were missed")
+
+
+def _sharpened(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray, start: float | None) -> Pairs:
+    """Return the vectors (unknown, m) of eigenvalues far above the lowest after further solves, at a shift below them.
+
+    The factors that found them carry the round-off of the lowest, which grows with the ratio of the eigenvalues.
+    start: shift below all if the round-off of the tangent is noticeable, so that the lowest are solved for as well.
+    """
+    first, *others = _alike(squares)
+    sharp = vectors[:, first]
+    if start is not None:
+        sharp = _solved(pencil, pencil.exact(start), np.empty((len(vectors), 0)), sharp)
+    for part in others:
+        shift = 0.5 * squares[part.start]
+        tangent = pencil.shifted(shift) if start is None else pencil.exact(shift)
+        sharp = np.column_stack([sharp, _solved(pencil, tangent, sharp, vectors[:, part])])
+    return squares, sharp
+
+
+def _solved(pencil: Pencil, tangent: Tangent, known: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Return vectors (n, m) after inverse iterations, without their components along known ones (n, k)."""
+    factors, result = tangent.factorised(pencil.system.rotated), _besides(pencil, known, vectors)
+    for _ in range(_SOLVES):
+        result = np.column_stack([factors.solve(column) for column in (pencil.mass @ result).T])
+        result = _besides(pencil, known, result)
+    return result
+
+
+def _besides(pencil: Pencil, known: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Return vectors (n, m) without their components along known ones (n, k), and with x^T M x = 1."""
+    vectors = vectors - known @ (known.T @ (pencil.mass @ vectors))
+    return np.asarray(vectors / np.sqrt((vectors * (pencil.mass @ vectors)).sum(axis=0)))
+
+
+def _refined(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray, correction: np.ndarray) -> Pairs:
+    """Return eigenpairs recomputed from the stiffness of their vectors, free of the round-off of assembled tangents.
+
+    Vectors with eigenvalues of similar size are treated together (Rayleigh-Ritz), as they may be mixed if these are
+    close.
+    """
+    modes = np.zeros((len(squares), len(pencil.p)))
+    modes[:, pencil.system.free_dofs] = vectors.T
+    stiffness = stiffness_of_modes(pencil.system, pencil.p, pencil.load_factor, modes, correction)
+    mass = vectors.T @ (pencil.mass @ vectors)
+    parts = []
+    for part in _alike(squares):
+        try:
+            values, mixed = eigh(stiffness[part, part], mass[part, part])
+        except LinAlgError:
+            raise ConvergenceError(
+                "the tangent of such a slender model has no reliable digits, so that modes cannot be distinguished"
+            ) from None
+        parts.append((values, vectors[:, part] @ mixed))
+    return _sorted(np.concatenate([values for values, _ in parts]), np.column_stack([x for _, x in parts]))
+
+
+def _alike(squares: np.ndarray) -> list[slice]:
+    """Return parts of ascending eigenvalues, cut at gaps, whose ratio is bounded."""
+    first, result = 0, []
+    while first < len(squares):
+        far = np.flatnonzero(squares[first:] > _RANGE * np.abs(squares[: first + 1]).max())
+        last = len(squares)
+        if len(far):
+            inside = np.arange(first + 1, first + int(far[0]) + 1)
+            fractions = np.abs(squares[inside - 1]) / squares[inside]
+            last = int(inside[np.argmin(fractions)])
+        result.append(slice(first, last))
+        first = last
+    return result
+
+
+def _sorted(values: np.ndarray, vectors: np.ndarray) -> Pairs:
+    order = np.argsort(values, kind="stable")
+    return values[order], vectors[:, order]

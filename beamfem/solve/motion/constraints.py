@@ -1,0 +1,91 @@
+"""Motions with constraint conditions: consistency of the start, and initial accelerations and multipliers."""
+
+import numpy as np
+from scipy.linalg import LinAlgError
+from scipy.sparse import block_array, csc_array
+
+from beamfem.assembly.connector import Motion
+from beamfem.assembly.connector_rates import follows_time
+from beamfem.assembly.equations import INERTIA, STATICS, linearise
+from beamfem.assembly.system import System
+from beamfem.errors import InputError
+from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
+from beamfem.precision.saddle import SaddleTangent
+from beamfem.solve.start.multipliers import dependent
+
+_MET = 1e-8  # of the model, or of the largest velocity
+_SHORT = 1e-4  # of the model: step of a difference along the motion
+
+
+def require_met(system: System, p: np.ndarray, v: np.ndarray, duration: float) -> None:
+    """Raise InputError if the start p, p' (n,) of a motion does not satisfy the conditions of connectors."""
+    gaps, rates = system.connectors.conditions(p, v)
+    fastest = float(np.max(np.abs(v) * np.where(system.positions, 1.0, system.extent), initial=0.0))
+    fastest += system.extent / duration
+    for item in system.connectors.items:
+        if follows_time(item)[1]:
+            raise InputError(
+                f"conditions of {item.name} depend on time, which simulate does not support; let a Prescribed support "
+                "move"
+            )
+        rows = item.own - system.model.coordinates
+        if np.any(np.abs(gaps[rows]) > _MET * system.extent):
+            raise InputError(
+                f"the start of the motion does not satisfy the conditions of {item.name}, which are off by {gaps[rows]}"
+            )
+        if np.any(np.abs(rates[rows]) > _MET * fastest):
+            raise InputError(
+                f"the initial velocity does not satisfy the conditions of {item.name}, which change by {rates[rows]} "
+                f"per {system.model.unit('s')}. Give all that it connects compatible velocities, such as one "
+                "RigidVelocity"
+            )
+
+
+def constrained_acceleration(
+    system: System, motion: Motion, unbalanced: np.ndarray, mass: Tangent, time: float
+) -> np.ndarray:
+    """Return p'' and multipliers (unknown,), with [M, G'; G, 0] [p'', l] = [-r, -dG/dt p'].
+
+    motion: p, p' and p'' of prescribed coordinates; unbalanced (n,): residual r without multipliers; mass: M, between
+    coordinates.
+    """
+    (p, v, a), k = motion, len(system.connectors.multipliers)
+    right = -unbalanced[system.free_dofs]
+    right[-k:] = -_change_of_rates(system, p, v, a)
+    return _with_conditions(system, p, mass, right, time)
+
+
+def stopped_by_conditions(system: System, p: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return the change of p' (n,) by the impulses of conditions that a start p, p' (n,) does not satisfy at once.
+
+    Momentum changes along the gradients of the conditions only, M x + G' l = 0 with G (p' + x) = 0.
+    """
+    zeros, multipliers = np.zeros(len(p)), system.connectors.multipliers
+    mass = linearise(system, p, zeros, zeros, 0.0, INERTIA)[1]
+    right, result = np.zeros(len(system.free_dofs)), zeros.copy()
+    right[-len(multipliers) :] = -system.connectors.conditions(p, v)[1]
+    result[system.free_dofs] = _with_conditions(system, p, mass, right, 0.0)
+    result[multipliers] = 0.0
+    return result
+
+
+def _with_conditions(system: System, p: np.ndarray, mass: Tangent, right: np.ndarray, time: float) -> np.ndarray:
+    """Return x and multipliers (unknown,), with [M, G'; G, 0] [x, l] = right."""
+    k, zeros = len(system.connectors.multipliers), np.zeros(len(p))
+    inertia = mass.sparse(UNROTATED)[:-k, :-k]
+    conditions = linearise(system, p, zeros, zeros, time, STATICS)[1].sparse(UNROTATED)[-k:, :-k]
+    whole = SaddleTangent(SparseTangent(csc_array(block_array([[inertia, conditions.T], [conditions, None]]))), k)
+    try:
+        return whole.solve(right, system.rotated)
+    except LinAlgError as error:
+        raise InputError(dependent(system)) from error
+
+
+def _change_of_rates(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+    """Return d/dt (G p') (k,) along p + p' t + p'' t^2 / 2, by a central difference."""
+    speed, push = (float(np.max(np.abs(values) / system.scale)) for values in (v, a))
+    if speed == 0.0 == push:
+        return np.zeros(len(system.connectors.multipliers))
+    size = min(_SHORT / speed if speed else np.inf, np.sqrt(_SHORT / push) if push else np.inf)
+    ends = [system.connectors.conditions(p + t * v + 0.5 * t**2 * a, v + t * a)[1] for t in (size, -size)]
+    return np.asarray((ends[0] - ends[1]) / (2.0 * size))

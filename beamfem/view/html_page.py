@@ -1,0 +1,102 @@
+"""A page that shows figures with a sentence each; one file, readable offline."""
+
+import base64
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from os import PathLike
+from pathlib import Path
+
+from beamfem.atomic_write import path_of, whole
+from beamfem.view.notebook_paths import WrittenFile
+
+_STYLE = """
+body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 62rem; margin: 2rem auto; padding: 0 1rem }
+h1, h2 { line-height: 1.2 } figure { margin: 1.5rem 0; display: grid; gap: .5rem 1.5rem;
+grid-template-columns: minmax(18rem, 3fr) 2fr; align-items: center } figure img { width: 100% }
+figcaption b { display: block } table { border-collapse: collapse; margin: 1rem 0 } td, th { padding: .2rem .8rem;
+border-bottom: 1px solid #ddd; text-align: right } td:first-child, th:first-child { text-align: left }
+.word { white-space: nowrap } .wide { overflow-x: auto } nav ul { columns: 18rem; padding-left: 1.2rem }
+figcaption { overflow-wrap: anywhere }
+.no { color: #b02030 } .yes { color: #207040 }
+@media (max-width: 45rem) { figure { grid-template-columns: minmax(0, 1fr) } h1 { font-size: 1.6rem }
+td, th { padding: .2rem .4rem; font-size: .85rem } }
+"""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A figure with a title, the claim of a paper about it (or ""), the finding here, and whether the claim holds."""
+
+    title: str
+    picture: Path
+    claim: str
+    found: str
+    holds: bool | None = None
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table with a title, a header and rows of text."""
+
+    title: str
+    header: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    remark: str = ""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a page: a heading, a text, figures and tables."""
+
+    heading: str
+    text: str
+    entries: Sequence[Entry] = ()
+    tables: Sequence[Table] = ()
+
+
+def write_page(path: str | PathLike[str], title: str, parts: Sequence[Part]) -> Path:
+    """Write one self-contained HTML file with the SVG figures inside, and a table of contents; return its path."""
+    target = path_of(path)
+    body = _contents(parts) + "".join(_part(part, number) for number, part in enumerate(parts))
+    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(title)}</title>'
+    page = f"<!doctype html><html lang='en'><head>{head}<style>{_STYLE}</style></head>"
+    with whole(target) as partial:
+        partial.write_text(f"{page}<body><h1>{escape(title)}</h1>{body}</body></html>\n", encoding="utf-8")
+    return WrittenFile(target)
+
+
+def _contents(parts: Sequence[Part]) -> str:
+    if len(parts) < 2:
+        return ""
+    links = [f"<li><a href='#part{number}'>{escape(part.heading)}</a></li>" for number, part in enumerate(parts)]
+    return f"<nav><ul>{''.join(links)}</ul></nav>"
+
+
+def _part(part: Part, number: int) -> str:
+    entries = "".join(_entry(entry) for entry in part.entries)
+    tables = "".join(_table(table) for table in part.tables)
+    return f"<h2 id='part{number}'>{escape(part.heading)}</h2><p>{escape(part.text)}</p>{tables}{entries}"
+
+
+def _entry(entry: Entry) -> str:
+    data = base64.b64encode(entry.picture.read_bytes()).decode()
+    kind = "svg+xml" if entry.picture.suffix == ".svg" else entry.picture.suffix[1:]
+    verdict = {None: "", True: "<p class='yes'>The claim holds.</p>", False: "<p class='no'>We find otherwise.</p>"}
+    prefix = f"<p>Paper: {escape(entry.claim)}</p><p>Here: " if entry.claim else "<p>"
+    words = f"<b>{escape(entry.title)}</b>{prefix}{escape(entry.found)}</p>"
+    picture = f'<img alt="{escape(entry.title)}" src="data:image/{kind};base64,{data}">'
+    return f"<figure>{picture}<figcaption>{words}{verdict[entry.holds]}</figcaption></figure>"
+
+
+def _table(table: Table) -> str:
+    head = "".join(f"<th>{escape(cell)}</th>" for cell in table.header)
+    rows = "".join("<tr>" + "".join(_cell(cell) for cell in row) + "</tr>" for row in table.rows)
+    title = f"<h3>{escape(table.title)}</h3>"
+    return f"{title}<div class='wide'><table><tr>{head}</tr>{rows}</table></div><p>{escape(table.remark)}</p>"
+
+
+def _cell(text: str) -> str:
+    # a browser would break 1.5e-02 and ANCF-CRBF after the sign
+    kind = "" if " " in text else " class='word'"
+    return f"<td{kind}>{escape(text)}</td>"

@@ -1,0 +1,196 @@
+"""Supports and joints in a drawing, as engineers draw them; a symbol has the same size in every picture."""
+
+from collections import defaultdict
+from typing import TYPE_CHECKING, Any, assert_never
+
+import numpy as np
+
+from beamfem.model.load_shapes import Constraint, JointShape, Springs, SpringsAlong, SupportShape, drawn
+from beamfem.view import symbols
+from beamfem.view.frames import one_row
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+SIZE = 15.0  # of a symbol [points of print]
+INK = "0.15"
+PRESCRIBED = "#AA3377"
+_SPRINGS_OF_FOUNDATION = 12
+
+
+class Stamps:
+    """Outlines to draw at points, collected so that thousands of them are drawn at once."""
+
+    def __init__(self) -> None:
+        self.places: dict[tuple[bytes, str, float, str], list[np.ndarray]] = defaultdict(list)
+        self.outlines: dict[bytes, np.ndarray] = {}
+
+    def add(
+        self, at: np.ndarray, outline: np.ndarray, colour: str = INK, width: float = 1.0, fill: str = "none"
+    ) -> None:
+        """Add an outline (n, 2) [symbols] at a place (2,) [m]."""
+        key = np.round(outline, 6).tobytes()
+        self.outlines[key] = outline
+        self.places[key, colour, width, fill].append(at)
+
+    def add_all(self, other: "Stamps") -> None:
+        """Add the outlines of others."""
+        self.outlines.update(other.outlines)
+        for key, places in other.places.items():
+            self.places[key].extend(places)
+
+    def draw(self, axes: Any, size: float = SIZE, layer: float = 4.0) -> list[Any]:
+        """Add all to the axes and return them."""
+        from matplotlib.collections import PathCollection
+        from matplotlib.path import Path
+        from matplotlib.transforms import Affine2D
+
+        artists = []
+        for (key, colour, width, fill), places in self.places.items():
+            drawn = PathCollection(
+                [Path(self.outlines[key])],
+                offsets=np.array(places),
+                offset_transform=axes.transData,
+                edgecolors=colour,
+                facecolors=fill,
+                linewidths=width,
+                capstyle="round",
+                zorder=layer,
+            )
+            # inches of the figure, so that a file may be saved at any resolution
+            drawn.set_transform(Affine2D().scale(size / 72.0) + axes.figure.dpi_scale_trans)
+            axes.add_collection(drawn, autolim=False)
+            artists.append(drawn)
+        return artists
+
+
+def draw_supports(axes: Any, solution: "Solution", row: int, centre: np.ndarray) -> list[Any]:
+    """Draw the supports of a model in a row; see `supports_of`."""
+    return supports_of(solution, row, centre).draw(axes)
+
+
+def supports_of(solution: "Solution", row: int, centre: np.ndarray) -> Stamps:
+    """Return the symbols of supports in a row: rollers roll, prescribed motions start at their points.
+
+    centre: of all shapes (2,) [m], which decides the side on which a symbol is drawn.
+    """
+    only = one_row(solution, row)
+    stamps = Stamps()
+    for support in solution.model.supports:
+        for shape in drawn(support, support.shapes(), SupportShape):
+            match shape:
+                case SpringsAlong():
+                    _springs_along(stamps, shape)
+                case Springs():
+                    _springs(stamps, shape)
+                case Constraint(normal=None):
+                    _constraint(stamps, shape, only.position(shape.point)[0], centre)
+                case Constraint():
+                    _stamp(stamps, symbols.ROLLER, only.position(shape.point)[0], -np.asarray(shape.normal))
+                case _:
+                    assert_never(shape)
+    return stamps
+
+
+def draw_joints(axes: Any, solution: "Solution", row: int) -> list[Any]:
+    """Draw the hinges and connectors of a model in a row; see `joints_of`."""
+    return joints_of(solution, row).draw(axes, layer=6.0) + _draw_connectors(axes, solution, row)
+
+
+def _draw_connectors(axes: Any, solution: "Solution", row: int) -> list[Any]:
+    """Draw each connector as a dashed line through its points, which are dots."""
+    connectors = solution.model.connectors
+    only = one_row(solution, row) if connectors else solution
+    drawn = []
+    for connector in connectors:
+        x, y = np.array([only.position(point)[0] for point in connector.points]).T
+        drawn += axes.plot(x, y, color=INK, linestyle="--", linewidth=1.0, marker="o", markersize=5.0, zorder=6.0)
+    return drawn
+
+
+def joints_of(solution: "Solution", row: int) -> Stamps:
+    """Return the hinges of a model in a row as circles."""
+    stamps = Stamps()
+    rings = [shape for joint in solution.model.joints for shape in drawn(joint, joint.shapes(), JointShape)]
+    if rings:
+        only = one_row(solution, row)
+        for ring in rings:
+            stamps.add(only.position(ring.point)[0], symbols.HINGE, INK, 1.1, "white")
+    return stamps
+
+
+def _stamp(stamps: Stamps, symbol: list[np.ndarray], at: np.ndarray, down: np.ndarray, width: float = 1.0) -> None:
+    for outline in symbol:
+        closed = len(outline) > 2 and np.allclose(outline[0], outline[-1])
+        stamps.add(at, symbols.turned(outline, down), INK, width, "white" if closed else "none")
+
+
+def _away(point: Any) -> np.ndarray:
+    """Direction away from the beam at its ends; below it elsewhere."""
+    curve = point.beam.curve
+    along = curve.tangent(np.array([point.fraction * curve.length]))[0]
+    if point.fraction == 0.0:
+        return -along
+    return along if point.fraction == 1.0 else np.array([along[1], -along[0]])
+
+
+def _ground(at: np.ndarray, centre: np.ndarray) -> np.ndarray:
+    """Return the direction of the ground: down, or up if the structure hangs below."""
+    x, y = centre - at
+    return np.array([0.0, 1.0 if y < 0.0 and -y > abs(x) else -1.0])
+
+
+def _springs(stamps: Stamps, spring: Springs) -> None:
+    (kx, ky), at = spring.stiffness, spring.point.reference
+    if kx:
+        side = 1.0 if spring.point.fraction > 0.5 else -1.0
+        _stamp(stamps, symbols.SPRING, at, np.array([side, 0.0]))
+    if ky:
+        _stamp(stamps, symbols.SPRING, at, np.array([0.0, -1.0]))
+    if spring.rotational:
+        _stamp(stamps, symbols.ROTATIONAL_SPRING, at, np.array([0.0, -1.0]))
+
+
+def _springs_along(stamps: Stamps, foundation: SpringsAlong) -> None:
+    curve = foundation.beam.curve
+    kx, ky = foundation.stiffness
+    for at in curve.position(np.linspace(0.0, curve.length, _SPRINGS_OF_FOUNDATION)):
+        for stiffness, down in ((kx, (-1.0, 0.0)), (ky, (0.0, -1.0))):
+            if stiffness:
+                _stamp(stamps, symbols.SPRING, at, np.array(down), 0.7)
+
+
+def _constraint(stamps: Stamps, support: Constraint, now: np.ndarray, centre: np.ndarray) -> None:
+    """Draw directions prescribed as zero as a support, and prescribed motions as arrows."""
+    prescribed, at = support.prescribed, support.point.reference
+    fixed = {name for name, value in prescribed.items() if not callable(value) and value == 0.0}
+    if fixed == {"ux", "uy", "rotation"}:
+        _stamp(stamps, symbols.CLAMP, at, _away(support.point), 1.2)
+    elif {"ux", "uy"} <= fixed:
+        _stamp(stamps, symbols.PIN, at, _ground(at, centre))
+    else:
+        for name, down in (("ux", (-1.0, 0.0)), ("uy", (0.0, -1.0))):
+            if name in fixed:
+                _stamp(stamps, symbols.ROLLER, now, np.array(down))
+    if "rotation" in fixed and not fixed >= {"ux", "uy"}:
+        _stamp(stamps, symbols.NO_TURN, now, np.array([0.0, -1.0]), 1.2)
+    for name, direction in (("ux", (1.0, 0.0)), ("uy", (0.0, 1.0))):
+        if name in prescribed and name not in fixed:
+            value = prescribed[name]
+            sign = 1.0 if callable(value) or value > 0.0 else -1.0
+            _moved(stamps, now, sign * np.array(direction))
+    if "rotation" in prescribed and "rotation" not in fixed:
+        value = prescribed["rotation"]
+        arc, head = symbols.turn(0.5 * np.pi, 1.1, 1.4 * np.pi * (1.0 if callable(value) or value > 0.0 else -1.0))
+        stamps.add(now, arc, PRESCRIBED, 1.4)
+        stamps.add(now, head, PRESCRIBED, 0.5, PRESCRIBED)
+
+
+def _moved(stamps: Stamps, at: np.ndarray, direction: np.ndarray) -> None:
+    """Draw an arrow with a bar at its foot: a displacement, not a force."""
+    across = np.array([-direction[1], direction[0]])
+    foot, tip = 0.0 * direction, 1.6 * direction
+    for outline in ([foot - 0.3 * across, foot + 0.3 * across], [foot, tip]):
+        stamps.add(at, np.array(outline), PRESCRIBED, 1.4)
+    head = np.array([tip, tip - 0.45 * direction + 0.2 * across, tip - 0.45 * direction - 0.2 * across])
+    stamps.add(at, head, PRESCRIBED, 0.5, PRESCRIBED)

@@ -14,8 +14,17 @@ test: $(VENV)/.ready lint
 	$(BIN)/python -m pytest -n auto --maxprocesses 2 --dist loadgroup
 
 # run once more with kernels that check every access to arrays
-CHECKED := $(addprefix tests/test_,$(addsuffix .py,compiler compiler_refusals out_of_bounds lanes kernels bidirectional_lu \
-	band_newton statics dynamics section_laws motion_on_rollers))
+CHECKED := tests/kernels/test_compiler.py \
+	tests/kernels/test_compiler_refusals.py \
+	tests/kernels/test_out_of_bounds.py \
+	tests/kernels/test_lanes.py \
+	tests/equations/test_kernels.py \
+	tests/kernels/test_bidirectional_lu.py \
+	tests/kernels/test_band_newton.py \
+	tests/equations/test_statics.py \
+	tests/solvers/test_dynamics.py \
+	tests/equations/test_section_laws.py \
+	tests/solvers/test_motion_on_rollers.py
 
 verify: $(VENV)/.ready
 	$(BIN)/python -m pytest -n auto --maxprocesses 2 --dist loadgroup -m "slow or not slow"

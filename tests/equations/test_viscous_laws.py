@@ -11,8 +11,8 @@ import beamfem as bf
 from beamfem.assembly.equations import linearise
 from beamfem.assembly.system import system_of
 from beamfem.assembly.viscosity import viscous_stiffness, viscous_tangent
+from beamfem.section import StiffnessSection
 from beamfem.section.law import ConstitutiveLaw
-from beamfem.section.section_stiffness import StiffnessSection
 from beamfem.solve.motion.time_marching import initial_acceleration
 
 TIME = 0.2

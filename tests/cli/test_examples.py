@@ -18,7 +18,7 @@ from studies.stability import column, lee_frame
 
 # users get no warning from what they copy
 pytestmark = pytest.mark.filterwarnings("error::beamfem.LockingWarning", "error::beamfem.LargeStrainWarning")
-FOLDER = Path(__file__).parent.parent / "examples"
+FOLDER = Path(__file__).parents[2] / "examples"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.py"))
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?")

@@ -7,7 +7,7 @@ import pytest
 from section_laws import LinearLaw
 
 import beamfem as bf
-from beamfem.section.section_stiffness import StiffnessSection
+from beamfem.section import StiffnessSection
 
 pytestmark = pytest.mark.filterwarnings("error::beamfem.LockingWarning", "error::beamfem.LargeStrainWarning")
 STEEL = bf.Material(2.1e11, 0.3, 7850.0)

@@ -8,7 +8,7 @@ from connectors import SpringDamper
 from history_laws import LIGHT, SECTION, Viscous, arm
 
 import beamfem as bf
-from beamfem.section.section_stiffness import StiffnessSection
+from beamfem.section import StiffnessSection
 
 SOFT = {"axial": 1e4, "shear": 4e3, "bending": 1.0, "mass": 1e-3, "rotary_inertia": 1e-8}
 LOSSY = bf.Material(1.0, 0.3, 1.0, retardation_time=0.2)

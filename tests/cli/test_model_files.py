@@ -14,7 +14,7 @@ from beamfem.cli.app import app
 from beamfem.cli.model_file import read_model_file
 from beamfem.cli.toml_source import ModelFileError, read_source
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 BLOCKS = re.findall(r"```toml\n(.*?)```", (ROOT / "docs" / "model_files.md").read_text(), re.S)
 BASE = (ROOT / "examples" / "cantilever.toml").read_text()
 ARM = """

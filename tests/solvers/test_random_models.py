@@ -29,7 +29,7 @@ def iterations_before():
     Negative pivots of unsymmetric tangents depend on the order of elimination: since chains are eliminated towards
     their supports, the steps of seeds 117 and 213, under follower loads, are cut elsewhere, and take 8 and 22 more.
     """
-    with open(Path(__file__).parent / "random_models_iterations.csv", newline="") as lines:
+    with open(Path(__file__).parents[1] / "random_models_iterations.csv", newline="") as lines:
         return {int(row["seed"]): {n: row[f"steps {n}"] for n in STEPS} for row in csv.DictReader(lines)}
 
 

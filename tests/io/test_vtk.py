@@ -338,7 +338,7 @@ def test_vtkhdf_without_h5py_names_the_extra(tmp_path, monkeypatch):
 
 
 def test_documented_fields_are_those_that_are_written(solution, written):
-    text = (Path(__file__).parent.parent / "docs" / "paraview.md").read_text()
+    text = (Path(__file__).parents[2] / "docs" / "paraview.md").read_text()
     for path in (written, *(written.with_name(f"swing_{part}.pvd") for part in ("centreline", "boundary"))):
         for name in point_data(read(collection(path)[1][0])):
             assert f"`{name}`" in text or f"`{name.rsplit('_', 1)[0]}_xx`" in text

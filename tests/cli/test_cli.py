@@ -16,7 +16,7 @@ from beamfem.cli import doctor
 from beamfem.cli.app import app
 from beamfem.cli.report import plain
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 CANTILEVER = ROOT / "examples" / "cantilever.toml"
 TIP = 0.71385896416  # Reissner beam, P L^2 / (E I) = 5, k_s = 5/6, L / h = 100
 

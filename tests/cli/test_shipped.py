@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 from beamfem.cli import bundled_examples as examples
 from beamfem.cli.app import app
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 
 
 def invoke(*arguments):

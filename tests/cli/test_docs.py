@@ -13,7 +13,7 @@ from docs.page_code import blocks_of, run
 
 # pages that explain locking show elements that lock
 pytestmark = pytest.mark.filterwarnings("error::beamfem.LargeStrainWarning")
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?")
 _TINY = 1e-8  # two numbers below this are round-off of zero

@@ -11,7 +11,7 @@ import beamfem as bf
 from beamfem.io.frame import Frame
 from beamfem.io.line_mesh import LineMesh, read_mesh
 
-MESHES = Path(__file__).parents[1] / "meshes"
+MESHES = Path(__file__).parents[2] / "meshes"
 
 
 # What files hold

@@ -17,7 +17,7 @@ import beamfem as bf
 from beamfem.io.description import describe
 from beamfem.io.hdf5 import read_checked, write_checked
 
-DATA = Path(__file__).parent / "data"
+DATA = Path(__file__).parents[1] / "data"
 PRINTED = json.loads((DATA / "before_rooms.json").read_text())
 
 

@@ -13,7 +13,7 @@ import pytest
 from connectors import PointMass, SpringDamper
 
 import beamfem as bf
-from beamfem.section.section_stiffness import StiffnessSection
+from beamfem.section import StiffnessSection
 
 
 @dataclass(frozen=True)

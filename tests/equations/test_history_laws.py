@@ -24,7 +24,7 @@ from section_laws import LinearLaw
 import beamfem as bf
 from beamfem.assembly.equations import STATICS, linearise, residual
 from beamfem.assembly.system import system_of
-from beamfem.section.section_stiffness import StiffnessSection
+from beamfem.section import StiffnessSection
 from tests.connectors import Rest
 
 

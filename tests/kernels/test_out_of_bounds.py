@@ -13,7 +13,7 @@ import pytest
 from beamfem.kernels.compiler import machine
 from beamfem.kernels.compiler.bounds_checks import CHECKED
 
-SCRIPT = Path(__file__).with_name("out_of_bounds.py")
+SCRIPT = Path(__file__).parents[1] / "out_of_bounds.py"
 BEYOND = {
     "write 10": "write, line {}: values, index 10, of an array of size 10",
     "write -1": "write, line {}: values, index -1, of an array of size 10",

@@ -13,7 +13,7 @@ from beamfem.assembly.equations import STATICS, linearise, residual
 from beamfem.assembly.strain_rates import strain_rates
 from beamfem.assembly.system import System, system_of
 from beamfem.results.postprocess import strain_energy
-from beamfem.section.section_stiffness import StiffnessSection
+from beamfem.section import StiffnessSection
 
 SECTION = {"axial": 1e6, "shear": 4e5, "bending": 100.0, "mass": 1.0, "rotary_inertia": 1e-4}
 COUPLED = {**SECTION, "coupling": 3000.0}

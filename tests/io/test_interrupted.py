@@ -20,7 +20,7 @@ from beamfem.cli.app import app
 from beamfem.solve.motion.compiled_steps import CompiledSteps
 from beamfem.solve.statics import load_steps
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 BEAM = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(1), bf.Rectangle(0.1, 0.1), bf.Material(2e11, 0.3, 7800.0))
 MODEL = bf.Model([BEAM], [bf.Clamp(BEAM.start)], [bf.PointForce(BEAM.end, (0.0, -1e5))])
 

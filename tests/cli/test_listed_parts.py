@@ -14,7 +14,7 @@ import beamfem as bf
 from beamfem.cli.part_kinds import ACTING
 from beamfem.model.parts_registry import listed_parts
 
-FILE = str(Path(__file__).parent / "trial_parts.py")
+FILE = str(Path(__file__).parents[1] / "trial_parts.py")
 PARTS = ("SnowLoad", "Slide", "Weld", "Buffer")
 EXPORTED = f"""
 import importlib.util, json, sys

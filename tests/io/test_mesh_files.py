@@ -12,7 +12,7 @@ from mesh_parts import THREE, ends, frame, written
 import beamfem as bf
 from beamfem.io.line_mesh import read_mesh
 
-MESHES = Path(__file__).parents[1] / "meshes"
+MESHES = Path(__file__).parents[2] / "meshes"
 
 
 # What files hold

@@ -9,7 +9,7 @@ from section_laws import LinearLaw, RambergOsgood, Softening
 import beamfem as bf
 from beamfem.assembly.equations import STATICS, linearise, residual
 from beamfem.assembly.system import system_of
-from beamfem.section.section_stiffness import StiffnessSection
+from beamfem.section import StiffnessSection
 from beamfem.testing import check_law
 
 SECTION = {"axial": 1e6, "shear": 4e5, "bending": 100.0, "mass": 1.0, "rotary_inertia": 1e-4}

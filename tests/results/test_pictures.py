@@ -333,7 +333,7 @@ def test_a_picture_needs_no_window_and_leaves_no_global_state(tmp_path):
     code += "print([name for name in ('matplotlib.pyplot', 'vtkmodules', 'pyvista') if name in sys.modules])"
     gone = {"DISPLAY", "WAYLAND_DISPLAY", "MPLBACKEND"}
     environment = {name: value for name, value in os.environ.items() if name not in gone}
-    code = code.replace("'tests'", repr(os.path.dirname(__file__)))
+    code = code.replace("'tests'", repr(os.path.dirname(os.path.dirname(__file__))))
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, env=environment, check=False
     )

@@ -87,7 +87,7 @@ def test_what_a_page_names_exists(page):
 
 def test_lengths_of_the_parts_in_extending_are_those_of_their_code():
     page = ROOT / "docs" / "extending.md"
-    place = r"(?:`(tests/\w+\.py)`|\[\w+\]\(([\w/]+\.md)#[^|]*)"
+    place = r"(?:`(tests/[\w/]+\.py)`|\[\w+\]\(([\w/]+\.md)#[^|]*)"
     rows = re.findall(rf"^\| [^|]* \| `(\w+)` \| {place} \| (\d+) \|$", page.read_text(), re.M)
     assert len(rows) == 15
     for name, file, other, lines in rows:

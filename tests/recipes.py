@@ -275,7 +275,7 @@ def _point(parts, view: View, place: Place) -> bf.Point:
     return bf.Point(beam, 1.0 - fraction if view.backwards else fraction)
 
 
-def _support(support: Support, view: View, at: bf.Point) -> bf.model.support_base.Support:
+def _support(support: Support, view: View, at: bf.Point) -> bf.model.supports.Support:
     if support.kind == "clamp":
         return bf.Clamp(at)
     if support.kind == "pin":

@@ -8,9 +8,8 @@ import numpy as np
 
 from beamfem.model.beam import Beam, Point
 from beamfem.model.joints import Joint
-from beamfem.model.line_load import LineLoad
-from beamfem.model.load_base import Amplitude
-from beamfem.model.support_base import PointSupport
+from beamfem.model.load_base import Amplitude, LineLoad
+from beamfem.model.supports import PointSupport
 
 
 @dataclass(frozen=True)

@@ -1,22 +1,67 @@
-"""Forces, moments and springs at points of elements, in the form that the kernels expect."""
+"""Forces, moments, springs and pressures on elements, in the form that the kernels expect."""
 
+from collections import defaultdict
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from beamfem.assembly.equation_numbering import Unknowns
+from beamfem.assembly.prescribed import COORDINATES
 from beamfem.cached_properties import cached_property
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
-from beamfem.kernels.block import PointLoads
+from beamfem.kernels.block import PointLoads, Springs
 from beamfem.model.beam import Beam
 from beamfem.model.beam_mesh import BeamMesh
-from beamfem.model.line_load import LineLoad
 from beamfem.model.load_arrays import forces_of
-from beamfem.model.load_base import factor
+from beamfem.model.load_base import LineLoad, PointLoad, factor
 from beamfem.model.model import Model
-from beamfem.model.point_load import PointLoad
 from beamfem.model.reference import jacobians, length_points, reference_axis, scales
+
+_NONE = Springs(np.empty(0, dtype=np.int64), np.empty(0), np.empty(0), np.empty(0, dtype=np.int64))
+
+
+def grounded_springs(model: Model, unknowns: Unknowns, reference: np.ndarray) -> Springs:
+    """Return the springs of a model, which are unstressed at the coordinates `reference` (n,)."""
+    dofs, stiffness = [], []
+    for support in model.point_supports:
+        if springs := support.springs():
+            mesh = model.mesh_of(support.point)
+            coordinates = mesh.coordinates_of(mesh.node_at(support.point.fraction))
+            for direction, value in springs.items():
+                dofs.append(coordinates[COORDINATES[direction]])
+                stiffness.append(value)
+    if not dofs:
+        return _NONE
+    where = np.array(dofs, dtype=np.int64)
+    free = unknowns.free[where]
+    positions = free.copy()
+    positions[free >= 0] = unknowns.diagonal(free[free >= 0])
+    return Springs(where, np.array(stiffness, dtype=float), reference[where], positions)
+
+
+def pressures_have_potential(model: Model, prescribed: set[int]) -> bool:
+    """Return whether the work of all pressures depends on the configuration only.
+
+    prescribed: numbers of the prescribed coordinates. Besides p times the change of area, a pressure p does the work
+    p (x dy - y dx) / 2 at the end of its beam, and minus that at its start. This part is zero where x or y is
+    prescribed, and cancels where a ring closes or another beam continues under the same pressure. If p varies along the
+    beam, it remains at every point.
+    """
+    amplitudes = [load.amplitude for load in model.line_loads]  # kept alive, so that their ids stay different
+    ends: defaultdict[tuple[int, bool, int], float] = defaultdict(float)
+    for load, amplitude in zip(model.line_loads, amplitudes, strict=True):
+        if load.axes != "axis":
+            continue
+        along, across = forces_of(load, np.zeros(1))[0].tolist()
+        if not load.uniform or along != 0.0:
+            return False
+        mesh = model.mesh_of(load.beam.start)
+        first, last = mesh.kinematics.dof[mesh.node[0, 0], 0], mesh.kinematics.dof[mesh.node[-1, -1], 0]
+        for dof, sign in ((int(first), -1.0), (int(last), 1.0)):
+            ends[id(amplitude), load.scale, dof] += sign * across
+    return all(left == 0.0 or dof in prescribed or dof + 1 in prescribed for (_, _, dof), left in ends.items())
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.assembly.aligned_arrays import Arena
 from beamfem.assembly.callbacks import Deferred
 from beamfem.assembly.element_group import ElementGroup
 from beamfem.assembly.load_values import LoadsAt
-from beamfem.assembly.scratch_pool import Scratch, new
+from beamfem.assembly.scratch_memory import Arena, Scratch, new
 from beamfem.kernels import element_passes, model_passes, node_passes, record
 from beamfem.kernels.block import Springs
 from beamfem.kernels.pointers import address_of

@@ -12,7 +12,7 @@ from beamfem.element.element import Element
 from beamfem.kernels.block import NO_HISTORY, Block
 from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.element_types import Classes, likenesses
-from beamfem.model.imposed_strain_base import ImposedStrain
+from beamfem.model.imposed_strains import ImposedStrain
 
 PER_CLASS = tuple(name for name in Classes._fields if name != "kind")
 

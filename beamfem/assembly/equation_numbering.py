@@ -1,7 +1,4 @@
-"""Equation numbers of the unknown coordinates, and positions of element matrices in a band or sparse matrix.
-
-A sparse matrix is ordered here, once, for low fill-in, so that no factorisation has to reorder it.
-"""
+"""Equation numbers of the unknown coordinates, and positions of element matrices in a band or sparse matrix."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -9,12 +6,136 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csc_array
+from scipy.sparse import coo_array, csc_array, eye_array
+from scipy.sparse.csgraph import laplacian, reverse_cuthill_mckee
+from scipy.sparse.linalg import spilu
 
-from beamfem.assembly.reordering import Mesh, narrow_order, scattered_order, towards_support
-from beamfem.assembly.sparsity import sparsity_pattern
 from beamfem.cached_properties import cached_property
 from beamfem.kernels.block import Block, Layout
+
+
+class Mesh(NamedTuple):
+    """Nodes (ne, nn) of the elements of a block, and coordinates (N, npn) of its nodes."""
+
+    node: np.ndarray
+    dof: np.ndarray
+
+
+def narrow_order(blocks: Sequence[Mesh], size: int) -> np.ndarray:
+    """Order the coordinates (size,) by reverse Cuthill-McKee on the nodes, whose coordinates stay together."""
+    owner = _owners(blocks, size)
+    rows, columns = [], []
+    for block in blocks:
+        first = owner[block.dof[block.node, 0]]
+        # adjacent nodes of an element, and its ends, which connect it to other elements
+        rows += [first[:, :-1].ravel(), first[:, 0]]
+        columns += [first[:, 1:].ravel(), first[:, -1]]
+    row, column = np.concatenate(rows), np.concatenate(columns)
+    graph = coo_array((np.ones(len(row)), (row, column)), shape=(size, size)).tocsr()
+    order = reverse_cuthill_mckee(graph + graph.T, symmetric_mode=True)
+    rank = np.empty(size, dtype=np.int64)
+    rank[order] = np.arange(size)
+    return np.lexsort((np.arange(size), rank[owner]))
+
+
+def towards_support(
+    blocks: Sequence[Mesh], order: np.ndarray, unknown: np.ndarray, constrained: np.ndarray
+) -> np.ndarray | None:
+    """Return the unknown coordinates with the nodes reversed if the order begins closer to a support than it ends.
+
+    None if it does not. Elimination from a free end meets the stiffness of single elements only. In the other
+    direction the last pivots are the stiffness of the whole cantilever, a difference of much larger numbers that has no
+    digits in long ones. order (size,): all coordinates; unknown (size,): mask of the unknown ones.
+    """
+    if not len(constrained):
+        return None
+    owner = _owners(blocks, len(order))
+    supported = np.zeros(len(order), dtype=bool)
+    supported[owner[constrained]] = True
+    places = np.flatnonzero(supported[owner[order]])
+    left = unknown[order]
+    if np.count_nonzero(left[: places[0]]) >= np.count_nonzero(left[places[-1] + 1 :]):
+        return None
+    own = owner[order]
+    starts = np.flatnonzero(np.append(True, own[1:] != own[:-1]))
+    counts = np.diff(np.append(starts, len(order)))[::-1]
+    turned = order[np.repeat(starts[::-1] - np.cumsum(counts) + counts, counts) + np.arange(len(order))]
+    return np.asarray(turned[unknown[turned]])
+
+
+def scattered_order(blocks: Sequence[Mesh], size: int, coupled: Sequence[np.ndarray] = ()) -> np.ndarray:
+    """Order the coordinates (size,) by multiple minimum degree on the nodes, for low fill-in."""
+    owner = _owners(blocks, size)
+    nodes, number = np.unique(owner, return_inverse=True)
+    pairs = []
+    for block in blocks:
+        node = number[block.dof[block.node, 0]]
+        i, j = np.triu_indices(node.shape[1], 1)
+        pairs.append((node[:, i].ravel(), node[:, j].ravel()))
+    for dofs in coupled:
+        node = number[dofs]
+        i, j = np.triu_indices(len(node), 1)
+        apart = node[i] != node[j]
+        pairs.append((node[i[apart]], node[j[apart]]))
+    ends = np.concatenate(pairs, axis=1)
+    shape = len(nodes), len(nodes)
+    graph = coo_array((np.ones(ends.shape[1]), tuple(ends)), shape=shape)
+    # SuperLU has no ordering without factorisation: one that drops all entries costs little more
+    dominant = csc_array(laplacian(graph + graph.T) + eye_array(len(nodes)))
+    options = {"SymmetricMode": True}
+    order = spilu(dominant, drop_tol=1.0, fill_factor=1.0, permc_spec="MMD_AT_PLUS_A", options=options).perm_c
+    return np.lexsort((np.arange(size), order[number]))
+
+
+def _owners(blocks: Sequence[Mesh], size: int) -> np.ndarray:
+    """Return the first coordinate (size,) of the node of each coordinate, by which those of a node stay together."""
+    owner = np.arange(size)
+    for block in blocks:
+        for dof in block.dof.T[1:]:
+            mask = dof >= 0
+            owner[dof[mask]] = np.minimum(owner[dof[mask]], block.dof[mask, 0])
+    return np.asarray(owner[owner])
+
+
+def sparsity_pattern(numbers: Sequence[np.ndarray], unknown: int) -> tuple[csc_array, list[np.ndarray]]:
+    """Return the sparsity pattern of matrices with equation numbers (ne, k), and the positions of their entries.
+
+    It includes the diagonal.
+    """
+    rows, columns, masks = [], [], []
+    for number in (table.astype(np.int32) for table in numbers):
+        i, j = np.broadcast_arrays(number[:, :, None], number[:, None, :])
+        mask = (i >= 0) & (j >= 0)
+        rows.append(i[mask])
+        columns.append(j[mask])
+        masks.append(mask)
+    diagonal = np.arange(unknown, dtype=np.int32)
+    row, column = np.concatenate([*rows, diagonal]), np.concatenate([*columns, diagonal])
+    order = _sorted_by(row, unknown)
+    order = order[_sorted_by(column[order], unknown)]
+    row, column = row[order], column[order]
+    new = np.ones(len(order), dtype=bool)
+    new[1:] = (row[1:] != row[:-1]) | (column[1:] != column[:-1])
+    position = np.empty(len(order), dtype=np.int32)
+    position[order] = np.cumsum(new, dtype=np.int32) - 1
+    starts = np.concatenate([[0], np.cumsum(np.bincount(column[new], minlength=unknown))])
+    entries = np.ones(int(new.sum()), dtype=np.int8), row[new], starts.astype(np.int32)
+    slots, begin = [], 0
+    for mask in masks:
+        end = begin + int(mask.sum())
+        slot = np.full(mask.shape, -1, dtype=np.int32)
+        slot[mask] = position[begin:end]
+        slots.append(slot)
+        begin = end
+    return csc_array(entries, shape=(unknown, unknown)), slots
+
+
+def _sorted_by(keys: np.ndarray, count: int) -> np.ndarray:
+    """Return the stable sorting order of keys (n,) below a count, in linear time."""
+    single = np.arange(len(keys) + 1, dtype=np.int32)
+    # with one column per key, the conversion from CSC to CSR is a counting sort
+    return csc_array((np.ones(len(keys), dtype=np.int8), keys, single), shape=(count, len(keys))).tocsr().indices
+
 
 _FEW = 20_000  # coordinates; the order of larger models is not cached
 _NONE = np.empty(0, dtype=np.int64)

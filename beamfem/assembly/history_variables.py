@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.assembly.connector import Motion
-from beamfem.assembly.connectors import Connectors
+from beamfem.assembly.connectors import Connectors, Motion
 from beamfem.assembly.element_group import ElementGroup
 from beamfem.assembly.stress_resultants import free_group, resultants
 from beamfem.cached_properties import cached_property

@@ -7,7 +7,7 @@ import numpy as np
 from beamfem.kernels.block import Imposed
 from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.free_strains import free_strains
-from beamfem.model.imposed_strain_base import ImposedStrain
+from beamfem.model.imposed_strains import ImposedStrain
 
 
 def imposed_on(meshes: Sequence[tuple[int, BeamMesh]], loads: Sequence[tuple[int, ImposedStrain]]) -> Imposed | None:

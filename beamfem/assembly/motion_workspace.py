@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from beamfem.assembly.aligned_arrays import Arena
 from beamfem.assembly.rotating_vectors import runs_of
+from beamfem.assembly.scratch_memory import Arena
 from beamfem.assembly.system import System
 from beamfem.kernels import motion_record, record
 from beamfem.kernels.pointers import address_of

@@ -7,7 +7,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
 from beamfem.model.model import Model
-from beamfem.model.support_base import PointSupport, Value
+from beamfem.model.supports import PointSupport, Value
 from beamfem.validation import function_value
 
 COORDINATES = {"ux": "r^x", "uy": "r^y", "rotation": "theta"}  # nodal coordinate by direction of a support

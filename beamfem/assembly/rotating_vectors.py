@@ -4,8 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beamfem.assembly.element_group import stored
-from beamfem.assembly.group_structure import storage_order
+from beamfem.assembly.element_group import storage_order, stored
 from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, Block
 
 _GRADIENTS = (GRADIENTS, ROTATED_GRADIENTS)

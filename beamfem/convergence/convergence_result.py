@@ -243,7 +243,7 @@ class Convergence:
         >>> study = bf.converge(lambda n: 1.0 + 1.0 / n**2, refine="n", n=[4, 8, 16, 32], reference=1.0)
         >>> figure = study.plot("convergence.png")
         """
-        from beamfem.convergence.convergence_figure import plot_errors
+        from beamfem.convergence.convergence_page import plot_errors
 
         return plot_errors(self, path)
 

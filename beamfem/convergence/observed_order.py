@@ -1,13 +1,23 @@
-"""Observed order of values or errors over sizes, and the grid convergence index.
+"""Expected and observed order of values or errors over sizes, and the grid convergence index."""
 
-Sizes h (n,) decrease, with values q (n,). Sources: P. J. Roache, Verification and Validation in Computational Science
-and Engineering, 1998; I. B. Celik et al., J. Fluids Eng. 130 (2008) 078001 for varying ratios.
-"""
-
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+
+from beamfem.element.element import Element
+
+
+def highest_order(parameters: Mapping[str, Any]) -> float:
+    """Return twice the highest degree of the fields among the parameters of a curve, 16 if there is none.
+
+    Nodal values and energies of elements of degree k gain at most order 2 k; G. Strang and G. Fix, An Analysis of the
+    Finite Element Method, 1973, sections 1.6 and 3.4.
+    """
+    degrees = [value.field.degree for value in parameters.values() if isinstance(value, Element)]
+    return 2.0 * max(degrees) if degrees else HIGHEST_ORDER
+
 
 SAFETY = 1.25  # Roache's factor for three or more meshes
 ROUND_OFF = 64 * np.finfo(float).eps

@@ -8,7 +8,7 @@ import numpy as np
 
 from beamfem import validation
 from beamfem.convergence.convergence_result import Convergence
-from beamfem.convergence.expected_order import highest_order
+from beamfem.convergence.observed_order import highest_order
 from beamfem.convergence.refinement_curve import Curve, judge
 from beamfem.errors import InputError
 from beamfem.progress import progress

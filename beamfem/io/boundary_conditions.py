@@ -13,7 +13,7 @@ from beamfem.model.load_base import Load, factor
 from beamfem.model.model import Model
 from beamfem.model.reference import length_points, reference_position
 from beamfem.model.state_protocols import in_plane
-from beamfem.model.support_base import DIRECTIONS, LineSupport, PointSupport
+from beamfem.model.supports import DIRECTIONS, LineSupport, PointSupport
 from beamfem.results import postprocess
 from beamfem.results.reactions import reaction_of
 from beamfem.results.solution_system import loading

@@ -5,8 +5,7 @@ from dataclasses import Field, fields
 from typing import Any
 
 from beamfem.material import Material
-from beamfem.model.beam import Beam, Point
-from beamfem.model.beam_names import names
+from beamfem.model.beam import Beam, Point, names
 from beamfem.model.model import Model
 from beamfem.model.part_units import field_units
 from beamfem.section import Layered, Section, ShapedSection, StiffnessSection

@@ -13,8 +13,8 @@ from beamfem.element.element import Element
 from beamfem.errors import InputError
 from beamfem.io.abaqus import read_abaqus
 from beamfem.io.frame import Frame, Members, build_frame
+from beamfem.io.mesh_chains import divided, merged, parts_of, warn_of_gaps
 from beamfem.io.mesh_file import MeshFile, read_through_meshio
-from beamfem.io.split_lines import divided, merged, parts_of, warn_of_gaps
 from beamfem.material import Material
 from beamfem.reprs import brief
 from beamfem.validation import LARGEST, flag, holds_truth_values, items, number_table, shown, text

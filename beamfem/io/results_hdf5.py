@@ -12,8 +12,6 @@ import numpy as np
 
 from beamfem.atomic_write import readable
 from beamfem.errors import InputError
-from beamfem.io.axes_in_hdf5 import AXES, save_axes
-from beamfem.io.critical_points_hdf5 import load_factors, load_path, save_critical
 from beamfem.io.description import describe, rebuild
 from beamfem.io.hdf5 import (
     checksum,
@@ -25,6 +23,7 @@ from beamfem.io.hdf5 import (
     write_hdf5,
     write_label,
 )
+from beamfem.io.hdf5_arrays import AXES, load_factors, load_path, save_axes, save_critical
 from beamfem.results.path import Path as EquilibriumPath
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics, Status

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamfem.extras import needed_for
-from beamfem.model.beam import Beam
-from beamfem.model.beam_names import names
+from beamfem.model.beam import Beam, names
 from beamfem.model.model import Model
 from beamfem.results.axis_fields import QUANTITIES, AxisPoints, section_forces
 from beamfem.results.batched_beams import LikeBeams, like_beams

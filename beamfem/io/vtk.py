@@ -18,8 +18,7 @@ from beamfem.atomic_write import make_folder, path_of, whole
 from beamfem.errors import FileError, InputError
 from beamfem.extras import needed_for
 from beamfem.io.vtk_boundary import Boundary
-from beamfem.io.vtk_cells import LINE, Cells, Content, Geometry, Grid, times
-from beamfem.io.vtk_units import UNITS
+from beamfem.io.vtk_cells import LINE, UNITS, Cells, Content, Geometry, Grid, times
 from beamfem.validation import items
 
 if TYPE_CHECKING:

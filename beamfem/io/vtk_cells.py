@@ -1,4 +1,4 @@
-"""The cells of ParaView files: bodies or centrelines of all beams, and what is written of them."""
+"""The cells of ParaView files: bodies or centrelines of all beams, and the fields that are written of them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,16 +9,36 @@ import numpy as np
 from beamfem.io.descriptions import material_in_words, section_in_words
 from beamfem.io.vtk_points import Samples, bodies, centrelines
 from beamfem.material import Material
-from beamfem.model.beam import Beam
-from beamfem.model.beam_names import names
+from beamfem.model.beam import Beam, names
 from beamfem.model.model import Model
-from beamfem.results.stress_warnings import warn_of_unknown_stress
+from beamfem.results.stresses import warn_of_unknown_stress
 from beamfem.section import Layered
 from beamfem.validation import flag, one_of, require_known, shown
 from beamfem.value_keys import by_value
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
+
+UNITS = {
+    "points": "m",
+    "displacement": "m",
+    "velocity": "m/s",
+    "rotation": "rad",
+    "stress_xx": "Pa",
+    "stress_xy": "Pa",
+    "von_mises_stress": "Pa",
+    "cauchy_stress": "Pa",
+    "second_piola_kirchhoff_stress": "Pa",
+    "normal_force": "N",
+    "shear_force": "N",
+    "bending_moment": "N m",
+    "force": "N",
+    "moment": "N m",
+    "line_force": "N/m",
+    "acceleration": "m/s^2",
+    "stiffness": "N/m, N/m, N m/rad",
+}  # what is not here is a number without a unit
+
 
 Geometry = Literal["deformed", "reference"]
 # numbers of cell types, from vtkCellType.h

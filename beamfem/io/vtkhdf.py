@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamfem.io.hdf5 import write_hdf5
-from beamfem.io.vtk_cells import Grid, times
-from beamfem.io.vtk_units import UNITS
+from beamfem.io.vtk_cells import UNITS, Grid, times
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution

@@ -12,7 +12,7 @@ from beamfem.kernels.band import KNOWN, band, push
 from beamfem.kernels.compiling import Routine, inlined, routine
 from beamfem.kernels.elimination import FAST, elimination
 from beamfem.kernels.pointers import at, room
-from beamfem.kernels.simd_pairs import as_pairs, first_of, paired, second_of
+from beamfem.kernels.simd import as_pairs, first_of, paired, second_of
 
 
 class BidirectionalLU(NamedTuple):

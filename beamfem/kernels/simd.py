@@ -1,17 +1,11 @@
-"""Explicit SIMD in compiled code: values of several lanes, and pointers to rows of them.
-
-If a loop over single numbers is left to the compiler's vectoriser, the code tests at run time whether rows overlap and
-processes the last few numbers one by one, which takes longer than a short row itself. For a pointer of kind "v", `x[i]`
-is the vector of the numbers i to i + WIDTH - 1, so a pass steps with range(0, count, WIDTH) and also processes lanes
-beyond its count. Rows are padded for them; the values in them have no meaning and may be NaN.
-"""
+"""Explicit SIMD in compiled code: values of several lanes, and pointers to rows of them."""
 
 from llvmlite import ir
 
 from beamfem.kernels.compiler import machine
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import operation
-from beamfem.kernels.compiler.value_types import LANES, NUMBER, REALS, ROWS, WHOLE, WIDTH, Value
+from beamfem.kernels.compiler.value_types import LANES, NUMBER, PAIR, PAIRS, REALS, ROWS, WHOLE, WIDTH, Value
 
 __all__ = [
     "COLUMNS",
@@ -160,3 +154,33 @@ def _store(build: Build, value: ir.Value, address: ir.Value, mask: ir.Value, lan
     build.builder.call(
         build.declared(f"llvm.masked.store.v{lanes}f64.p0v{lanes}f64", kind), [value, place, short(8), mask]
     )
+
+
+_SHORT = ir.IntType(32)
+
+
+@operation
+def as_pairs(build: Build, pointer: Value) -> Value:
+    """Return a pointer to numbers as a pointer to pairs of a number and the next one."""
+    return pointer._replace(kind=PAIRS, llvm=build.converted(pointer, PAIRS))
+
+
+@operation
+def paired(build: Build, first: Value, second: Value) -> Value:
+    """Return a pair of two numbers."""
+    pair = ir.Constant(PAIR.llvm, ir.Undefined)
+    for place, value in enumerate((first, second)):
+        pair = build.builder.insert_element(pair, build.converted(value, NUMBER), _SHORT(place))
+    return Value(PAIR, pair)
+
+
+@operation
+def first_of(build: Build, pair: Value) -> Value:
+    """Return the first number of a pair."""
+    return Value(NUMBER, build.builder.extract_element(pair.llvm, _SHORT(0)))
+
+
+@operation
+def second_of(build: Build, pair: Value) -> Value:
+    """Return the second number of a pair."""
+    return Value(NUMBER, build.builder.extract_element(pair.llvm, _SHORT(1)))

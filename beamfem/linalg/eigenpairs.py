@@ -1,4 +1,4 @@
-"""Eigenpairs nearest to a shift, by iterations with the factors of the shifted matrix."""
+"""Eigenpairs of matrices, symmetric or not, with repeated eigenvalues."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -6,10 +6,10 @@ from typing import Any, Protocol
 
 import numpy as np
 from scipy.sparse import csr_array
-from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
+from scipy.sparse.linalg import ArpackError, LinearOperator, eigs, eigsh
 
 from beamfem.errors import ConvergenceError
-from beamfem.linalg.lapack import LinAlgError, cholesky, eigh, solve_triangular
+from beamfem.linalg.lapack import LinAlgError, cholesky, eig, eigh, solve_triangular
 
 # Computing all eigenpairs takes no longer than computing a few with so many unknowns, or with so few times the number
 # of pairs. It also calls BLAS with large matrices, whose threads wait for each other for seconds on a busy computer.
@@ -123,3 +123,96 @@ def lanczos_vectors(times: int, count: int, n: int) -> int:
 def first_vector(n: int) -> np.ndarray:
     """Return a start vector that is the same in every run and has a component along every mode."""
     return np.random.default_rng(0).standard_normal(n)
+
+
+_SEARCHES = 12
+_FURTHER = 4  # pairs of the second search; each later one finds twice as many
+_EQUAL = 1e-9  # relative distance of eigenvalues of which it does not matter which is found
+_ROUND_OFF = 1e-14  # of the largest eigenvalue
+_INDEPENDENT = 1e-8  # of vectors of unit size: least square of what is left of them beside others
+
+# search(basis, count): the largest eigenvalues of A (I - basis basis^T M) and their vectors, all n of them or count
+Search = Callable[[np.ndarray, int], Pairs]
+
+
+def repeated(
+    search: Search,
+    times: Callable[[np.ndarray], np.ndarray],
+    mass: csr_array,
+    count: int,
+    size: Callable[[np.ndarray], np.ndarray],
+    negligible: float = 0.0,
+) -> Pairs:
+    """Return at least the `count` largest eigenvalues of a real matrix A and their vectors (n, m), in descending order.
+
+    times(x): A x; mass (n, n): M, positive definite, gives the product in which found vectors are projected out; size:
+    of eigenvalues, by which they are sorted; negligible: size up to which they may be missing. Raises ConvergenceError.
+    """
+    n = mass.shape[0]
+    values, x = _largest(*search(np.empty((n, 0)), count), size)
+    if len(values) == n:
+        return values, x
+    basis, further = _extended(np.empty((n, 0)), x, mass), _FURTHER
+    negligible = max(negligible, _ROUND_OFF * float(size(values[:1])[0]))
+    for _ in range(_SEARCHES):
+        more, beside = _largest(*search(basis, further), size)
+        least = float(size(values[count - 1 : count])[0])
+        if float(size(more[:1])[0]) <= max(least + _EQUAL * abs(least), negligible):
+            return values, x
+        basis = _extended(basis, beside[:, :further], mass)
+        whole, y = eig(basis.T @ (mass @ np.column_stack([times(column) for column in basis.T])))
+        values, x = _largest(whole, basis @ y, size)
+        further *= 2
+    raise ConvergenceError(f"some of the {count} largest eigenvalues were missed")
+
+
+def _largest(values: np.ndarray, x: np.ndarray, size: Callable[[np.ndarray], np.ndarray]) -> Pairs:
+    order = np.argsort(-size(values), kind="stable")
+    return values[order], x[:, order]
+
+
+def _extended(basis: np.ndarray, x: np.ndarray, mass: csr_array) -> np.ndarray:
+    """Return an M-orthonormal basis of another one (n, k) and the real and imaginary parts of vectors (n, m)."""
+    parts = np.column_stack([x.real, x.imag])
+    for _ in range(2):
+        parts = parts / np.maximum(np.sqrt((parts * (mass @ parts)).sum(axis=0)), np.finfo(float).tiny)
+        parts = parts - basis @ (basis.T @ (mass @ parts))
+        sizes, turn = eigh(parts.T @ (mass @ parts))
+        kept = sizes > _INDEPENDENT
+        parts = parts @ turn[:, kept] / np.sqrt(sizes[kept])
+    return np.column_stack([basis, parts])
+
+
+def general_pairs(mass: csr_array, stiffness: csr_array, factors: Solver, count: int, known: Pairs) -> Pairs:
+    """Return the largest |mu| (m,) complex, descending, and x (n, m) with mass x = mu stiffness x.
+
+    mass: symmetric, positive definite; stiffness: any matrix, and its factors; known: pairs that are not to be found
+    again, with x^T mass x = 1. Raises ConvergenceError if some were missed.
+    """
+    n = mass.shape[0]
+    weighted = mass @ known[1]
+
+    def solved(b: np.ndarray) -> np.ndarray:
+        return factors.solve(b - weighted @ (known[1].T @ b))
+
+    def search(basis: np.ndarray, wanted: int) -> Pairs:
+        found = mass @ basis
+
+        def dense() -> Pairs:
+            columns = mass.toarray() - found @ found.T
+            return eig(np.column_stack([solved(column) for column in columns.T]))
+
+        def few(vectors: int) -> Pairs:
+            inverse = LinearOperator((n, n), matvec=lambda b: solved(b - found @ (basis.T @ b)), dtype=float)
+            # with sigma = 0, ARPACK finds the smallest 1/mu of stiffness x = (1/mu) mass x
+            options = {"ncv": lanczos_vectors(vectors, wanted, n), "maxiter": MOST_RESTARTS, "v0": first_vector(n)}
+            reciprocal, x = eigs(stiffness, wanted, M=mass, sigma=0.0, OPinv=inverse, **options)
+            return 1.0 / reciprocal, x
+
+        return first_that_works(dense, few, n, wanted + 1)
+
+    values, x = repeated(search, lambda b: solved(mass @ b), mass, count, np.abs)
+    values, x = values[:count], x[:, :count]
+    # Wielandt's deflation preserves the other eigenvalues, but changes their vectors along the known ones
+    fractions = known[0][:, None] * (weighted.T @ x) / (values - known[0][:, None])
+    return values, x + known[1] @ fractions

@@ -1,7 +1,4 @@
-"""Functions of scipy.linalg that raise LinAlgError for arrays that are not finite, a numerical failure.
-
-scipy raises ValueError for these as for programming errors, and LinAlgError is a ValueError too.
-"""
+"""Factorisations by LAPACK and SuperLU."""
 
 from collections.abc import Callable
 from functools import wraps
@@ -11,6 +8,9 @@ import numpy as np
 import scipy.linalg
 from scipy.linalg import LinAlgError
 from scipy.linalg.lapack import dsytrf, dsytrf_lwork
+from scipy.sparse import csc_array
+from scipy.sparse.csgraph import structural_rank
+from scipy.sparse.linalg import SuperLU, splu
 
 __all__ = [
     "LinAlgError",
@@ -65,3 +65,20 @@ def symmetric_factors(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     work, _ = dsytrf_lwork(len(matrix), lower=1)
     factored, exchanged, _ = dsytrf(matrix, lower=1, lwork=int(work))
     return factored, exchanged
+
+
+def superlu(matrix: csc_array, full_diagonal: bool = False, **settings: Any) -> SuperLU:
+    """Return the factors of a square sparse matrix; settings: see `scipy.sparse.linalg.splu`.
+
+    SuperLU reads and writes outside of its arrays, up to the death of the process, if entries are not finite, or if
+    zeros that are not stored make the matrix singular whatever the values of the others are. full_diagonal: all
+    diagonal entries are stored, so that there are no such zeros to look for. Raises LinAlgError.
+    """
+    if not np.isfinite(matrix.data).all():
+        raise LinAlgError("a matrix has numbers that are not finite")
+    if not full_diagonal and structural_rank(matrix) < matrix.shape[0]:
+        raise LinAlgError("the tangent is singular")
+    try:
+        return splu(matrix, **settings)
+    except RuntimeError as error:
+        raise LinAlgError("the tangent is singular") from error

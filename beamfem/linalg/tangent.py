@@ -10,8 +10,7 @@ from scipy.sparse.linalg import SuperLU
 from beamfem.kernels.band import band
 from beamfem.kernels.compiling import Routine
 from beamfem.kernels.rollers import constrain_normals, rotate_back, rotate_in
-from beamfem.linalg.lapack import LinAlgError, solve_banded
-from beamfem.linalg.superlu import superlu
+from beamfem.linalg.lapack import LinAlgError, solve_banded, superlu
 
 SMALLEST_PIVOT = 1e-13
 _NOTHING = np.empty(0)

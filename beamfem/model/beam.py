@@ -1,5 +1,6 @@
 """A beam: axis, mesh, element, section and material."""
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal, cast
@@ -13,14 +14,55 @@ from beamfem.element.element import Element
 from beamfem.element.fields import Cubic
 from beamfem.errors import InputError
 from beamfem.material import Material
-from beamfem.model.check_magnitudes import require_magnitudes
-from beamfem.model.check_section_law import require_law_fits
-from beamfem.model.damping import retardation_time
+from beamfem.model.check_beam import require_law_fits, require_magnitudes
 from beamfem.model.jumps import find_jumps
 from beamfem.section.law import ConstitutiveLaw, law_of
 from beamfem.section.protocol import CrossSection
 from beamfem.section.thermal import expansion
 from beamfem.validation import called, count, finite, fulfils, function_of_one, shown, text
+
+
+def require_different_names(beams: Sequence["Beam"]) -> None:
+    """Raise InputError for a name of two beams, or for the number of a beam without a name as the name of another."""
+    beam_names = [beam.name for beam in beams if beam.name is not None]
+    if not beam_names:
+        return
+    counts = Counter(beam_names)
+    for name, number in counts.items():
+        if number > 1:
+            raise InputError(f"{number} beams of a Model have the name {name!r}; give each one of its own, or none")
+    for number, beam in enumerate(beams):
+        if beam.name is None and str(number) in counts:
+            raise InputError(f"a beam has the name {str(number)!r}, the number of one without a name; name both")
+
+
+def names(beams: Sequence["Beam"]) -> list[str]:
+    """Return the name of every beam, or its number if it has none."""
+    return [str(number) if beam.name is None else beam.name for number, beam in enumerate(beams)]
+
+
+def beam_in_words(beams: Sequence["Beam"], number: int) -> str:
+    """Return "beam 'arm'" for a beam with a name, "beam 3" for one without."""
+    name = beams[number].name
+    return f"beam {number if name is None else repr(name)}"
+
+
+def retardation_time(section: CrossSection, material: Material | None) -> float:
+    """Return the retardation time [s] of a section; material: that of its beam, which layered sections do not need.
+
+    Raises InputError if layers have different ones.
+    """
+    try:
+        times = {part_material.retardation_time for part_material, _ in section.moments(material)}
+    except InputError:  # known by its stiffness
+        return 0.0 if material is None else material.retardation_time
+    if len(times) > 1:
+        raise InputError(
+            f"the materials of a {type(section).__name__} section have different retardation times {sorted(times)}; "
+            "a beam has one: damping is proportional to its stiffness"
+        )
+    return times.pop()
+
 
 Tapered = Callable[[float], CrossSection]
 _SAMPLES = 32

@@ -8,8 +8,8 @@ import numpy as np
 
 from beamfem.element.element import Element
 from beamfem.kernels.block import ELASTIC_LINE
+from beamfem.model.beam import retardation_time
 from beamfem.model.beam_grid import Grid
-from beamfem.model.damping import retardation_time
 from beamfem.model.reference import (
     energy_points,
     energy_stiffness_at,

@@ -1,17 +1,145 @@
 """Imposed strains of a beam: actuation and temperature, as strains of its stress-free state."""
 
+from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
+from beamfem.element.coordinates import ShearFree
 from beamfem.errors import InputError
-from beamfem.model.along_beam import ends_and_middle
-from beamfem.model.beam import Beam
-from beamfem.model.imposed_strain_base import ImposedStrain, require_followed
-from beamfem.model.load_base import Amplitude
+from beamfem.model.along_beam import AlongBeam, check_along, ends_and_middle, require_names
+from beamfem.model.beam import Beam, require_beam
+from beamfem.model.load_arrays import free_strain_of, heat_of
+from beamfem.model.load_base import Amplitude, Load
+from beamfem.model.load_shapes import LoadShape, Strains
+from beamfem.model.state_protocols import Placed
 from beamfem.section.thermal import expands_evenly, thermal_strain
+from beamfem.validation import called, convert, finite, squared
+
+
+class ImposedStrain(AlongBeam, Load):
+    """Strains of the stress-free state of a beam; each field named in `along` is a number or a function.
+
+    Attributes
+    ----------
+    along : tuple of str
+        Names of the fields that may be functions of the arc length [m] from the start.
+    units : tuple of str
+        Their units.
+    """
+
+    units: ClassVar[tuple[str, ...]] = ()
+
+    def __post_init__(self) -> None:
+        require_beam(type(self).__name__, getattr(self, "beam", None))
+        require_names(self)
+        convert(self, squared(finite), *(name for name in self.along if not callable(getattr(self, name))))
+        check_along(self)
+        super().__post_init__()
+
+    @abstractmethod
+    def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return the strains of the unconstrained beam.
+
+        Parameters
+        ----------
+        arc_length : array, [m], (n,)
+            Arc lengths from the start.
+
+        Returns
+        -------
+        array, (n, 4)
+            Stretch [-], shear [-], curvature [1/m] and thickness stretch [-].
+        """
+
+    def heat(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return the change of temperature, by which layers expand with their own coefficients; zero unless overridden.
+
+        Parameters
+        ----------
+        arc_length : array, [m], (n,)
+            Arc lengths from the start.
+
+        Returns
+        -------
+        array, (n, 2)
+            Change of temperature on the axis [K] and its gradient over the section [K/m].
+        """
+        return np.zeros((len(arc_length), 2))
+
+    def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
+        """Return the values of a field named in `along`.
+
+        Parameters
+        ----------
+        name : str
+            Name of the field.
+        arc_length : array, [m], (n,)
+            Arc lengths from the start.
+
+        Returns
+        -------
+        array, (n,)
+            Values, in the unit of the field.
+
+        Raises
+        ------
+        InputError
+            If a function does not return finite numbers.
+        """
+        value, what = getattr(self, name), f"{name} of {type(self).__name__}"
+        if not callable(value):
+            return np.full(len(arc_length), value)
+        return np.array([finite(f"{what} at arc length {s:g}", called(what, value, s)) for s in arc_length.tolist()])
+
+    @property
+    def place(self) -> Beam:
+        """The beam that is strained."""
+        return self.beam
+
+    @property
+    def conservative(self) -> bool:
+        """Whether the load has a potential, as every imposed strain has."""
+        return True
+
+    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
+        """Return the imposed strains to draw, see `Load.shapes`."""
+        values: dict[str, tuple[float | None, str]] = {}
+        for name, unit in zip(self.along, self.units, strict=True):
+            value = getattr(self, name)
+            if callable(value):
+                values[name] = None, unit
+            elif value:
+                values[name] = weight * value, unit
+        return (Strains(self.beam, type(self).__name__.lower(), values),)
+
+    def require_valid(self) -> None:
+        """Raise InputError for invalid members of a user-defined load."""
+        super().require_valid()
+        kind = type(self).__name__
+        require_beam(kind, getattr(self, "beam", None))
+        check_along(self)
+        if len(self.units) != len(self.along):
+            raise InputError(f"units of {kind} must name a unit for each name of along, {self.along}, got {self.units}")
+        at = ends_and_middle(self.beam)
+        free_strain_of(self, at)
+        heat_of(self, at)
+        require_followed(self)
+
+
+def require_followed(load: ImposedStrain) -> None:
+    """Raise InputError if the nodal coordinates cannot represent the imposed strains."""
+    coordinates, name = load.beam.element.coordinates, load.beam.element.name
+    if not isinstance(coordinates, ShearFree):
+        return
+    stretch, shear, *_ = load.free_strain(ends_and_middle(load.beam)).T
+    if shear.any():
+        raise InputError(f"{type(load).__name__}: nodes of {name} do not shear; take another element")
+    if stretch.any() and not coordinates.stretchable:
+        raise InputError(f"{type(load).__name__}: nodes of {name} do not stretch; let them")
+
 
 Along = float | Callable[[float], float]
 

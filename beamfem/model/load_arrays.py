@@ -9,8 +9,8 @@ from beamfem.errors import InputError
 from beamfem.validation import called, number_table
 
 if TYPE_CHECKING:
-    from beamfem.model.imposed_strain_base import ImposedStrain
-    from beamfem.model.line_load import LineLoad
+    from beamfem.model.imposed_strains import ImposedStrain
+    from beamfem.model.load_base import LineLoad
 
 
 def forces_of(load: "LineLoad", arc_length: np.ndarray) -> np.ndarray:

@@ -1,16 +1,30 @@
-"""What all loads have in common: a factor, and what drawings, files and energies ask of them."""
+"""Base classes of loads: on all mass, at points and along beams."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from typing import Any, ClassVar
+from contextlib import suppress
+from typing import Any, ClassVar, get_args
 
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.model.beam import Beam, Point
-from beamfem.model.load_shapes import LoadShape
-from beamfem.model.state_protocols import Axes, Displaced, Placed
-from beamfem.validation import flag, function_of_one, function_value
+from beamfem.model.along_beam import AlongBeam, check_along, ends_and_middle
+from beamfem.model.beam import Beam, Point, require_beam, require_point_of
+from beamfem.model.load_arrays import forces_of
+from beamfem.model.load_shapes import Acceleration, Force, ForcesAlong, LoadShape, Moment
+from beamfem.model.state_protocols import Axes, Displaced, Placed, in_plane
+from beamfem.validation import (
+    called,
+    finite,
+    flag,
+    function_of_one,
+    function_value,
+    items,
+    one_of,
+    shown,
+    squared,
+    vector,
+)
 
 Amplitude = Callable[[float], float] | None
 
@@ -116,3 +130,252 @@ def factor(load: Load, time: float, static: bool) -> float:
     if load.amplitude is not None:
         return function_value(f"amplitude of {type(load).__name__}", load.amplitude, time)
     return time if static and load.scale else 1.0
+
+
+class BodyLoad(Load):
+    """An acceleration that acts on all mass.
+
+    Attributes
+    ----------
+    vector : (float, float), [m/s^2]
+        The acceleration.
+    """
+
+    vector: tuple[float, float]
+
+    @property
+    def place(self) -> None:
+        """None: the load acts on all beams."""
+        return
+
+    @property
+    def layout(self) -> None:
+        """None, as no table depends on an acceleration; see `Load.layout`."""
+        return
+
+    @property
+    def conservative(self) -> bool:
+        """Whether the load has a potential, as every acceleration of all mass has."""
+        return True
+
+    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
+        """Return the acceleration to draw, see `Load.shapes`."""
+        return (Acceleration(weight * np.array(self.vector)),)
+
+    def acting(self, arc_length: np.ndarray) -> Mapping[str, np.ndarray]:
+        """Return the acceleration, see `Load.acting`."""
+        return {"acceleration": np.array([self.vector])}
+
+    def work(self, displaced: Displaced) -> np.ndarray:
+        """Return the work on all mass, see `Load.work`."""
+        return np.asarray(sum(moved @ np.array(self.vector) for moved in displaced.first_moments))
+
+    def require_valid(self) -> None:
+        """Raise InputError for invalid members of a user-defined load."""
+        super().require_valid()
+        squared(vector)(f"vector of {type(self).__name__}", getattr(self, "vector", None))
+
+
+class PointLoad(Load):
+    """Force [N] and moment [N m] at a point.
+
+    Attributes
+    ----------
+    point : Point
+        Point of application.
+    follower : bool
+        Whether the force rotates with the section there.
+    """
+
+    point: Point
+    follower: bool = False
+
+    def __post_init__(self) -> None:
+        require_point_of(self)
+        super().__post_init__()
+        flag(f"follower of {type(self).__name__}", self.follower)
+
+    @property
+    @abstractmethod
+    def value(self) -> tuple[float, float, float]:
+        """Force fx, fy [N] and moment [N m]."""
+
+    @property
+    def place(self) -> Point:
+        """The point of application."""
+        return self.point
+
+    @property
+    def axes(self) -> Axes:
+        """Axes of the force: "section" for a follower load, otherwise "plane"."""
+        return "section" if self.follower else "plane"
+
+    @property
+    def layout(self) -> tuple[Point, bool]:
+        """Where the load acts, and whether it follows the section; see `Load.layout`."""
+        return self.point, self.follower
+
+    @property
+    def conservative(self) -> bool:
+        """Whether the load has a potential, as all have but follower forces."""
+        return not (self.follower and any(self.value[:2]))
+
+    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
+        """Return the force and the moment to draw, see `Load.shapes`."""
+        force, moment = weight * np.array([[self.value[:2]]]), weight * self.value[2]
+        shapes: tuple[LoadShape, ...] = ()
+        if any(self.value[:2]):
+            shapes = (Force(self.point, in_plane(force, self.axes, placed.at(self.point))[0, 0]),)
+        return (*shapes, Moment(self.point, moment)) if self.value[2] else shapes
+
+    def acting(self, arc_length: np.ndarray) -> Mapping[str, np.ndarray]:
+        """Return the force and the moment, see `Load.acting`."""
+        value = np.array([self.value])
+        return {"force": value[:, :2], "moment": value[:, 2:]}
+
+    def work(self, displaced: Displaced) -> np.ndarray:
+        """Return the work of the force and of the moment, see `Load.work`."""
+        *force, moment = self.value
+        work = super().work(displaced)
+        if any(force):
+            work = displaced.displacement(self.point) @ np.array(force)
+        return work + moment * displaced.rotation(self.point) if moment else work
+
+    def require_valid(self) -> None:
+        """Raise InputError for invalid members of a user-defined load."""
+        super().require_valid()
+        require_point_of(self)
+        flag(f"follower of {type(self).__name__}", self.follower)
+        what = f"value of {type(self).__name__}"
+        value = called(what, lambda: self.value)
+        if callable(value):
+            raise InputError(f"{what} must be a field or a property, not a method")
+        numbers = [squared(finite)(what, number) for number in items(what, value)]
+        if len(numbers) != 3:
+            raise InputError(f"{what} must be three numbers, fx, fy and moment, got {shown(value)}")
+
+
+_ARROWS = 11  # along a beam
+
+
+class LineLoad(AlongBeam, Load):
+    """Forces per length along a beam.
+
+    The axes of the forces are "plane": x and y, per reference length; "section": x and y, rotated with the section from
+    the reference, per reference length; or "axis": along r0' and normal to it, to the left, per deformed length.
+
+    Attributes
+    ----------
+    uniform : bool
+        Whether the forces are the same at every arc length.
+    """
+
+    uniform: bool = False
+
+    def __post_init__(self) -> None:
+        require_beam(type(self).__name__, getattr(self, "beam", None))
+        check_along(self)
+        super().__post_init__()
+
+    @property
+    @abstractmethod
+    def axes(self) -> Axes:
+        """Axes of the forces: "plane", "section" or "axis"."""
+
+    @abstractmethod
+    def forces(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return the forces per length, along `axes`.
+
+        Parameters
+        ----------
+        arc_length : array, [m], (n,)
+            Arc lengths of the reference from the start.
+
+        Returns
+        -------
+        array, [N/m], (n, 2)
+            Forces per length.
+        """
+
+    def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
+        """Return the values of a function named in `along`.
+
+        Parameters
+        ----------
+        name : str
+            Name of the field.
+        arc_length : array, [m], (n,)
+            Arc lengths of the reference from the start.
+
+        Returns
+        -------
+        array, (n, ...)
+            Values, in the unit of the field.
+
+        Raises
+        ------
+        InputError
+            If the function does not return finite numbers, as many at every arc length.
+        """
+        function, what = getattr(self, name), f"{name} of {type(self).__name__}"
+        results = [called(what, function, s) for s in arc_length.tolist()]
+        with suppress(ValueError):  # of different shapes
+            if (values := np.array(results)).dtype.kind in "iuf" and np.isfinite(values).all():
+                return values
+        raise InputError(f"{what} must give finite numbers, as many at every arc length, got {shown(results)}")
+
+    @property
+    def place(self) -> Beam:
+        """The loaded beam."""
+        return self.beam
+
+    @property
+    def even(self) -> bool:
+        """Whether the forces are one vector of x and y on the whole beam."""
+        return self.uniform and self.axes == "plane"
+
+    @property
+    def layout(self) -> Any:
+        """None for forces that are one vector, or else the load; see `Load.layout`."""
+        return None if self.even else self
+
+    @property
+    def conservative(self) -> bool:
+        """Whether the load has a potential, as those with the axes "plane" have."""
+        return self.axes == "plane"
+
+    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
+        """Return the forces along the beam to draw, see `Load.shapes`."""
+        at = _arrows(self, placed)
+        vectors = in_plane(weight * forces_of(self, at)[None], self.axes, placed.along(self.beam, at))
+        return (ForcesAlong(self.beam, at, vectors[0], self.even),)
+
+    def acting(self, arc_length: np.ndarray) -> Mapping[str, np.ndarray]:
+        """Return the forces per length, see `Load.acting`."""
+        return {"line_force": forces_of(self, arc_length)}
+
+    def work(self, displaced: Displaced) -> np.ndarray:
+        """Return the work along the beam, see `Load.work`."""
+        moved, weight, arc_length = displaced.along(self.beam)
+        return np.asarray(np.einsum("sqc,qc,q->s", moved, forces_of(self, arc_length), weight))
+
+    def require_valid(self) -> None:
+        """Raise InputError for invalid members of a user-defined load."""
+        super().require_valid()
+        kind = type(self).__name__
+        require_beam(kind, getattr(self, "beam", None))
+        check_along(self)
+        one_of(f"axes of {kind}", self.axes, get_args(Axes))
+        forces = forces_of(self, ends_and_middle(self.beam))
+        if flag(f"uniform of {kind}", self.uniform) and np.any(forces != forces[:1]):
+            raise InputError(f"uniform of {kind} is True, but its forces change on the beam: {shown(forces.tolist())}")
+
+
+def _arrows(load: LineLoad, placed: Placed) -> np.ndarray:
+    """Return the arc lengths [m] at which a load along a beam is drawn: equally spaced, and at its largest value."""
+    even = np.linspace(0.0, load.beam.curve.length, _ARROWS)
+    if load.uniform:
+        return even
+    at = placed.stations(load.beam)
+    sizes = [np.abs(forces_of(load, arc_length)).max(axis=1) for arc_length in (at, even)]
+    return np.union1d(even, at[sizes[0].argmax()]) if sizes[0].max() > sizes[1].max() else even

@@ -7,10 +7,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from beamfem.model.beam import Beam, Point
-from beamfem.model.body_load import BodyLoad
-from beamfem.model.line_load import LineLoad
-from beamfem.model.load_base import Amplitude
-from beamfem.model.point_load import PointLoad
+from beamfem.model.load_base import Amplitude, BodyLoad, LineLoad, PointLoad
 from beamfem.validation import called, convert, finite, flag, squared, vector
 
 Varying = Callable[[float], Sequence[float]]

@@ -7,8 +7,7 @@ import numpy as np
 
 from beamfem.curves import Curve, Line
 from beamfem.curves.curve import GAP
-from beamfem.model.beam import Point, reference_positions
-from beamfem.model.beam_names import beam_in_words
+from beamfem.model.beam import Point, beam_in_words, reference_positions
 from beamfem.model.model import Model
 
 _SAMPLES = 9  # of an element, of which the nearest is corrected

@@ -12,20 +12,16 @@ from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
 from beamfem.model.argument_hints import beam_like, listed, refused, touching
-from beamfem.model.beam import Beam, Point, reference_positions
+from beamfem.model.beam import Beam, Point, reference_positions, require_different_names
 from beamfem.model.beam_mesh import BeamMesh
-from beamfem.model.beam_names import require_different_names
-from beamfem.model.body_load import BodyLoad
 from beamfem.model.check_units import warn_of_units
 from beamfem.model.contribution import Contribution, require_connector
-from beamfem.model.imposed_strain_base import ImposedStrain
+from beamfem.model.imposed_strains import ImposedStrain
 from beamfem.model.joints import Joint
-from beamfem.model.line_load import LineLoad
-from beamfem.model.load_base import Load
+from beamfem.model.load_base import BodyLoad, LineLoad, Load, PointLoad
 from beamfem.model.model_meshes import NodesNeeded, NumberedMeshes, nodes_needed, numbered_meshes
-from beamfem.model.point_load import PointLoad
 from beamfem.model.sharing import share
-from beamfem.model.support_base import LineSupport, PointSupport, Support
+from beamfem.model.supports import LineSupport, PointSupport, Support
 from beamfem.model.supports_along import SupportsAlong
 from beamfem.units import Units, units_of
 from beamfem.validation import of_package, shown
@@ -397,7 +393,7 @@ class Model:
         --------
         >>> figure = model.plot("model.png")
         """
-        from beamfem.view.model_drawing import plot_model
+        from beamfem.view.drawing import plot_model
 
         return plot_model(self, path)
 

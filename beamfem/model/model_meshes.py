@@ -2,30 +2,103 @@
 
 from collections import defaultdict
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from beamfem.cached_properties import cached_property
+from beamfem.element.coordinates import labels
 from beamfem.element.element import Element
+from beamfem.errors import InputError
+from beamfem.installed_memory import USABLE_FRACTION, in_gib, installed_memory
 from beamfem.kernels.block import NO_HISTORY
+from beamfem.model.along_beam import AlongBeam, functions_along, kinks_along
 from beamfem.model.beam import Beam, Point
-from beamfem.model.beam_grid import Grid
+from beamfem.model.beam_grid import Grid, make_grids
 from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.check_body import require_body
-from beamfem.model.check_memory import require_room
-from beamfem.model.close_gaps import close_gaps
 from beamfem.model.contribution import remembered, uses_rotations
-from beamfem.model.numbering import number_nodes
-from beamfem.model.required_nodes import nodes_asked
-from beamfem.model.straight_grids import make_grids
-from beamfem.model.support_base import PointSupport
+from beamfem.model.numbering import first_of_group, groups, number_nodes
+from beamfem.model.supports import PointSupport
 from beamfem.value_keys import by_value
 
 if TYPE_CHECKING:
     from beamfem.model.model import Model
+
+
+def nodes_asked(model: "Model") -> list[list[tuple[float, str]]]:
+    """Return for each beam the fractions of its length [-] at which parts of the model need a node, with their names.
+
+    Jumps of sections belong to the beam itself and have the name "section".
+    """
+    result: list[list[tuple[float, str]]] = [[] for _ in model.beams]
+    points: list[tuple[object, Point]] = [(support, support.point) for support in model.point_supports]
+    points += [(joint, point) for joint in model.joints for point in (joint.a, joint.b)]
+    points += [(load, load.point) for load in model.point_loads]
+    points += [(connector, point) for connector in model.connectors for point in connector.points]
+    for part, point in points:
+        result[model.number_of(point.beam)].append((point.fraction, type(part).__name__))
+    for beam, nodes in zip(model.beams, result, strict=True):
+        nodes += [(jump / beam.curve.length, "section") for jump in beam.jumps]
+    lines: tuple[AlongBeam, ...] = (*model.line_loads, *(load for _, load in model.imposing))
+    for line in lines:
+        kinks = [kink for name in functions_along(line) for kink in kinks_along(line, name)]
+        length, name = line.beam.curve.length, type(line).__name__
+        result[model.number_of(line.beam)] += [(kink / length, name) for kink in kinks]
+    return result
+
+
+_COORDINATE = 300  # bytes per coordinate; 310 to 370 were measured in statics
+_LITTLE = 2**24  # bytes that every computer has
+
+
+def require_room(beams: Sequence[Beam]) -> None:
+    """Raise InputError if the elements of a model need more memory [bytes] than this computer has."""
+    needed = _COORDINATE * sum(map(_coordinates, beams))
+    if needed <= _LITTLE:
+        return
+    memory = installed_memory()
+    if memory is None or needed <= USABLE_FRACTION * memory:
+        return
+    most, elements = max(beams, key=_coordinates), sum(beam.element_count for beam in beams)
+    raise InputError(
+        f"the {elements:.4g} elements of this model need {in_gib(needed)} at the least, and this "
+        f"computer has {in_gib(memory)}; the most are in {most!r}, take fewer"
+    )
+
+
+def _coordinates(beam: Beam) -> int:
+    element = beam.element
+    names = labels(element.coordinates.code, element.field.vectors)
+    return beam.element_count * (len(element.field.nodes) - 1) * len(names)
+
+
+_ROUND_OFF = 16 * np.finfo(float).eps
+
+
+def close_gaps(grids: Sequence[Grid], moving: np.ndarray) -> list[Grid]:
+    """Return the grids with joined nodes moved to the position of the first of them.
+
+    moving (n, 4): pairs (grid, node, grid, node). Otherwise a solve would strain the element at a gap.
+    """
+    if not len(moving):
+        return list(grids)
+    first = np.concatenate([[0], np.cumsum([grid.nodes for grid in grids])])
+    position = np.concatenate([grid.position for grid in grids])
+    one, other = first[moving[:, 0]] + moving[:, 1], first[moving[:, 2]] + moving[:, 3]
+    apart = np.abs(position[one] - position[other]).max(axis=1)
+    if not (apart > _ROUND_OFF * np.abs(position).max()).any():
+        return list(grids)
+    leader = first_of_group(groups(first[-1], first, moving))
+    off = np.abs(position - position[leader]).max(axis=1) > _ROUND_OFF * np.abs(position).max()
+    closed = np.where(off[:, None], position[leader], position)
+    return [
+        replace(grid, position=closed[begin:end], moved=True) if off[begin:end].any() else grid
+        for grid, begin, end in zip(grids, first[:-1], first[1:], strict=True)
+    ]
+
 
 _GRID = tuple(each.name for each in fields(Grid))
 _NO_PAIRS = np.empty((0, 4), dtype=np.int64)

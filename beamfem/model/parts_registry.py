@@ -5,7 +5,7 @@ from typing import Any
 from beamfem.model import parts
 from beamfem.model.joints import Joint
 from beamfem.model.load_base import Load
-from beamfem.model.support_base import Support
+from beamfem.model.supports import Support
 
 BASES: dict[str, Any] = {"supports": Support, "loads": Load, "joints": Joint}
 

@@ -1,13 +1,194 @@
-"""The supports of the package."""
+"""Supports: the base classes, at a point or along a beam, and the supports of the package."""
 
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.model.beam import Beam, Point
-from beamfem.model.support_base import LineSupport, PointSupport, Value
-from beamfem.validation import convert, finite, function_of_one, squared, vector
+from beamfem.model.beam import Beam, Point, require_beam, require_point_of
+from beamfem.model.load_shapes import Constraint, Springs, SpringsAlong, SupportShape
+from beamfem.model.state_protocols import Displaced
+from beamfem.validation import called, convert, finite, function_of_one, positive, require_known, shown, squared, vector
+
+DIRECTIONS = ("ux", "uy", "rotation")
+Value = float | Callable[[float], float]
+_UNIT = 1e-9  # largest deviation of the length of a unit vector from 1
+
+
+class Support(ABC):
+    """A connection of beams to the ground: frozen dataclasses that derive from `PointSupport` or `LineSupport`."""
+
+    @property
+    @abstractmethod
+    def place(self) -> Beam | Point:
+        """The supported beam or point."""
+
+    @abstractmethod
+    def shapes(self) -> tuple[SupportShape, ...]:
+        """Return the shapes to draw."""
+
+    def energy(self, displaced: Displaced) -> np.ndarray:
+        """Return the energy of springs along a beam; that of springs at points is summed over all nodal coordinates.
+
+        Parameters
+        ----------
+        displaced : Displaced
+            States of the model, with the displacements of the beams.
+
+        Returns
+        -------
+        array, [J], (steps,)
+            Energy, zero in the reference.
+        """
+        return np.zeros(len(displaced))
+
+    @abstractmethod
+    def require_valid(self) -> None:
+        """Raise InputError for invalid members of a user-defined support."""
+
+
+class PointSupport(Support):
+    """A support at a point: its prescribed directions and its springs.
+
+    Directions are "ux" and "uy" [m] and "rotation" [rad], from the reference.
+
+    Attributes
+    ----------
+    point : Point
+        The supported point.
+    """
+
+    point: Point
+
+    def __post_init__(self) -> None:
+        require_point_of(self)
+
+    def prescribed(self) -> Mapping[str, Value]:
+        """Return the prescribed values by direction; no direction unless overridden.
+
+        Returns
+        -------
+        mapping
+            "ux", "uy" [m] and "rotation" [rad]: numbers, which grow with the load factor in statics, or functions of
+            time [s]. "normal": 0.0 constrains the displacement along `direction`; no other value is possible.
+        """
+        return {}
+
+    def springs(self) -> Mapping[str, float]:
+        """Return the stiffness of the springs to the ground by direction; no spring unless overridden.
+
+        Returns
+        -------
+        mapping
+            Stiffness, none of them zero: "ux", "uy" [N/m] and "rotation" [N m/rad].
+        """
+        return {}
+
+    @property
+    def direction(self) -> np.ndarray | None:
+        """Unit vector (2,) [-] along which "normal" is prescribed, None if it is not."""
+        return None
+
+    @property
+    def place(self) -> Point:
+        """The supported point."""
+        return self.point
+
+    def shapes(self) -> tuple[SupportShape, ...]:
+        """Return the shapes to draw."""
+        prescribed, springs = self.prescribed(), self.springs()
+        shapes: tuple[SupportShape, ...] = ()
+        if prescribed:
+            shapes = (Constraint(self.point, prescribed, self.direction),)
+        if springs:
+            kx, ky, rotational = (springs.get(name, 0.0) for name in DIRECTIONS)
+            shapes = (*shapes, Springs(self.point, (kx, ky), rotational))
+        return shapes
+
+    def require_valid(self) -> None:
+        """Raise InputError for invalid members of a user-defined support."""
+        kind = type(self).__name__
+        require_point_of(self)
+        prescribed = _by_direction(f"prescribed of {kind}", self.prescribed, (*DIRECTIONS, "normal"))
+        springs = _by_direction(f"springs of {kind}", self.springs, DIRECTIONS)
+        if not prescribed and not springs:
+            raise InputError(f"{kind} does nothing: let prescribed() or springs() of it return something by direction")
+        for direction, value in prescribed.items():
+            what = f"{direction} prescribed by {kind}"
+            if direction == "normal" and (callable(value) or finite(what, value) != 0.0):
+                raise InputError(f"{what} must be 0.0, got {shown(value)}: only ux, uy and rotation can be moved")
+            if callable(value):
+                function_of_one(what, value, "time")
+            else:
+                squared(finite)(what, value)
+        for direction, stiffness in springs.items():
+            squared(positive)(f"stiffness of {kind} in {direction}", stiffness)
+        _require_direction(self, "normal" in prescribed)
+
+
+class LineSupport(Support):
+    """Springs along a beam to the ground.
+
+    Attributes
+    ----------
+    beam : Beam
+        The supported beam.
+    stiffness : (float, float), [N/m^2]
+        Stiffness (kx, ky) per reference length.
+    """
+
+    beam: Beam
+    stiffness: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        require_beam(type(self).__name__, getattr(self, "beam", None))
+
+    @property
+    def place(self) -> Beam:
+        """The supported beam."""
+        return self.beam
+
+    def shapes(self) -> tuple[SupportShape, ...]:
+        """Return the shapes to draw."""
+        return (SpringsAlong(self.beam, self.stiffness),)
+
+    def energy(self, displaced: Displaced) -> np.ndarray:
+        """Return the energy of the springs along the beam, see `Support.energy`."""
+        moved, weight, _ = displaced.along(self.beam)
+        return np.asarray(0.5 * np.einsum("sqc,c,q->s", moved**2, np.array(self.stiffness), weight))
+
+    def require_valid(self) -> None:
+        """Raise InputError for invalid members of a user-defined support."""
+        kind = type(self).__name__
+        require_beam(kind, getattr(self, "beam", None))
+        stiffness = squared(vector)(f"stiffness of {kind}", getattr(self, "stiffness", None))
+        if min(stiffness) < 0.0 or max(stiffness) == 0.0:
+            raise InputError(f"the stiffness of a {kind} must not be negative, and somewhere positive, got {stiffness}")
+
+
+def _require_direction(support: PointSupport, needed: bool) -> None:
+    what = f"direction of {type(support).__name__}"
+    direction = called(what, lambda: support.direction)
+    if direction is None and needed:
+        raise InputError(f'{what} must be a unit vector, since "normal" is prescribed along it, got None')
+    if direction is not None:
+        if not needed:
+            raise InputError(f'{what} is given, but prescribed() returns no "normal" along it')
+        size = np.hypot(*vector(what, direction))
+        if abs(size - 1.0) > _UNIT:
+            raise InputError(f"{what} must be a unit vector, got {shown(direction)} of length {size:g}")
+
+
+def _by_direction(what: str, function: Callable[[], Any], known: tuple[str, ...]) -> Mapping[str, Any]:
+    values = called(what, function)
+    if not isinstance(values, Mapping):
+        raise InputError(f'{what} must return a dict by direction, such as {{"ux": 0.0}}, got {shown(values)}')
+    for direction in values:
+        require_known(f"{what} has the unknown direction {shown(direction)}", direction, known)
+    return values
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from collections import defaultdict
 from collections.abc import Iterable
 
 from beamfem.model.beam import Point
-from beamfem.model.support_base import PointSupport
+from beamfem.model.supports import PointSupport
 
 
 class SupportsAlong:

@@ -9,15 +9,12 @@ import numpy as np
 from beamfem.model.beam import Beam
 from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.section_stress import distributions
-from beamfem.results.extremes import Measure, estimate, extreme_of_beams
+from beamfem.results.extremes import Measure, Part, Peak, estimate, extreme_of_beams
 from beamfem.results.free_bodies import Cuts
 from beamfem.results.neighbouring_beams import of_beam
-from beamfem.results.peak import Part, Peak
 from beamfem.results.section_forces import at_points, by_element, in_parts, peak_of, stations
 from beamfem.results.self_stress import self_stress
-from beamfem.results.strength import strengths
-from beamfem.results.stress_warnings import warn_of_unknown_stress
-from beamfem.results.stresses import von_mises
+from beamfem.results.stresses import strengths, von_mises, warn_of_unknown_stress
 from beamfem.units import Units, units_of
 from beamfem.validation import require_known, shown
 

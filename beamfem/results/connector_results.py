@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.assembly.connector import Connector, Motion
+from beamfem.assembly.connectors import Connector, Motion
 from beamfem.errors import InputError
 from beamfem.model.contribution import Contribution
 from beamfem.results.solution_system import loading

@@ -1,21 +1,156 @@
-"""Energy balance of a motion: whether work and damping explain in every row how its energy changes."""
+"""Energy of motions: the balance of work and damping in every row, drift, and whether steps resolve what carries it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import sqrt
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from beamfem.assembly.assembler import Assembler
-from beamfem.assembly.equations import ROUND_OFF, residual, sizes
+from beamfem.assembly.equations import INERTIA, ROUND_OFF, linearise, residual, sizes
 from beamfem.assembly.system import System, system_of
-from beamfem.kernels.motion_record import MotionLimits
+from beamfem.kernels.motion_record import ALPHA_F, ALPHA_M, BETA, GAMMA, TIME_STEP, MotionLimits
+from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.time_functions import kinks_of
 from beamfem.results.connector_results import kinetic_of_connectors, potential_of_connectors
-from beamfem.results.energy_drift import FIRST, driven, with_rows
-from beamfem.results.resolution import resolved
+from beamfem.results.full_turns import start_rotations
 
 if TYPE_CHECKING:
+    from beamfem.results.energies import Energy
     from beamfem.results.solution import Solution
+
+_FAST = 0.2  # (w h)^4; a vibration that alternates from step to step has 16 times its share of the kinetic energy
+_REMOVED = 0.2  # of the energy
+_COMPARED = 100  # most steps, at equal distances, whose velocities are compared
+
+
+def resolved(solution: "Solution") -> bool:
+    """Return whether the steps of a scheme can neither add much energy to a motion nor remove much.
+
+    It gains energy only where steps h do not resolve a vibration w that carries energy, of which three successive
+    velocities v have a second difference of (w h)^2 v; for what it loses see `removal`. Where not all steps are rows,
+    (w h)^2 is that of accelerations and velocities. Laws with history are not judged: their steps dissipate too.
+    """
+    system, rule, steps = system_of(solution.model, static=False), solution.statistics.rule, solution.statistics.steps
+    if not rule or system.history.laws:
+        return False
+    if len(solution) == steps + 1:
+        before, now, after = (solution.v[first : steps - 1 + first : 1 + steps // _COMPARED] for first in range(3))
+        squares = np.array((now, before - 2.0 * now + after)) ** 2 @ system.table(_masses)
+        speed, change = squares.max(axis=1, initial=0.0).tolist()
+        if change > _FAST * speed:
+            return False
+        speed, change = squares.sum(axis=1).tolist()
+    else:
+        squares = np.array((solution.v, rule[TIME_STEP] * solution.a)) ** 2 @ system.table(_masses)
+        speed, acceleration = squares.sum(axis=1).tolist()
+        change = acceleration**2 / (speed or 1.0)
+    mean = change / (speed or 1.0)
+    second, fourth = removal(rule)
+    return bool(mean <= _FAST and steps * (second * sqrt(mean) + fourth * mean) <= _REMOVED)
+
+
+def removal(rule: Sequence[float]) -> tuple[float, float]:
+    """Return b and c: a step removes the share b (w h)^2 + c (w h)^4 of the energy of a slow vibration w.
+
+    From the odd powers of s in ln((w h)^2 / s^2), where exp(s) is a principal root of the method for x'' + w^2 x = 0.
+    Of methods of second order b = 0, and of `GeneralizedAlpha` c = ((1 - rho_inf) / (1 + rho_inf))^3.
+    """
+    alpha_m, alpha_f, gamma, beta = (rule[number] for number in (ALPHA_M, ALPHA_F, GAMMA, BETA))
+    excess = gamma - 0.5
+    means = _third_cumulant(alpha_f) - _third_cumulant(alpha_m)
+    return excess + alpha_m - alpha_f, means - excess * (1.0 / 6.0 - beta + excess / 2.0 + excess**2 / 3.0)
+
+
+def _third_cumulant(alpha: float) -> float:
+    """Return the coefficient of s^3 in ln(1 - alpha + alpha exp(s))."""
+    return alpha * (1.0 - alpha) * (1.0 - 2.0 * alpha) / 6.0
+
+
+def _masses(system: System) -> np.ndarray:
+    """Return the diagonal (n,) of the mass matrix in the reference."""
+    p, result = system.reference, np.zeros(system.model.size)
+    mass = linearise(system, p, result, result, 0.0, INERTIA)[1]
+    result[system.free_dofs] = mass.sparse(UNROTATED).diagonal()
+    return result
+
+
+_DRIFT_ROWS = 100  # rows at which the exchanged energy is evaluated
+FIRST = 32  # rows at which it is evaluated besides: what a sudden start gives rise to may last for a few steps only
+
+
+@dataclass(frozen=True)
+class EnergyDrift:
+    """Change of the total energy over a motion on which no work is done.
+
+    Parameters
+    ----------
+    change : float, [J]
+        Change of the total energy from start to end.
+    exchanged : float, [J]
+        Largest energy exchanged between its kinetic, strain and potential part.
+    unit : str
+        Name of the model's unit of energy.
+    """
+
+    change: float
+    exchanged: float
+    unit: str = "J"
+
+    @property
+    def digits(self) -> float:
+        """Decimal digits of the exchanged energy that the change leaves correct; inf if the change is zero."""
+        if self.change == 0.0:
+            return np.inf
+        return float(np.log10(self.exchanged / abs(self.change))) if self.exchanged > 0.0 else 0.0
+
+    def __str__(self) -> str:
+        return f"energy drifts by {self.change:.2g} {self.unit} of {self.exchanged:.3g} {self.unit}"
+
+
+def energy_drift(solution: "Solution") -> EnergyDrift | None:
+    """Return the energy drift of a motion; None if work is done on it.
+
+    Work is done by loads with an amplitude, follower loads and pressures, moving supports and damping.
+    """
+    if solution.static or solution.loaded is not None or not _conservative(solution):
+        return None
+    energy = _energy_of_rows(solution)
+    return EnergyDrift(float(energy.total[-1] - energy.total[0]), _exchanged(energy), solution.model.unit("J"))
+
+
+def _energy_of_rows(solution: "Solution") -> "Energy":
+    """Return the energies of at most `_DRIFT_ROWS` rows, of the first `FIRST` ones, and of the fastest one."""
+    fastest = np.argmax(np.einsum("sn,sn->s", solution.v, solution.v))
+    spread, first = np.linspace(0, len(solution) - 1, _DRIFT_ROWS).astype(int), np.arange(min(FIRST, len(solution)))
+    rows = np.unique(np.concatenate([spread, first, [fastest]]))
+    return with_rows(solution, rows).energy()
+
+
+def with_rows(solution: "Solution", rows: Any) -> "Solution":
+    """Return the rows of a motion that an index of arrays selects."""
+    at, p, v, a = (values[rows] for values in (solution.at, solution.p, solution.v, solution.a))
+    return replace(solution, at=at, p=p, v=v, a=a, stability=None, turned=start_rotations(solution)[rows])
+
+
+def _exchanged(energy: "Energy") -> float:
+    return float(max(energy.kinetic.max(), np.ptp(energy.strain), np.ptp(energy.potential)))
+
+
+def _conservative(solution: "Solution") -> bool:
+    system = system_of(solution.model, static=False)
+    damped = any(block.damping.any() for block in system.blocks)
+    return not driven(solution) and not damped and not system.history.laws
+
+
+def driven(solution: "Solution") -> bool:
+    """Return whether loads or supports may do work on a motion, or connectors dissipate or add energy."""
+    system = system_of(solution.model, static=False)
+    moved = any(callable(item.value) for item in system.prescribed)
+    loaded = any(load.amplitude is not None or not load.conservative for load in solution.model.loads)
+    return moved or loaded or not system.connectors.keep_energy
+
 
 _MUCH = 0.1  # of the exchanged energy; a larger rise makes the results meaningless
 _LOST = 0.5  # of the exchanged energy; numerical damping removes less where steps resolve what carries the energy

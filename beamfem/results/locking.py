@@ -19,7 +19,7 @@ from beamfem.element.coordinates import Gradients, ShearFree
 from beamfem.element.element import Element, has_stations
 from beamfem.errors import LockingWarning
 from beamfem.kernels.block import GREEN_LAGRANGE, Block
-from beamfem.model.beam_names import beam_in_words
+from beamfem.model.beam import beam_in_words
 from beamfem.model.model import Model
 from beamfem.precision.roundoff import row_floors
 from beamfem.results import postprocess

@@ -10,7 +10,7 @@ from beamfem.assembly.prescribed import COORDINATES, coordinate_of
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
-from beamfem.model.support_base import PointSupport
+from beamfem.model.supports import PointSupport
 from beamfem.results.roundoff_corrections import exactly
 from beamfem.results.solution_system import loading
 

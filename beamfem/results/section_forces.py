@@ -11,10 +11,9 @@ from beamfem.model.beam import Beam
 from beamfem.model.beam_mesh import BeamMesh
 from beamfem.reprs import brief
 from beamfem.results.element_loads import Rows, rows_of
-from beamfem.results.extremes import Measure, extreme
+from beamfem.results.extremes import Force, Measure, Part, Peak, extreme
 from beamfem.results.free_bodies import Cuts, Parted, cut_free, parted
 from beamfem.results.neighbouring_beams import of_beam
-from beamfem.results.peak import Force, Part, Peak
 from beamfem.results.roundoff_corrections import exactly
 from beamfem.results.solution_system import loading
 from beamfem.units import Units, units_of

@@ -20,7 +20,7 @@ from beamfem.results.beam_stress import BeamStress, Part, Peak, beam_stress, pea
 from beamfem.results.check_arrays import made_read_only, require_rows, require_state
 from beamfem.results.connector_results import connector_force, kinetic_of_connectors, momenta_of_connectors, multipliers
 from beamfem.results.energies import Energy, dissipated, potential
-from beamfem.results.energy_drift import EnergyDrift, energy_drift
+from beamfem.results.energy_balance import EnergyDrift, energy_drift
 from beamfem.results.full_turns import rotations, start_rotations, turned_of
 from beamfem.results.imposed_measures import imposed_measures
 from beamfem.results.nodal import rate_at
@@ -570,7 +570,7 @@ class Solution:
         --------
         >>> figure = solution.plot_history(beam.end, "uy", "tip.png")
         """
-        from beamfem.view.history_curves import plot_history
+        from beamfem.view.quantity_curve import plot_history
 
         return plot_history(self, point, quantity, path)
 
@@ -631,7 +631,7 @@ class Solution:
         --------
         >>> figure = solution.plot_load_displacement(beam.end, "uy", "path.png")
         """
-        from beamfem.view.history_curves import plot_load_displacement
+        from beamfem.view.quantity_curve import plot_load_displacement
 
         return plot_load_displacement(self, point, quantity, path)
 

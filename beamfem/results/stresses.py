@@ -1,8 +1,15 @@
-"""Stress measures of a section with normal and shear stress only."""
+"""Stress measures of a section with normal and shear stress only, strength, and a warning where none is defined."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
 from beamfem.element.axis import Axis
+from beamfem.errors import InputError, UnknownStressWarning, warn
+from beamfem.model.beam import Beam, names
+from beamfem.model.beam_grid import Grid
+from beamfem.model.reference import sections_at
+from beamfem.section.protocol import CrossSection
 
 
 def von_mises(along: np.ndarray, sheared: np.ndarray) -> np.ndarray:
@@ -54,3 +61,39 @@ def _derivatives(axis: Axis, y: np.ndarray) -> tuple[list[np.ndarray], list[np.n
     along = axis.r_s[..., None, :] + y[..., None] * axis.d_s[..., None, :]
     up = np.broadcast_to(axis.d[..., None, :], along.shape)
     return [along[..., 0], along[..., 1]], [up[..., 0], up[..., 1]]
+
+
+def strengths(grid: Grid, element: np.ndarray, xi: np.ndarray, layers: int) -> np.ndarray:
+    """Return the strength (layers, n) [Pa] of each layer of the sections at points (element, xi); nan if none is given.
+
+    Sections with fewer layers repeat the last one.
+    """
+    prismatic = isinstance(grid.beam.section, CrossSection)
+    sections = [grid.beam.section_at(0.0)] if prismatic else sections_at(grid, element, xi)
+    values = np.array([_strengths(grid, section, layers) for section in sections]).T
+    return np.broadcast_to(values, (layers, len(element))) if prismatic else values
+
+
+def _strengths(grid: Grid, section: CrossSection, layers: int) -> list[float]:
+    try:
+        known = [material.strength for material, _ in section.moments(grid.beam.material)][:layers]
+    except InputError:  # the section is defined by its stiffness and has no materials
+        return [np.nan] * layers
+    own = [np.nan if strength is None else strength for strength in known]
+    return own + [own[-1]] * (layers - len(own))
+
+
+_NAMED = 10  # beams that the warning names
+
+
+def warn_of_unknown_stress(beams: Sequence[Beam], unknown: Sequence[int], what: str) -> None:
+    """Warn of beams by their numbers, if there are any; what: what becomes of their stress, such as "left out"."""
+    if not unknown:
+        return
+    called = names(beams)
+    shown = ", ".join(called[number] for number in unknown[:_NAMED]) + (", ..." if len(unknown) > _NAMED else "")
+    warn(
+        f"the stress of {len(unknown)} of {len(beams)} beams ({shown}) is not known and is {what}: their sections are "
+        "given by a stiffness, a law of their own, or moments without a height; Section(..., height=) gives it",
+        UnknownStressWarning,
+    )

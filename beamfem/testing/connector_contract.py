@@ -6,17 +6,19 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.connector import COMPLEX_STEP, Connector, Motion
-from beamfem.assembly.connector_rates import (
+from beamfem.assembly.connectors import (
     AGREE,
+    COMPLEX_STEP,
     ROUND_OFF,
     TIMES,
     WIDTH,
+    Connector,
+    Motion,
+    connectors_of,
     gravity_of,
     resting_near,
     somewhere_near,
 )
-from beamfem.assembly.connectors import connectors_of
 from beamfem.errors import InputError
 from beamfem.model.contribution import Contribution, require_connector
 from beamfem.model.model import Model

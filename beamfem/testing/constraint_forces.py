@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.connector import Connector, Motion
+from beamfem.assembly.connectors import Connector, Motion
 from beamfem.errors import InputError
 from beamfem.model.contribution import remembered
 

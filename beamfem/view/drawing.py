@@ -1,4 +1,4 @@
-"""Drawings of a solution: shapes, supports, loads and joints in axes of equal scale."""
+"""Drawings of models and solutions: shapes, supports, loads and joints in axes of equal scale."""
 
 from os import PathLike
 from typing import Any
@@ -6,9 +6,12 @@ from typing import Any
 import numpy as np
 
 from beamfem.assembly.callbacks import uninterrupted
+from beamfem.assembly.system import system_of
 from beamfem.errors import InputError
+from beamfem.model.model import Model
 from beamfem.results.path import Path
 from beamfem.results.solution import Solution
+from beamfem.results.status import Statistics
 from beamfem.validation import count, flag
 from beamfem.view.deformed_shapes import FIELD_COLOURS, ORIGINAL, Shapes, draw_undeformed, shade
 from beamfem.view.field_extreme import extreme_of
@@ -183,3 +186,19 @@ def _span(solution: Solution, rows: np.ndarray) -> str:
     name, unit = axis_of_rows(solution)
     first, last = (f"{solution.at[row]:.3g}" for row in (rows[0], rows[-1]))
     return f"{name} {first} to {last}" + (f" {unit}" if unit != "-" else "")
+
+
+def plot_model(model: Model, path: str | PathLike[str] | None = None) -> Any:
+    """Draw the undeformed bodies of a model with supports, joints and full loads; return the figure.
+
+    path: file to write (PNG, SVG, PDF; folders are created). Nothing is solved, so models that are mechanisms or are
+    loaded beyond their strength can be drawn too. Raises MissingPackageError without matplotlib.
+    """
+    p = system_of(model, static=True).reference[None]
+    rates = np.zeros_like(p)
+    at_rest = Solution(model, True, np.ones(1), p, rates, rates, Statistics(0, 0, 0, "the model without stress"))
+    figure = plot_shapes(at_rest, undeformed=False)
+    figure.axes[0].set_title("reference shape, full loads", fontsize=10)
+    if path is not None:
+        save_figure(figure, path)
+    return figure

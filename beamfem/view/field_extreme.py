@@ -11,7 +11,7 @@ from beamfem.results.extremes import estimate, extreme_of_beams
 from beamfem.results.free_bodies import Cuts
 from beamfem.view.deformed_shapes import Shapes, even
 from beamfem.view.frames import moment_of
-from beamfem.view.point_text import place
+from beamfem.view.labels import place
 
 _COLOUR = "#CC3311"
 

@@ -1,20 +1,127 @@
-"""Loads in a drawing: forces and moments as arrows, distributed forces as rows of them, gravity in a corner."""
+"""Loads in a drawing: forces and moments as arrows, distributed forces as rows of them, text for imposed strains."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, assert_never
 
 import numpy as np
 
 from beamfem.element.coordinates import across
+from beamfem.model.beam import Beam, Point
 from beamfem.model.load_base import factor
-from beamfem.model.load_shapes import Acceleration, Force, ForcesAlong, Moment, Strains
+from beamfem.model.load_shapes import Acceleration, Force, ForcesAlong, LoadShape, Moment, Strains, drawn
+from beamfem.model.reference import length_points
 from beamfem.results.solution_system import loading
+from beamfem.results.stations import StationsOfRows
 from beamfem.view import symbols
-from beamfem.view.imposed_labels import draw_imposed
-from beamfem.view.load_symbols import PlacedRow
+from beamfem.view.frames import one_row
 from beamfem.view.support_symbols import Stamps
 
 if TYPE_CHECKING:
+    from beamfem.model.load_base import Load
     from beamfem.results.solution import Solution
+
+
+class PlacedRow:
+    """A row of a solution, with the members that shapes need."""
+
+    def __init__(self, solution: "Solution", row: int) -> None:
+        self.only = one_row(solution, row)
+
+    def position(self, point: Point) -> np.ndarray:
+        """Return the position of a point (2,) [m]."""
+        return self.only.position(point)[0]
+
+    def at(self, point: Point) -> StationsOfRows:
+        """Return the state at a point."""
+        return self._stations(point.beam, [point.fraction])
+
+    def along(self, beam: Beam, arc_length: np.ndarray) -> StationsOfRows:
+        """Return the state at arc lengths (n,) [m] of a beam."""
+        return self._stations(beam, (arc_length / beam.curve.length).tolist())
+
+    def _stations(self, beam: Beam, fractions: list[float]) -> StationsOfRows:
+        mesh = self.only.model.mesh_of(beam.start)
+        element, xi = map(np.array, zip(*map(mesh.locate, fractions), strict=True))
+        return StationsOfRows(self.only, mesh, element, xi)
+
+    def stations(self, beam: Beam) -> np.ndarray:
+        """Return the arc lengths (n,) [m] at which loads along a beam are integrated."""
+        mesh = self.only.model.mesh_of(beam.start)
+        return mesh.arc_length(*length_points(mesh)[:2])
+
+    def shapes(self, load: "Load", weight: float) -> tuple[LoadShape, ...]:
+        """Return the shapes of a load, times a weight. Raises InputError for an unknown shape."""
+        return drawn(load, load.shapes(weight, self), LoadShape)
+
+    def positions(self, forces: ForcesAlong) -> np.ndarray:
+        """Return the positions of forces along a beam (n, 2) [m]."""
+        length = forces.beam.curve.length
+        return np.array([self.position(forces.beam.at(fraction)) for fraction in forces.arc_length / length])
+
+    def touches(self, force: Force) -> bool:
+        """Return whether the arrow's tip touches the beam: inside the beam, and at ends if the force pushes."""
+        fraction = force.point.fraction
+        if 0.0 < fraction < 1.0:
+            return True
+        slope = self.at(force.point).slope[0, 0]
+        outward = slope if fraction == 1.0 else -slope
+        return bool(force.vector @ outward < -0.3 * np.linalg.norm(force.vector) * np.linalg.norm(slope))
+
+
+_APART = 12.0  # of the words from the axis [points of print]
+_BENT = 0.02  # of the length: a beam that is bent has its words on its outer side
+_MARGIN = 4.0  # between words and the edge of the axes [points of print]
+_SLOPED = 0.3  # of a unit normal
+
+
+def draw_imposed(axes: Any, solution: "Solution", items: list[tuple[Strains, int]], colour: str) -> Any:
+    """Draw the strains imposed by loads in a row of a solution as text; yield the artists."""
+    beside: dict[int, int] = {}
+    for strains, row in items:
+        only, beam = one_row(solution, row), strains.beam
+        at, along = only.position(beam.at(0.5))[0], only.fields(beam.at(0.5)).r_x[0]
+        chord = only.position(beam.at(0.25))[0] + only.position(beam.at(0.75))[0] - 2.0 * at
+        outward = np.array([-along[1], along[0]]) / np.linalg.norm(along)
+        if chord @ outward > _BENT * beam.curve.length:
+            outward = -outward
+        # words beside an upright beam take a line each, so that they stay narrow
+        sideways = abs(outward[0]) > _SLOPED
+        words, before = _words(strains, solution.model.unit), beside.get(id(beam), 0)
+        lines = len(words) if sideways else 1
+        beside[id(beam)] = before + lines
+        offset = _APART * outward - [0.0, before * _APART] if sideways else (before + 1) * _APART * outward
+        note = axes.annotate(
+            ("\n" if sideways else " ").join(words),
+            at,
+            offset,
+            textcoords="offset points",
+            color=colour,
+            fontsize=8.0,
+            ha="left" if outward[0] > _SLOPED else "right" if outward[0] < -_SLOPED else "center",
+            va="top" if sideways else "center",
+            zorder=5.0,
+        )
+        _move_inside(note, axes)
+        yield note
+
+
+def _move_inside(words: Any, axes: Any) -> None:
+    """Move text sideways into the axes, or to their left edge if it is wider."""
+    extent, room = words.get_window_extent(), axes.get_window_extent()
+    points = 72.0 / axes.figure.dpi
+    x, y = words.get_position()
+    beyond = max(min(0.0, room.x1 - _MARGIN / points - extent.x1), room.x0 + _MARGIN / points - extent.x0)
+    if beyond < 0.0 or extent.x0 < room.x0 + _MARGIN / points:
+        words.set_position((x + beyond * points, y))
+
+
+def _words(strains: Strains, named: Callable[[str], str]) -> list[str]:
+    parts = [
+        f"{name} varies" if value is None else f"{name} {value:.4g} {named(unit)}".rstrip()
+        for name, (value, unit) in strains.values.items()
+    ]
+    return [f"{strains.name}:", *(f"{part}," for part in parts[:-1]), *parts[-1:]]
+
 
 FORCE = "#CC3311"
 _LONGEST = 30.0  # arrow of the largest force [points of print]

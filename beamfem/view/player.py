@@ -1,25 +1,164 @@
 """A page with a slider over the steps of a solution: one file, drawn by the browser, works offline."""
 
+import base64
 import json
+from collections.abc import Sequence
 from html import escape
 from importlib.resources import files
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, assert_never
 
 import numpy as np
 
 from beamfem.atomic_write import path_of, whole
 from beamfem.errors import InputError
+from beamfem.model.beam import Beam
+from beamfem.model.joined_mesh import join
+from beamfem.model.load_base import factor
+from beamfem.model.load_shapes import Acceleration, Force, ForcesAlong, Moment, Strains
+from beamfem.results.axis_fields import QUANTITIES, AxisPoints, section_forces
+from beamfem.results.batched_beams import of_each
+from beamfem.results.beam_stress import stress_at
 from beamfem.results.solution import Solution
+from beamfem.results.solution_system import loading
 from beamfem.validation import count, optional, text
-from beamfem.view.deformed_shapes import Shapes
+from beamfem.view.deformed_shapes import Shapes, limits
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
-from beamfem.view.notebook_paths import WrittenFile
-from beamfem.view.page_fields import FURTHER, as_text, fields_of, names_of
-from beamfem.view.page_loads import loads_of
+from beamfem.view.load_drawing import PlacedRow
+from beamfem.view.notebook_figure import WrittenFile
 from beamfem.view.summary import model_rows, solution_rows
 from beamfem.view.support_symbols import joints_of, supports_of
+
+_FORCES = ("moment", "normal", "shear")
+# names of fields and of the parts of `BeamStress`
+_STRESSES = {"stress": "von_mises", "upper": "upper", "lower": "lower", "utilisation": "utilisation"}
+FURTHER = ("upper", "lower", "utilisation")  # only on pages with room for them
+_STEPS = 254.0  # steps between the limits; level 0 is what is not known
+
+
+def names_of(solution: Solution) -> tuple[str, ...]:
+    """Return the names of the fields of a page: stresses where a section has some."""
+    known = set()
+    model = solution.model
+    for numbers in model.numbered.joinable:
+        mesh = join([model.meshes[number] for number in numbers])
+        starts = np.arange(mesh.elements)
+        stress = stress_at(solution, mesh, starts, np.zeros(mesh.elements), slice(len(solution) - 1, len(solution)))
+        known |= {name for name, part in _STRESSES.items() if np.isfinite(stress[part]).any()}
+    stresses = tuple(name for name in _STRESSES if name in known)
+    moved = ("rotation", "displacement") if solution.static else ("rotation", "displacement", "speed")
+    return (*_FORCES, *stresses, *moved)
+
+
+def fields_of(shapes: Shapes, names: Sequence[str]) -> list[dict[str, Any]]:
+    """Return fields by name in levels from 1 to 255 between their limits, 0 where they are not known."""
+    solution, rows = shapes.solution, shapes.rows
+    by_beam = of_each(shapes.groups, lambda points: _along(points, solution, rows, names), 2)
+    result = []
+    for number, name in enumerate(names):
+        quantity, parts = QUANTITIES[name], [values[number] for values in by_beam]
+        low, high = limits(parts)
+        values = np.concatenate(parts, axis=1)
+        known = np.isfinite(values)
+        levels = np.where(known, 1.0 + np.round((np.where(known, values, low) - low) / (high - low) * _STEPS), 0.0)
+        whole = "" if quantity.over_height is None else ", largest over the height"  # a page has one colour a section
+        label = f"{quantity.label}{whole} [{solution.model.unit(quantity.unit)}]"
+        result.append({"name": name, "label": label, "low": low, "high": high, "values": as_text(levels.astype("u1"))})
+    return result
+
+
+def _along(points: AxisPoints, solution: Solution, rows: np.ndarray, names: Sequence[str]) -> np.ndarray:
+    """Return fields (names, rows, points)."""
+    result = section_forces(points, solution, rows)
+    if any(name in _STRESSES for name in names):
+        stress = stress_at(solution, points.mesh, points.element, points.xi, rows)
+        result |= {name: stress[part] for name, part in _STRESSES.items()}
+    result |= {name: QUANTITIES[name].values(points, solution, rows) for name in names if name not in result}
+    return np.stack([result[name] for name in names])
+
+
+def as_text(numbers: np.ndarray) -> str:
+    """Return numbers as text for a page."""
+    return base64.b64encode(np.ascontiguousarray(numbers).tobytes()).decode()
+
+
+_LONGEST, _SHORTEST, _SPREAD = 40.0, 18.0, 26.0  # [pixels]: the largest force, a small one, loads along beams
+_MOST = 40_000  # numbers of arrows on a page
+
+
+def loads_of(shapes: Shapes) -> list[dict[str, Any]]:
+    """Return for each row forces [x, y, across, up, tip], moments [x, y, sense] and gravity [across, up].
+
+    x, y [m]; across, up [pixels]: the arrow, with its tip at x, y if `tip` is 1, else its tail. For models with many
+    loads or rows, the loads of the last row are used for all.
+    """
+    solution, rows = shapes.solution, [int(row) for row in shapes.rows]
+    system, at = loading(solution)
+    loads = [_row(shapes, row, float(at[row]), system.static) for row in _chosen(shapes, rows)]
+    forces = [force for row in loads for force in row["points"]]
+    largest = max((float(np.linalg.norm(vector)) for _, vector, _ in forces), default=0.0) or 1.0
+    dense = max((float(np.abs(vector).max()) for row in loads for _, vector in row["lines"]), default=0.0) or 1.0
+    return [
+        {
+            "forces": [
+                *(_arrow(place, _scaled(vector, largest), tip) for place, vector, tip in row["points"] if vector.any()),
+                *(
+                    _arrow(place, _SPREAD * vector / dense, True)
+                    for places, vectors in row["lines"]
+                    for place, vector in zip(places, vectors, strict=True)
+                    if vector.any()
+                ),
+            ],
+            "moments": row["moments"],
+            "gravity": row["gravity"],
+        }
+        for row in loads
+    ]
+
+
+def _chosen(shapes: Shapes, rows: list[int]) -> list[int]:
+    loads = shapes.solution.model.loads
+    arrows = sum(55 if isinstance(load.place, Beam) else 5 for load in loads)
+    return rows if arrows * len(rows) <= _MOST else rows[-1:] if arrows <= _MOST else []
+
+
+def _row(shapes: Shapes, row: int, at: float, static: bool) -> dict[str, list[Any]]:
+    placed = PlacedRow(shapes.solution, row)
+    result: dict[str, list[Any]] = {"points": [], "lines": [], "moments": [], "gravity": []}
+    for load in shapes.solution.model.loads:
+        for shape in placed.shapes(load, factor(load, at, static)):
+            match shape:
+                case Force():
+                    result["points"].append((placed.position(shape.point), shape.vector, placed.touches(shape)))
+                case ForcesAlong():
+                    result["lines"].append((placed.positions(shape), shape.vectors))
+                case Moment():
+                    if shape.moment != 0.0:
+                        result["moments"].append([*_short(placed.position(shape.point)), float(np.sign(shape.moment))])
+                case Acceleration():
+                    if shape.vector.any():
+                        result["gravity"] = _short(shape.vector / np.linalg.norm(shape.vector) * _LONGEST)
+                case Strains():
+                    pass  # pages have arrows only
+                case _:
+                    assert_never(shape)
+    return result
+
+
+def _scaled(vector: np.ndarray, largest: float) -> np.ndarray:
+    """Return an arrow [pixels]: small forces are longer than to scale, so that they are seen."""
+    size = float(np.linalg.norm(vector))
+    return np.asarray(vector / size * max(_LONGEST * np.sqrt(size / largest), _SHORTEST))
+
+
+def _arrow(place: np.ndarray, vector: np.ndarray, tip: bool) -> list[float]:
+    return [*_short(place), *(round(float(part), 1) for part in vector), int(tip)]
+
+
+def _short(values: np.ndarray) -> list[float]:
+    return [float(f"{value:.6g}") for value in values]
+
 
 _BYTES = 560_000  # of numbers in a page; as text they grow by a third
 _LEVELS = 65534  # into which the box of all shapes is cut

@@ -1,6 +1,6 @@
-"""One quantity of a solution against another, such as a reaction against a displacement."""
+"""Curves of quantities: at points against time or load factor, and of any two quantities against each other."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from os import PathLike
 from typing import Any
 
@@ -10,11 +10,141 @@ from beamfem.errors import InputError
 from beamfem.model.beam import Point
 from beamfem.results.axis_fields import QUANTITIES, PointsAt, Quantity
 from beamfem.results.free_bodies import Cuts
+from beamfem.results.path import Path, PathState
 from beamfem.results.solution import Solution
-from beamfem.validation import require_known, shown
+from beamfem.validation import items, one_of, require_known, shown
 from beamfem.view.frames import axis_of_rows
+from beamfem.view.labels import place, write_labels
 from beamfem.view.plots import COLOURS, new_figure, save_figure
-from beamfem.view.point_text import place
+
+_STYLES = ("-", "--", ":")
+
+
+def _components(values: np.ndarray, *names: str) -> dict[str, np.ndarray]:
+    return {name: values[:, column] for column, name in enumerate(names)}
+
+
+# what is drawn of a point: label, unit and the curves by name
+_CURVES_OF_POINT: dict[str, tuple[str, str, Callable[[Solution, Point], dict[str, np.ndarray]]]] = {
+    "displacement": ("displacement", "m", lambda s, at: _components(s.displacement(at), "ux", "uy")),
+    "ux": ("displacement ux", "m", lambda s, at: {"ux": s.displacement(at)[:, 0]}),
+    "uy": ("displacement uy", "m", lambda s, at: {"uy": s.displacement(at)[:, 1]}),
+    "position": ("position", "m", lambda s, at: _components(s.position(at), "x", "y")),
+    "velocity": ("velocity", "m/s", lambda s, at: _components(s.velocity(at), "vx", "vy")),
+    "rotation": ("rotation", "rad", lambda s, at: {"rotation": s.rotation(at)}),
+    "force": ("reaction force", "N", lambda s, at: _components(s.reaction(at), "fx", "fy")),
+    "reaction_moment": ("reaction moment", "N m", lambda s, at: {"m": s.reaction(at)[:, 2]}),
+}
+
+
+def plot_history(
+    solution: Solution,
+    point: Point | Sequence[Point] | None = None,
+    quantity: str = "displacement",
+    path: str | PathLike[str] | None = None,
+) -> Any:
+    """Plot a quantity at one or several points against time [s] or load factor; return the matplotlib figure.
+
+    quantity: "displacement", "ux", "uy", "position" [m], "velocity" [m/s], "rotation" [rad]; at supports "force" [N]
+    and "reaction_moment" [N m]; without a point, "energy" [J].
+    Raises InputError; MissingPackageError without matplotlib.
+    """
+    if isinstance(quantity, str) and quantity == "energy":
+        energy = solution.energy()
+        curves = {name: getattr(energy, name) for name in ("kinetic", "strain", "potential", "total")}
+        label, unit, parts = "energy", "J", [curves]
+    else:
+        label, unit, values = _quantity(quantity)
+        points = [point] if isinstance(point, Point) else [] if point is None else items("point", point)
+        if not points or not all(isinstance(item, Point) for item in points):
+            raise InputError(f"the history of {quantity!r} needs a point such as beam.end, got {shown(point)}")
+        parts = [values(solution, item) for item in points]
+        if len(parts) > 1:
+            parts = [
+                {f"{name} at {place(solution.model, item.reference)}": curve for name, curve in part.items()}
+                for item, part in zip(points, parts, strict=True)
+            ]
+    figure, axes = new_figure()
+    several = sum(len(part) for part in parts) > 1
+    for number, part in enumerate(parts):
+        for order, (name, curve) in enumerate(part.items()):
+            colour = COLOURS[(order if len(parts) == 1 else number) % (len(COLOURS) - 1)]
+            style = _STYLES[(order if len(parts) > 1 else 0) % len(_STYLES)]
+            marker = "o" if len(solution) <= 30 else None
+            axes.plot(solution.at, curve, style, color=colour, marker=marker, markersize=4, linewidth=1.5, label=name)
+    name, axis_unit = axis_of_rows(solution)
+    axes.set_xlabel(f"{name} [{axis_unit}]")
+    axes.set_ylabel(f"{label} [{solution.model.unit(unit)}]")
+    axes.margins(x=0.02)
+    if several:
+        figure.legend(loc="outside upper center", ncols=4 if len(parts) == 1 else 2, frameon=False)
+    if path is not None:
+        save_figure(figure, path)
+    return figure
+
+
+def plot_load_displacement(
+    solution: Solution, point: Point, quantity: str = "uy", path: str | PathLike[str] | None = None
+) -> Any:
+    """Plot the load factor against a displacement or rotation of a point; return the matplotlib figure.
+
+    Limit points (circles) and bifurcations (diamonds) of a `Path` are marked, each with its load factor.
+    quantity: "ux", "uy" [m] or "rotation" [rad]. Raises InputError; MissingPackageError without matplotlib.
+    """
+    one_of("what the load is drawn over", quantity, ("ux", "uy", "rotation"))
+    load = solution.load_factor
+    label, unit, values = _quantity(quantity)
+    (curve,) = values(solution, point).values()
+    figure, axes = new_figure()
+    axes.axhline(0.0, color="0.6", linewidth=0.8)
+    marker = "." if len(solution) <= 200 else None
+    axes.plot(curve, load, color=COLOURS[0], linewidth=1.6, marker=marker, markersize=4, zorder=2)
+    marked: list[tuple[float, float]] = []
+    colours: list[str] = []
+    if isinstance(solution, Path):
+        kinds = (("limit point", solution.limit_points, _ring, 1), ("bifurcation", solution.bifurcations, _diamond, 2))
+        for name, states, look, number in kinds:
+            colour = COLOURS[number]
+            if not states:
+                continue
+            alone = _together(solution, states)
+            (x,) = values(alone, point).values()
+            axes.plot(x, alone.at, linestyle="none", label=name, zorder=3, **look(colour))
+            marked += zip(x.tolist(), alone.at.tolist(), strict=True)
+            colours += len(states) * [colour]
+        if solution.limit_points or solution.bifurcations:
+            figure.legend(loc="outside upper center", ncols=2, frameon=False)
+    axes.set_xlabel(f"{label} at {place(solution.model, point.reference)} [{solution.model.unit(unit)}]")
+    axes.set_ylabel("load factor [-]")
+    axes.margins(0.06, 0.1)
+    if marked:
+        write_labels(axes, marked, [f"{at:.5g}" for _, at in marked], colours, np.column_stack([curve, load]))
+    if path is not None:
+        save_figure(figure, path)
+    return figure
+
+
+def _ring(colour: str) -> dict[str, Any]:
+    """Return the look of a limit point: at one place with a bifurcation both are seen."""
+    return {"marker": "o", "markersize": 10, "color": colour, "markerfacecolor": "none", "markeredgewidth": 1.8}
+
+
+def _diamond(colour: str) -> dict[str, Any]:
+    return {"marker": "D", "markersize": 6, "color": colour, "markeredgecolor": "white"}
+
+
+def _quantity(name: str) -> tuple[str, str, Callable[[Solution, Point], dict[str, np.ndarray]]]:
+    require_known(f"there is no history of {shown(name)}", name, [*_CURVES_OF_POINT, "energy"])
+    return _CURVES_OF_POINT[name]
+
+
+def _together(path: Solution, states: Sequence[PathState]) -> Solution:
+    """Return states of a path as the rows of a solution."""
+    at = np.array([state.at for state in states])
+    p, v, a = (np.array([getattr(state, name) for state in states]) for name in "pva")
+    turned = [state.turned for state in states if state.turned is not None]
+    return Solution(path.model, True, at, p, v, a, path.statistics, turned=np.array(turned) if turned else None)
+
 
 Drawn = str | tuple[str, Any] | np.ndarray
 _MARKED = 200  # rows up to which each is a dot

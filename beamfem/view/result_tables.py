@@ -8,7 +8,7 @@ import numpy as np
 from beamfem.model.beam import Beam
 from beamfem.results.beam_stress import PARTS, BeamStress
 from beamfem.results.energies import Energy
-from beamfem.results.peak import Force
+from beamfem.results.extremes import Force
 from beamfem.results.section_forces import SectionForces, extreme_force
 from beamfem.tables import as_html
 from beamfem.validation import shown

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.model.beam_names import names
+from beamfem.model.beam import names
 from beamfem.model.model import Model
 from beamfem.solve.motion.period_error import lengthened_period
 from beamfem.tables import as_html
-from beamfem.view.point_text import place
+from beamfem.view.labels import place
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution

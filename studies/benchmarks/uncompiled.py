@@ -17,7 +17,7 @@ import numpy as np
 import beamfem.kernels
 from beamfem.kernels import nodes, pointers
 from beamfem.kernels import simd as lanes
-from beamfem.kernels import simd_pairs as pairs
+from beamfem.kernels import simd as pairs
 from beamfem.kernels.compiler.callables import Inlined, Operation
 from beamfem.kernels.compiling import Routine
 

@@ -17,9 +17,8 @@ from beamfem.solve.continuation.continuation import PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.stability import path_critical_points as critical
-from beamfem.solve.stability.critical_point_fit import Zero, smooth
 from beamfem.solve.stability.loading_path import PathLostError
-from beamfem.solve.stability.path_critical_points import BIFURCATION, Critical, Search, _between
+from beamfem.solve.stability.path_critical_points import BIFURCATION, Critical, Search, Zero, _between, smooth
 
 
 class Curve:

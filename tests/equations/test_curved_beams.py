@@ -6,8 +6,8 @@ from conftest import ELEMENTS, identify
 from test_kernels import dense
 
 import beamfem as bf
-from beamfem.assembly.coordinate_columns import coordinate_columns
 from beamfem.assembly.equations import linearise, residual
+from beamfem.assembly.reference_state import coordinate_columns
 from beamfem.assembly.system import System
 from beamfem.model.reference import energy_points, reference_axis
 from beamfem.results.postprocess import axis, nodal_vectors, nodal_velocities, strain_energy

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 import beamfem as bf
+import beamfem.solve.start.mechanisms
 from beamfem.assembly.system import System
-from beamfem.solve.start import body_motions
-from beamfem.solve.start.body_motions import Conditions, bodies_of, mechanisms
+from beamfem.solve.start.mechanisms import Conditions, bodies_of, mechanisms
 
 
 @pytest.mark.parametrize("dense_up_to", [300, 3], ids=["dense", "sparse"])
 @pytest.mark.parametrize("pinned", [(), (4,), (2, 7)])
 def test_every_bar_that_is_pinned_only_may_turn_about_its_pin(monkeypatch, dense_up_to, pinned):
-    monkeypatch.setattr(body_motions, "_DENSE_BODIES", dense_up_to)
+    monkeypatch.setattr(beamfem.solve.start.mechanisms, "_DENSE_BODIES", dense_up_to)
     section, material = bf.Rectangle(0.1, 0.1), bf.Material(1e6, 0.3, 1.0)
     bars = [bf.Beam(bf.Line((2 * i, 0), (2 * i + 1, 0)), 1, bf.CRBF(1), section, material) for i in range(12)]
     supports = [(bf.Pin if i in pinned else bf.Clamp)(bar.start) for i, bar in enumerate(bars)]

@@ -6,8 +6,8 @@ from conftest import ELEMENTS, beam, identify
 from scipy.linalg import solve_banded
 
 import beamfem as bf
-from beamfem.assembly.coordinate_columns import coordinate_columns
 from beamfem.assembly.equations import linearise, predicted_stresses
+from beamfem.assembly.reference_state import coordinate_columns
 from beamfem.assembly.system import System
 from beamfem.linalg.tangent import BandTangent, _solve_pivoted
 from beamfem.model.reference import stations

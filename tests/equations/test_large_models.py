@@ -13,12 +13,10 @@ import beamfem as bf
 from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import System
 from beamfem.model.beam import reference_positions
-from beamfem.model.beam_grid import Grid, make_grid
-from beamfem.model.nearest_places import distances, nearest
-from beamfem.model.straight_grids import make_grids
+from beamfem.model.beam_grid import Grid, distances, make_grid, make_grids, nearest
 from beamfem.results import postprocess
 from beamfem.results import roundoff_corrections as last_digits
-from beamfem.solve.start.body_motions import Conditions, mechanisms
+from beamfem.solve.start.mechanisms import Conditions, mechanisms
 
 
 def mixed_beams():

@@ -6,7 +6,7 @@ from connectors import Anchor, RigidLink
 
 import beamfem as bf
 from beamfem.assembly.system import System
-from beamfem.solve.motion.impact import impact
+from beamfem.solve.motion.constraints import impact
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly.coordinate_columns import coordinate_columns
 from beamfem.assembly.equations import STATICS, linearise
+from beamfem.assembly.reference_state import coordinate_columns
 from beamfem.assembly.system import System
 from beamfem.precision.roundoff import _digits, remainder
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.solve.start.functions_of_time import FunctionOfTime
-from beamfem.solve.start.kinks import kinks_and_turning_points
+from beamfem.solve.start.functions_of_time import FunctionOfTime, kinks_and_turning_points
 
 SQUARE, STEEL = bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0)
 EI = 2e11 * 1e-8 / 12

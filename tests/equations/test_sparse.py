@@ -13,8 +13,7 @@ from beamfem.assembly.equation_numbering import Unknowns
 from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import System
 from beamfem.element.axis import cross
-from beamfem.linalg.lapack import LinAlgError
-from beamfem.linalg.superlu import superlu
+from beamfem.linalg.lapack import LinAlgError, superlu
 from beamfem.model.reference import energy_points
 from beamfem.results.postprocess import axis, nodal_vectors
 

@@ -7,7 +7,7 @@ from test_sparse import MATERIAL, SECTION, grid
 import beamfem as bf
 from beamfem.assembly.equations import tangent_of
 from beamfem.assembly.system import system_of
-from beamfem.solve.motion import coupled_factors
+from beamfem.solve.motion import coupled_stages
 
 
 def arcade(bays=3):
@@ -97,7 +97,7 @@ def test_a_small_motion_needs_one_tangent_and_two_corrections_a_step(widest_band
         tangents.append(given)
         return tangent_of(*given)
 
-    monkeypatch.setattr(coupled_factors, "tangent_of", counted)
+    monkeypatch.setattr(coupled_stages, "tangent_of", counted)
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(2), SECTION, MATERIAL)
     push = bf.PointForce(beam.end, (0.0, force), amplitude=lambda t: np.sin(20.0 * t))
     solution = bf.simulate(bf.Model([beam], [bf.Clamp(beam.start)], [push]), 0.4, 0.01)

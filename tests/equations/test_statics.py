@@ -5,7 +5,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.assembly.system import system_of
-from beamfem.results.mesh_advice import advice
+from beamfem.results.solution_checks import advice
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 SQUARE = bf.Rectangle(0.01, 0.01)

@@ -5,11 +5,9 @@ import pytest
 
 import beamfem as bf
 from beamfem.assembly.system import system_of
-from beamfem.solve.newton.banded import BandProblem
-from beamfem.solve.newton.equilibrium import find_equilibrium
+from beamfem.solve.newton.corrections import BandProblem, PivotedProblem, PrescribedStep
 from beamfem.solve.newton.iteration import Newton, Termination
-from beamfem.solve.newton.pivoted import PivotedProblem
-from beamfem.solve.newton.prescribed_step import PrescribedStep
+from beamfem.solve.newton.newton import find_equilibrium
 
 SECTION, MATERIAL = bf.Rectangle(0.05, 0.05), bf.Material(1e9, 0.3, 1000.0)
 EI = MATERIAL.youngs_modulus * 0.05**4 / 12.0

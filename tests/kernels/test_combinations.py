@@ -8,8 +8,8 @@ from conftest import ELEMENTS, identify
 from integrated import Cantilever
 
 import beamfem as bf
-from beamfem.assembly.coordinate_columns import coordinate_columns
 from beamfem.assembly.equations import residual
+from beamfem.assembly.reference_state import coordinate_columns
 from beamfem.assembly.system import System
 from beamfem.results.postprocess import nodal_vectors
 from beamfem.results.solution import Solution, Statistics

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly import scratch_pool as scratch
+from beamfem.assembly import scratch_memory as scratch
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 

@@ -7,8 +7,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.errors import EnergyWarning, TimeStepWarning
-from beamfem.results.energy_balance import _balance
-from beamfem.results.resolution import removal, resolved
+from beamfem.results.energy_balance import _balance, removal, resolved
 from beamfem.solve.motion.period_error import lengthened_period, period_error
 
 ALUMINIUM, SECTION = bf.Material(7e10, 0.33, 2700.0), bf.Rectangle(0.01, 0.01)

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.convergence.expected_order import highest_order
 from beamfem.convergence.limit_estimate import extrapolate
-from beamfem.convergence.observed_order import chance_hits, fit_order, scale_of
+from beamfem.convergence.observed_order import chance_hits, fit_order, highest_order, scale_of
 
 TOO_SMALL = 3.0
 

@@ -7,9 +7,8 @@ import pytest
 from matplotlib.text import Text
 
 import beamfem as bf
-from beamfem.view.labels import write_labels
+from beamfem.view.labels import place, write_labels
 from beamfem.view.plots import new_figure
-from beamfem.view.point_text import place
 
 
 def boxes(figure):

@@ -17,8 +17,8 @@ from beamfem.view import symbols
 from beamfem.view.deformed_shapes import Shapes, limits
 from beamfem.view.drawing import equal_axes
 from beamfem.view.frames import spread_rows
-from beamfem.view.history_curves import plot_load_displacement
 from beamfem.view.load_drawing import FORCE, draw_loads
+from beamfem.view.quantity_curve import plot_load_displacement
 from beamfem.view.support_symbols import supports_of
 
 

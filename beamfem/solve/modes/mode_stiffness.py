@@ -1,10 +1,4 @@
-"""The stiffness of modes, free of the round-off of an assembled tangent.
-
-Entries of the tangent are as large as E A / l times squared slopes; for a soft mode of a slender beam their sum is so
-much smaller that it is lost in their round-off. Computing the strains of the mode first, and then their energy, avoids
-this. Likewise, stresses of a state carry the round-off of its positions, unless the correction that would balance them,
-which is too small to be added to the positions, is added to their strains.
-"""
+"""Sizes of mode shapes, and their stiffness free of the round-off of an assembled tangent."""
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -13,6 +7,34 @@ from beamfem.assembly.equations import STATICS, linearise, predicted_stresses
 from beamfem.assembly.stress_resultants import free_group, resultants
 from beamfem.assembly.system import System
 from beamfem.linalg.tangent import UNROTATED
+from beamfem.model.model import Model
+from beamfem.results.postprocess import nodal_vectors, nodal_velocities
+
+
+def nodal_motion(model: Model, p: np.ndarray, shape: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return for each beam the nodes' positions and, per unit of a real shape (n,), their displacements (nodes, 2)."""
+    result = []
+    for mesh in model.meshes:
+        slot = mesh.beam.element.field.vectors.index("r")
+        positions = nodal_vectors(mesh, p[None])[0, :, slot]
+        result.append((positions, nodal_velocities(mesh, p[None], shape[None])[0, :, slot]))
+    return result
+
+
+def largest_translation(model: Model, p: np.ndarray, shape: np.ndarray) -> float:
+    """Return the largest displacement of a node in a shape (n,), real or complex; where no node moves, 1 rad counts."""
+    parts = [np.concatenate([u for _, u in nodal_motion(model, p, part)]) for part in (shape.real, shape.imag)]
+    moved = float(np.hypot(*(np.linalg.norm(part, axis=1) for part in parts)).max())
+    largest = float(np.abs(shape).max())
+    return moved if moved > 1e-9 * largest else largest
+
+
+def upright(shapes: np.ndarray) -> np.ndarray:
+    """Return shapes (m, n) each with its largest entry positive, real where shapes are complex."""
+    if shapes.size == 0:
+        return shapes
+    largest = np.take_along_axis(shapes, np.abs(shapes).argmax(axis=1)[:, None], axis=1)
+    return np.asarray(shapes * (np.conj(largest) / np.abs(largest)))
 
 
 def stiffness_of_modes(

@@ -9,8 +9,7 @@ import numpy as np
 from beamfem.assembly.system import Proven, system_of
 from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
-from beamfem.linalg.eigenpairs import Pairs, digits_for, nothing_known
-from beamfem.linalg.general_pairs import general_pairs
+from beamfem.linalg.eigenpairs import Pairs, digits_for, general_pairs, nothing_known
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
@@ -20,7 +19,7 @@ from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import may_lock, warn_of
 from beamfem.results.status import Statistics, Status, counted
 from beamfem.solve.modes.lowest_modes import WRONG, lowest_pairs
-from beamfem.solve.modes.mode_sizes import largest_translation, upright
+from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.modes.rigid_modes import unresisted
 from beamfem.solve.start.check_states_memory import require_room

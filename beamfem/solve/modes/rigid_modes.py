@@ -5,13 +5,11 @@ import numpy as np
 from beamfem.assembly.equations import residual
 from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.linalg.lapack import cholesky, null_space, solve_triangular, svd
-from beamfem.model.beam_names import beam_in_words
+from beamfem.model.beam import beam_in_words
 from beamfem.precision.roundoff import round_off_floor
-from beamfem.solve.modes.mode_sizes import nodal_motion
-from beamfem.solve.modes.mode_stiffness import stresses_of, weak_stiffness
+from beamfem.solve.modes.mode_stiffness import nodal_motion, stresses_of, weak_stiffness
 from beamfem.solve.modes.pencil import Pencil
-from beamfem.solve.start.body_motions import Conditions, bodies_of, mechanisms
-from beamfem.solve.start.mechanisms import describe
+from beamfem.solve.start.mechanisms import Conditions, bodies_of, describe, mechanisms
 
 _SMALL = 1e-5  # of a motion
 _UNBALANCED = 1e-8  # of the largest force: acceptable residual of an equilibrium, and its change by a rotation

@@ -6,12 +6,23 @@ from beamfem.assembly.callbacks import Deferred
 from beamfem.assembly.motion_workspace import MotionWorkspace
 from beamfem.assembly.system import System
 from beamfem.kernels import record
-from beamfem.kernels.motion_record import TIME_STEP
+from beamfem.kernels.motion_record import CORRECTION, TIME_STEP, MotionLimits
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.time_loop import march
 from beamfem.solve.motion.coupled_stages import CoupledStages
-from beamfem.solve.motion.step_tolerances import BAND, BORDERED, SPARSE, not_converged
 from beamfem.solve.motion.stored_states import Saving
+
+BAND = MotionLimits()
+SPARSE = MotionLimits(most=24, many=16, slow=0.5)  # a factorisation costs as much as ten iterations
+BORDERED = MotionLimits(most=12, many=6, slow=0.2)  # with the tangents of connectors, as much as four
+
+
+def not_converged(statistics: np.ndarray, limits: MotionLimits) -> str:
+    """Return why a step has failed; statistics: see `kernels.motion_record`."""
+    return (
+        f"the last correction was {statistics[CORRECTION]:.2e} of the model after {limits.iterations} iterations at "
+        "most. A smaller step may help"
+    )
 
 
 class CompiledSteps:

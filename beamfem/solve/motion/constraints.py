@@ -1,12 +1,11 @@
-"""Motions with constraint conditions: consistency of the start, and initial accelerations and multipliers."""
+"""Motions with constraint conditions: consistent start, initial accelerations and multipliers, impact on supports."""
 
 import numpy as np
 from scipy.linalg import LinAlgError
 from scipy.sparse import block_array, csc_array
 
-from beamfem.assembly.connector import Motion
-from beamfem.assembly.connector_rates import follows_time
-from beamfem.assembly.equations import INERTIA, STATICS, linearise
+from beamfem.assembly.connectors import Motion, follows_time
+from beamfem.assembly.equations import INERTIA, STATICS, linearise, residual
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
@@ -89,3 +88,29 @@ def _change_of_rates(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray
     size = min(_SHORT / speed if speed else np.inf, np.sqrt(_SHORT / push) if push else np.inf)
     ends = [system.connectors.conditions(p + t * v + 0.5 * t**2 * a, v + t * a)[1] for t in (size, -size)]
     return np.asarray((ends[0] - ends[1]) / (2.0 * size))
+
+
+def impact(system: System, p: np.ndarray, change: np.ndarray) -> np.ndarray:
+    """Return how the velocities p' (n,) of unknowns change if supports change others at once.
+
+    Only supports, and multipliers that connect, exert impulses: M_ff x = -M_fc c, for the change c (n,) along what is
+    supported. p (n,): the state in which it happens.
+    """
+    zeros = np.zeros(len(p))
+    mass = linearise(system, p, zeros, zeros, 0.0, INERTIA)[1]
+    impulse, free, result = _momentum(system, p, change), system.free_dofs, zeros.copy()
+    if len(system.connectors.multipliers):
+        result[free] = constrained_acceleration(system, (p, zeros, change), impulse, mass, 0.0)
+        result[system.connectors.multipliers] = 0.0
+    else:
+        result[free] = mass.solve(-impulse[free], system.rotated)
+    return result
+
+
+def _momentum(system: System, p: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return M p' (n,), by the inertia of an acceleration large enough to stand out beside forces."""
+    zeros = np.zeros(len(p))
+    forces = residual(system, p, zeros, zeros, 0.0)
+    large, own = (np.abs(values).max() for values in (forces, residual(system, p, zeros, v, 0.0) - forces))
+    factor = max(1.0, large / own) if own > 0.0 else 1.0
+    return np.asarray((residual(system, p, zeros, factor * v, 0.0) - forces) / factor)

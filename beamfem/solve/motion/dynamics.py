@@ -16,22 +16,18 @@ from beamfem.results.full_turns import first_turns
 from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import warned
 from beamfem.results.status import Statistics, Status
-from beamfem.solve.motion.constraints import require_met, stopped_by_conditions
+from beamfem.solve.motion.constraints import impact, require_met, stopped_by_conditions
 from beamfem.solve.motion.equations_of_motion import Integrator
-from beamfem.solve.motion.impact import impact
-from beamfem.solve.motion.initial_constraints import put_onto_supports, require_on_supports
-from beamfem.solve.motion.initial_velocity import start_velocity
+from beamfem.solve.motion.initial_velocity import put_onto_supports, require_on_supports, start_velocity
 from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, is_scheme, require_rule
 from beamfem.solve.motion.period_error import detuned
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.time_marching import Last, Record, initial_acceleration, march, new_statistics
 from beamfem.solve.motion.time_steps import SIDE, stretches
 from beamfem.solve.start.check_states_memory import require_memory
-from beamfem.solve.start.functions_of_time import functions_of_time
+from beamfem.solve.start.functions_of_time import functions_of_time, name_unresolved
 from beamfem.solve.start.partial_results import kept
-from beamfem.solve.start.start_state import last_state, start_state
-from beamfem.solve.start.transfer import transferred_turns
-from beamfem.solve.start.unresolved_loads import name_unresolved
+from beamfem.solve.start.start_state import last_state, start_state, transferred_turns
 from beamfem.validation import count, positive, shown
 
 

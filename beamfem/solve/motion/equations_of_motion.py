@@ -11,14 +11,12 @@ from scipy.sparse import block_array, block_diag, csc_array, csr_array, dia_arra
 from beamfem.assembly.equations import linearise, residual
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, InputError
-from beamfem.linalg.superlu import superlu
+from beamfem.linalg.lapack import superlu
 from beamfem.linalg.tangent import UNROTATED, rotation_to_normals
 from beamfem.reprs import brief
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
-from beamfem.solve.newton.convergence import Correction
-from beamfem.solve.newton.iteration import Termination
-from beamfem.solve.newton.iteration_loop import iterate
+from beamfem.solve.newton.iteration import Correction, Termination, iterate
 from beamfem.validation import count, positive
 
 _NOISE = 1e-9  # of the model: smaller corrections that no longer decrease are round-off

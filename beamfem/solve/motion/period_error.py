@@ -7,7 +7,7 @@ import numpy as np
 from beamfem.assembly.system import System, system_of
 from beamfem.errors import TimeStepWarning, warn
 from beamfem.kernels.motion_record import ALPHA_F, ALPHA_M, BETA, GAMMA, TIME_STEP
-from beamfem.model.damping import retardation_time
+from beamfem.model.beam import retardation_time
 from beamfem.results.solution import Solution
 from beamfem.solve.start.functions_of_time import FunctionOfTime
 

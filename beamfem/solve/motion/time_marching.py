@@ -9,7 +9,7 @@ from typing import cast
 import numpy as np
 from scipy.sparse import csc_array
 
-from beamfem.assembly.connector import Motion
+from beamfem.assembly.connectors import Motion
 from beamfem.assembly.equations import INERTIA, linearise, residual
 from beamfem.assembly.motion_workspace import motion_workspace
 from beamfem.assembly.system import System

@@ -12,17 +12,15 @@ from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
 from beamfem.progress import progress
-from beamfem.results.mesh_advice import advice
 from beamfem.results.path import Bifurcation, Path, PathState
-from beamfem.results.solution_checks import warned
+from beamfem.results.solution_checks import advice, warned
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 from beamfem.solve.continuation.steps import Refused, Step, longest_step, take_step, too_small
 from beamfem.solve.newton.iteration import Newton, require_newton
 from beamfem.solve.paths.branches import leave
 from beamfem.solve.paths.path_record import PathRecord
-from beamfem.solve.start.functions_of_time import functions_of_time
-from beamfem.solve.start.kinks import SAME, Jump, jumps_between, kinks_between
+from beamfem.solve.start.functions_of_time import SAME, Jump, functions_of_time, jumps_between, kinks_between
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import refuse_memory, refuse_multipliers
 from beamfem.solve.start.partial_results import kept

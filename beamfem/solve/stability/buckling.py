@@ -11,12 +11,11 @@ from beamfem.errors import ConvergenceError, InputError, RoundOffWarning, warn
 from beamfem.linalg.eigenpairs import digits_for
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
-from beamfem.results.mesh_advice import advice
 from beamfem.results.solution import Solution, State
+from beamfem.results.solution_checks import advice
 from beamfem.results.status import Statistics, Status
-from beamfem.solve.modes.mode_sizes import largest_translation, upright
-from beamfem.solve.stability.linear_solution import linear_solution
-from beamfem.solve.stability.linearised import linear_reach, linearised_loads
+from beamfem.solve.modes.mode_stiffness import largest_translation, upright
+from beamfem.solve.stability.linearised import linear_reach, linear_solution, linearised_loads
 from beamfem.solve.stability.loading_path import InvertedError, LoadingPath, PathLostError
 from beamfem.solve.stability.path_critical_points import LIMIT_POINT, Critical, critical_points
 from beamfem.solve.stability.stable_start import stable_start

@@ -1,18 +1,250 @@
-"""Where on a loading path the tangent is singular: bifurcations and limit points.
+"""Where on a loading path the tangent is singular: bifurcations and limit points."""
 
-No equilibrium is solved for at a critical point itself, where round-off leads off the path. The path, its load and the
-stiffness of the softest modes are interpolated between points at a distance on both sides; modes whose stiffness
-vanishes close together are interpolated as one subspace.
-"""
-
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.sparse import csr_array
 
+from beamfem.cached_properties import cached_property
+from beamfem.linalg.lapack import LinAlgError, eigh, svd
+from beamfem.solve.continuation.condensed import condensed
 from beamfem.solve.continuation.continuation import PathPoint
-from beamfem.solve.stability.critical_point_fit import Window, Zero, on_path, smooth
-from beamfem.solve.stability.loading_path import LoadingPath, PathLostError
-from beamfem.solve.stability.paired_critical_points import loads, stops
+from beamfem.solve.continuation.critical_points import interpolation_weights
+from beamfem.solve.modes.pencil import Pencil
+from beamfem.solve.stability.loading_path import LoadingPath, PathLostError, Softest
+
+_NODES = np.array([-1.0, -0.75, -0.45, 0.45, 0.75, 1.0])  # in units of the radius
+_REFERENCE = 2  # the node to whose modes those of the others are rotated
+_SPARE = 2  # modes found beyond those that are unstable
+_APART = 0.5  # of the change of stiffness in a window: closer modes are taken as one subspace
+_ALIKE = 0.7  # smallest cosine between the subspaces of soft modes at two nodes
+
+
+@dataclass(frozen=True)
+class Zero:
+    """A distance at which the stiffness of a mode of a window vanishes, and the number of that mode by stiffness."""
+
+    at: float
+    number: int
+
+
+@dataclass(frozen=True, eq=False)
+class Window:
+    """Points of a path at distances `at` along a direction.
+
+    softest: modes of each point; slopes: of the load factor (points,); mass (unknown, unknown) at one point; free: the
+    unknown coordinates.
+    """
+
+    centre: float
+    radius: float
+    at: np.ndarray
+    points: list[PathPoint]
+    softest: list[Softest]
+    slopes: np.ndarray
+    mass: csr_array
+    free: np.ndarray
+
+    @classmethod
+    def about(
+        cls, path: LoadingPath, normal: np.ndarray, ends: tuple[PathPoint, PathPoint], centre: float, radius: float
+    ) -> "Window":
+        """Return the window about a distance from the first of two ends along a normal (n + 1,).
+
+        Raises PathLostError, ConvergenceError.
+        """
+        at = centre + radius * _NODES
+        points = [on_path(path, normal, ends, x) for x in at]
+        count = max(point.negative_pivots for point in points) + _SPARE
+        softest = [path.softest(point, count) for point in points]
+        slopes = np.array([point.tangent[-1] / path.line.dot(normal, point.tangent) for point in points])
+        mass = Pencil(path.system, points[_REFERENCE].y[:-1], points[_REFERENCE].load_factor).mass
+        return cls(centre, radius, at, points, softest, slopes, mass, path.system.free_dofs)
+
+    @cached_property
+    def rows(self) -> np.ndarray:
+        """Coordinates and load factor (points, n + 1)."""
+        return np.array([point.y for point in self.points])
+
+    def weights(self, x: float) -> np.ndarray:
+        """Return the weights (points,) of the polynomial through all points, at a distance x."""
+        differences = self.at[:, None] - self.at
+        np.fill_diagonal(differences, 1.0)
+        parts = np.tile(x - self.at, (len(self.at), 1)) / differences
+        np.fill_diagonal(parts, 1.0)
+        return np.asarray(parts.prod(axis=1))
+
+    @cached_property
+    def _soft(self) -> slice:
+        """The modes whose stiffness changes its sign, and those that come close to them in stiffness."""
+        count = min(len(soft.values) for soft in self.softest)
+        values = np.array([soft.values[:count] for soft in self.softest])
+        low, high = values.min(axis=0), values.max(axis=0)
+        changing = np.flatnonzero((low < 0.0) & (high >= 0.0))
+        if not len(changing):
+            return slice(0, 0)
+        first, last = int(changing[0]), int(changing[-1]) + 1
+        gap = _APART * float((high - low)[changing].max())
+        while last < count and low[last] < high[last - 1] + gap:
+            last += 1
+        while first > 0 and high[first - 1] > low[first] - gap:
+            first -= 1
+        return slice(first, last)
+
+    @cached_property
+    def _turned(self) -> tuple[np.ndarray, np.ndarray, float]:
+        """Soft modes of each point (points, unknown, m), rotated to those of one of them, their stiffness
+        (points, m, m) and the smallest cosine between their subspaces.
+        """
+        reference = self.mass @ self.softest[_REFERENCE].vectors[:, self._soft]
+        vectors, stiffness, least = [], [], 1.0
+        for soft in self.softest:
+            modes = soft.vectors[:, self._soft]
+            left, cosines, right = svd(modes.T @ reference)
+            turn = left @ right
+            vectors.append(modes @ turn)
+            stiffness.append(turn.T @ (soft.values[self._soft, None] * turn))
+            least = min(least, float(cosines.min()))
+        return np.array(vectors), np.array(stiffness), least
+
+    @property
+    def alike(self) -> bool:
+        """Whether the soft modes of all points span nearly the same subspace."""
+        return self._soft.stop == 0 or self._turned[2] > _ALIKE
+
+    def zeros(self, reach: float) -> list[Zero]:
+        """Return the zeros of the stiffness of soft modes, at most `reach` from the centre."""
+        from scipy.optimize import brentq  # slow to import
+
+        if self._soft.stop == 0:
+            return []
+
+        def stiffness(x: float, number: int) -> float:
+            return float(self._modes(x)[0][number])
+
+        ends = self.centre - reach, self.centre + reach
+        values = [self._modes(x)[0] for x in ends]
+        changing = np.flatnonzero(values[0] * values[1] < 0.0)
+        zeros = [Zero(brentq(stiffness, *ends, args=(int(i),), xtol=1e-15, rtol=1e-14), int(i)) for i in changing]
+        return sorted(zeros, key=lambda zero: zero.at)
+
+    def mode(self, zero: Zero) -> np.ndarray:
+        """Return the mode (n,) whose stiffness vanishes at a zero."""
+        turned = np.tensordot(self.weights(zero.at), self._turned[0], axes=1)
+        result = np.zeros(self.rows.shape[1] - 1)
+        result[self.free] = turned @ self._modes(zero.at)[1][:, zero.number]
+        return result
+
+    def _modes(self, x: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return stiffness (m,), ascending, and combinations (m, m) of the soft modes at a distance."""
+        return eigh(np.tensordot(self.weights(x), self._turned[1], axes=1))
+
+    def turn(self) -> float | None:
+        """Return the distance at which the load has an extremum between the inner points, None if it has none."""
+        from scipy.optimize import brentq  # slow to import
+
+        inner = self.at[_REFERENCE], self.at[_REFERENCE + 1]
+        if self.slopes[_REFERENCE] * self.slopes[_REFERENCE + 1] >= 0.0:
+            return None
+        return float(brentq(lambda x: self.weights(x) @ self.slopes, *inner, xtol=1e-15, rtol=1e-14))
+
+    def aside(self, mode: np.ndarray) -> np.ndarray:
+        """Return the component of each point (points,) along a mode (n,)."""
+        return np.asarray(self.rows[:, self.free] @ (self.mass @ mode[self.free]))
+
+
+def on_path(path: LoadingPath, normal: np.ndarray, ends: tuple[PathPoint, PathPoint], x: float) -> PathPoint:
+    """Return the point of a path at a distance along a normal from the first of two others. Raises PathLostError."""
+    before, after = (end.y for end in ends)
+    nearest = before if 2.0 * x < path.line.dot(normal, after - before) else after
+    return path.corrected(smooth(path, normal, ends, x), nearest, normal, after - before)
+
+
+def smooth(path: LoadingPath, normal: np.ndarray, ends: tuple[PathPoint, PathPoint], x: float) -> np.ndarray:
+    """Return coordinates and load factor (n + 1,) on the cubic through two points, continued by its tangents."""
+    before, after = (end.y for end in ends)
+    slopes = [end.tangent / path.line.dot(normal, end.tangent) for end in ends]
+    reach = path.line.dot(normal, after - before)
+    if x <= 0.0:
+        return np.asarray(before + x * slopes[0])
+    if x >= reach:
+        return np.asarray(after + (x - reach) * slopes[1])
+    t = x / reach
+    interpolated = (1.0 - t) ** 2 * (1.0 + 2.0 * t) * before + t**2 * (3.0 - 2.0 * t) * after
+    return np.asarray(interpolated + reach * t * (1.0 - t) * ((1.0 - t) * slopes[0] - t * slopes[1]))
+
+
+_MODES = 3  # softest ones, of which one may lose its stiffness and gain it again
+_FRACTION = 0.3  # of the least stiffness of a mode at the points of a step: with less in between it may lose it
+_GRID = np.linspace(0.0, 1.0, 65)
+
+
+def stops(path: LoadingPath, before: PathPoint, middle: PathPoint, after: PathPoint) -> Iterator[PathPoint]:
+    """Yield points of a step in order, at which a pair of limit points or of bifurcations would show.
+
+    Cubics through the loads and their slopes tell where the load may fall in between, a parabola through the condensed
+    tangents where a mode may lose its stiffness. Raises PathLostError.
+    """
+    soft = _softest_place(path, before, middle, after)
+    for start, end in ((before, middle), (middle, after)):
+        normal = path.normal(start, end)
+        places = [_extreme_slope(path, start, end)]
+        if soft is not None:
+            at = path.line.dot(normal, soft - start.y)
+            places.append(at if 0.0 < at < path.line.dot(normal, end.y - start.y) else None)
+        for at in sorted(place for place in places if place is not None):
+            yield on_path(path, normal, (start, end), at)
+        yield end
+
+
+def loads(
+    path: LoadingPath, normal: np.ndarray, before: PathPoint, after: PathPoint
+) -> tuple[float, tuple[float, float], float]:
+    """Return the distance of two points along a normal, the slopes of the load over its fractions, and its rise."""
+    reach = path.line.dot(normal, after.y - before.y)
+    first, last = (reach * end.tangent[-1] / path.line.dot(normal, end.tangent) for end in (before, after))
+    return reach, (first, last), after.load_factor - before.load_factor
+
+
+def _extreme_slope(path: LoadingPath, before: PathPoint, after: PathPoint) -> float | None:
+    """Return the distance along the chord at which the load falls by the cubic through two points between which it
+    rises at both ends, or the other way round; None if it does not.
+    """
+    reach, slopes, rise = loads(path, path.normal(before, after), before, after)
+    curvature = slopes[0] + slopes[1] - 2.0 * rise
+    if slopes[0] * slopes[1] <= 0.0 or curvature == 0.0:
+        return None
+    x = (2.0 * slopes[0] + slopes[1] - 3.0 * rise) / (3.0 * curvature)
+    slope = slopes[0] + x * (6.0 * rise - 4.0 * slopes[0] - 2.0 * slopes[1]) + 3.0 * x**2 * curvature
+    return x * reach if 0.0 < x < 1.0 and slope * slopes[0] < 0.0 else None
+
+
+def _softest_place(path: LoadingPath, before: PathPoint, middle: PathPoint, after: PathPoint) -> np.ndarray | None:
+    """Return y (n + 1,) where by parabolas through three points a mode keeps the least fraction of its stiffness.
+
+    None if all modes keep more of it than a fraction, or round-off hides the stiffnesses.
+    """
+    line, points = path.line, (before, middle, after)
+    normal = path.normal(before, after)
+    try:
+        modes = line.softest_modes(before.factors, _MODES)
+        eigenvalues = np.array([np.linalg.eigvalsh(condensed(line, point, modes).stiffness) for point in points])
+    except LinAlgError:
+        return None
+    steady = np.flatnonzero(np.all(eigenvalues > 0.0, axis=0) | np.all(eigenvalues < 0.0, axis=0))
+    if not len(steady):
+        return None
+    at = np.array([line.dot(normal, point.y - before.y) for point in points])
+    grid = at[-1] * _GRID
+    fractions = interpolation_weights(at, grid) @ (
+        eigenvalues / eigenvalues[np.argmin(np.abs(eigenvalues), axis=0), np.arange(eigenvalues.shape[1])]
+    )
+    row, mode = np.unravel_index(np.argmin(fractions[:, steady]), (len(grid), len(steady)))
+    if fractions[row, steady[mode]] > _FRACTION:
+        return None
+    return np.asarray(interpolation_weights(at, float(grid[row])) @ np.array([point.y for point in points]))
+
 
 BIFURCATION = "bifurcation"
 LIMIT_POINT = "limit point"

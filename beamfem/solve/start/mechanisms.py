@@ -1,15 +1,152 @@
 """Reject models that are mechanisms if every beam is taken as rigid."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.sparse import coo_array, csr_array
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import ArpackError, eigsh
 
+from beamfem.assembly.rigid_velocity import RigidVelocity, set_rigid_rates
 from beamfem.assembly.system import System
-from beamfem.errors import FreeMotionError
-from beamfem.model.beam_names import beam_in_words
+from beamfem.errors import ConvergenceError, FreeMotionError
+from beamfem.model.beam import Point, beam_in_words
 from beamfem.model.missing_joints import Pair, in_words, unjoined_ends
-from beamfem.model.support_base import PointSupport
-from beamfem.solve.start.body_motions import NEGLIGIBLE, Conditions, bodies_of, mechanisms
+from beamfem.model.model import Model
+from beamfem.model.supports import PointSupport
+
+NEGLIGIBLE = 1e-9  # of the size of the model
+_DENSE_BODIES = 300
+_FIRST_FEW = 3
+
+
+def bodies_of(model: Model) -> np.ndarray:
+    """Return the number of the body (beams,) that each beam is part of; rigid joints make one body of two beams."""
+    pairs = [
+        (model.number_of(joint.a.beam), model.number_of(joint.b.beam)) for joint in model.joints if joint.keeps_angle
+    ]
+    count = len(model.beams)
+    if not pairs:
+        return np.arange(count)
+    a, b = np.array(pairs).T
+    return connected_components(coo_array((np.ones(len(a)), (a, b)), shape=(count, count)), directed=False)[1]
+
+
+class Conditions:
+    """Conditions on the motions (a, b, turn) of all bodies from a state p (n,).
+
+    Lengths are relative to the size of the model, rotations are about its centre. body (beams,): the body of each beam.
+    """
+
+    def __init__(self, system: System, body: np.ndarray, p: np.ndarray) -> None:
+        model = system.model
+        self.model, self.body, self.extent = model, body, system.extent
+        self.nodes = [p[mesh.kinematics.dof[:, :2]] for mesh in model.meshes]
+        self.centre = np.mean([positions.mean(axis=0) for positions in self.nodes], axis=0)
+        self.bodies = int(body.max() + 1)
+        self.entries: list[tuple[int, int, float]] = []
+        self.count = 0
+        for support in model.point_supports:
+            displacement = self.displacement(support.point)
+            body_number = int(body[model.number_of(support.point.beam)])
+            rows = {"ux": displacement[0], "uy": displacement[1], "rotation": np.array([0.0, 0.0, 1.0])}
+            if support.direction is not None:
+                rows["normal"] = support.direction @ displacement
+            for direction in (*support.prescribed(), *support.springs()):
+                self._add({body_number: rows[direction]})
+        for foundation in model.line_supports:
+            number = model.number_of(foundation.beam)
+            for position in self.nodes[number]:
+                for row, k in zip(self.moved(position), foundation.stiffness, strict=True):
+                    if k > 0.0:
+                        self._add({int(body[number]): row})
+        for joint in model.joints:
+            one, other = (int(body[model.number_of(point.beam)]) for point in (joint.a, joint.b))
+            if one != other:
+                for left, right in zip(self.displacement(joint.a), self.displacement(joint.b), strict=True):
+                    self._add({one: left, other: -right})
+        for connector, stopped in system.connectors.stopped():
+            self._resist(connector.item.points, stopped)
+
+    def _resist(self, points: Sequence[Point], stopped: np.ndarray) -> None:
+        """Add conditions on motions (r, 3 m) of points."""
+        moved = [np.vstack([self.extent * self.displacement(point), [0.0, 0.0, 1.0]]) for point in points]
+        bodies = [int(self.body[self.model.number_of(point.beam)]) for point in points]
+        for row in stopped:
+            parts = {number: np.zeros(3) for number in bodies}
+            for number, coefficients, motion in zip(bodies, row.reshape(-1, 3), moved, strict=True):
+                parts[number] += coefficients @ motion
+            size = max(float(np.abs(part).max()) for part in parts.values())
+            if size > NEGLIGIBLE * self.extent:
+                self._add({number: part / size for number, part in parts.items()})
+
+    def displacement(self, point: Point) -> np.ndarray:
+        """Return the displacement (2, 3) of a point per unit of a, b and turn of its body."""
+        node = self.model.mesh_of(point).node_at(point.fraction)
+        return self.moved(self.nodes[self.model.number_of(point.beam)][node])
+
+    def moved(self, position: np.ndarray) -> np.ndarray:
+        """Return the displacement (2, 3) of a position (2,) [m] per unit of a, b and turn of the body there."""
+        x, y = (position - self.centre) / self.extent
+        return np.array([[1.0, 0.0, -y], [0.0, 1.0, x]])
+
+    def _add(self, parts: dict[int, np.ndarray]) -> None:
+        for number, row in parts.items():
+            self.entries += [(self.count, 3 * number + i, float(value)) for i, value in enumerate(row)]
+        self.count += 1
+
+    def matrix(self) -> csr_array:
+        """Return the conditions (m, 3 bodies); their product with an unconstrained motion is zero."""
+        row, column, value = np.array(self.entries or [(0, 0, 0.0)]).T
+        shape = (max(self.count, 1), 3 * self.bodies)
+        return csr_array(coo_array((value, (row.astype(int), column.astype(int))), shape=shape))
+
+    def dense(self) -> np.ndarray:
+        """Return the conditions as a dense array."""
+        result = np.zeros((max(self.count, 1), 3 * self.bodies))
+        for row, column, value in self.entries:
+            result[row, column] += value
+        return result
+
+    def rates(self, p: np.ndarray, motion: np.ndarray) -> np.ndarray:
+        """Return the change (n,) of the coordinates from the state p with a motion (3 bodies,)."""
+        result = np.zeros(len(p))
+        for number, mesh in enumerate(self.model.meshes):
+            a, b, turn = motion.reshape(-1, 3)[self.body[number]].tolist()
+            velocity = RigidVelocity((a * self.extent, b * self.extent), turn, tuple(self.centre))
+            set_rigid_rates(mesh, velocity, p, result)
+        return result
+
+
+def mechanisms(conditions: Conditions) -> np.ndarray:
+    """Return an orthonormal basis (m, 3 bodies) of the motions that satisfy all conditions."""
+    size = 3 * conditions.bodies
+    if conditions.bodies <= _DENSE_BODIES:
+        return _null_space(conditions.dense())
+    rows = conditions.matrix()
+    wanted = _FIRST_FEW
+    while 2 * wanted < size:
+        start = np.random.default_rng(1).standard_normal(size)
+        try:
+            values, vectors = eigsh(rows.T @ rows, k=wanted, sigma=-1e-6, v0=start)
+        except ArpackError as error:
+            raise ConvergenceError(
+                f"whether {conditions.bodies} bodies can move freely could not be determined: {error}"
+            ) from error
+        if values.max() >= NEGLIGIBLE:
+            return np.asarray(vectors.T[values < NEGLIGIBLE])
+        wanted *= 4
+    return _null_space(conditions.dense())
+
+
+def _null_space(rows: np.ndarray) -> np.ndarray:
+    if len(rows) > rows.shape[1]:
+        # the same singular values and basis, without a square matrix of all nodes on a foundation
+        rows = np.asarray(np.linalg.qr(rows, mode="r"))
+    _, singular, basis = np.linalg.svd(rows)
+    return np.asarray(basis[int((singular > NEGLIGIBLE).sum()) :])
+
 
 _PROVEN = "supported"
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.assembly.connector_rates import damps_at_rest
+from beamfem.assembly.connectors import damps_at_rest
 from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import System
 from beamfem.errors import InputError

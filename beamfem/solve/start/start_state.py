@@ -1,13 +1,196 @@
-"""The state that a solve starts from."""
+"""The state that a solve starts from, also of another model that has the same beams and meshes."""
 
 import numpy as np
 
-from beamfem.assembly.system import System
-from beamfem.errors import InputError
+from beamfem.assembly.reference_state import coordinate_columns
+from beamfem.assembly.system import System, system_of
+from beamfem.element.axis import cross, dot
+from beamfem.element.coordinates import across
+from beamfem.errors import InputError, warn
+from beamfem.kernels.block import ROTATED_GRADIENTS
+from beamfem.model.beam import beam_in_words
+from beamfem.model.beam_mesh import BeamMesh
+from beamfem.model.model import Model
+from beamfem.model.model_meshes import nodes_asked
+from beamfem.model.reference import reference_angle
+from beamfem.results import postprocess
 from beamfem.results.check_arrays import require_finite
 from beamfem.results.solution import Solution, State
 from beamfem.solve.start.equilibrium_check import left_over
-from beamfem.solve.start.transfer import transferred, warn_of_lost_history
+from beamfem.value_keys import equal
+
+_SAME_PLACE = 1e-9  # of the length of a beam: tolerance between positions of nodes
+_SEVERAL = 3  # points that a message names
+_ADVICE = "take it from a model of the same beams and elements, whose supports, loads and joints are at the same points"
+
+
+def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return coordinates and rates (n,) of a state in the model of a system.
+
+    Beams are matched by identity or, in a copy of their model, by position, in any order. Nodes are the same, but
+    whether their coordinates are gradients or angles depends on supports and joints. Connectors that are in both models
+    keep their history, and so do beams with the same element and section law. Raises InputError if the beams do not
+    match.
+    """
+    source, target = state.model, system.model
+    if source is target:
+        return np.array(state.p), np.array(state.v)
+    p, v = system.reference.copy(), np.zeros(target.size)
+    for old, new in _matched(source, target, name):
+        values, rates = _by_label(old, state)
+        for label, nodes, dofs in coordinate_columns(new):
+            # a rotated vector belongs to the first of the joined nodes
+            mask = new.kinematics.node_kind[nodes] != ROTATED_GRADIENTS if label.startswith("r_y") else slice(None)
+            p[dofs[mask]], v[dofs[mask]] = values[label][nodes[mask]], rates[label][nodes[mask]]
+        if _keeps_history(old, new):
+            p[new.history] = state.p[old.history]
+    source_items = {id(item.item): item for item in system_of(source, system.static).connectors.items}
+    for item in system.connectors.items:
+        if id(item.item) in source_items:
+            p[item.memory] = state.p[source_items[id(item.item)].memory]
+    return p, v
+
+
+def warn_of_lost_history(state: State, system: System, name: str) -> None:
+    """Warn of beams that have a history in a state which their sections here do not continue."""
+    if state.model is system.model:
+        return
+    for old, new in _matched(state.model, system.model, name):
+        law = old.beam.law
+        if law is None or not old.history.size or _keeps_history(old, new):
+            continue
+        if not np.array_equal(state.p[old.history], np.broadcast_to(law.start, old.history.shape)):
+            beam = beam_in_words(system.model.beams, system.model.number_of(new.beam))
+            warn(
+                f"what the {law.name} of {beam} remembers in {name} is lost: the beam has another section, material or "
+                "element in this model, which begins without history"
+            )
+
+
+def _keeps_history(old: BeamMesh, new: BeamMesh) -> bool:
+    """Return whether a beam has the same element and section law in both models, and so its history."""
+    one, other = old.beam.law, new.beam.law
+    if one is None or other is None or not new.history.size or old.history.shape != new.history.shape:
+        return False
+    if old.beam.element != new.beam.element:
+        return False
+    return equal(one.section, other.section) and equal(one.material, other.material)
+
+
+def transferred_turns(state: State | None, model: Model, name: str) -> np.ndarray:
+    """Return the rotation at the start (m,) [rad], full turns included, of beams whose coordinates do not contain it.
+
+    Zero without a state. Raises InputError if the beams do not match.
+    """
+    meshes = model.numbered.uncounted
+    if state is None or not meshes:
+        return np.zeros(len(meshes))
+    pairs = zip(model.meshes, model.meshes, strict=True) if state.model is model else _matched(state.model, model, name)
+    old = {id(new): source for source, new in pairs}
+    return np.array([_rotations(old[id(mesh)], state)[0] for mesh in meshes])
+
+
+def _rotations(mesh: BeamMesh, state: State) -> np.ndarray:
+    """Return the rotation of each node's section (nodes,) [rad] in a state."""
+    indices = state.model.numbered.numbers_uncounted.get(mesh)
+    turned = None if indices is None or state.turned is None else state.turned[[indices]]
+    return np.asarray(postprocess.nodal_rotations(mesh, state.p[None], turned)[0])
+
+
+def _by_label(mesh: BeamMesh, state: State) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """Return every coordinate that a node could have (nodes,), and its rate, by name."""
+    p, v = state.p[None], state.v[None]
+    e, rate = postprocess.nodal_vectors(mesh, p)[0], postprocess.nodal_velocities(mesh, p, v)[0]
+    values: dict[str, np.ndarray] = {}
+    rates: dict[str, np.ndarray] = {}
+    for i, vector in enumerate(mesh.vectors):
+        for component, axis in enumerate("xy"):
+            values[f"{vector}^{axis}"], rates[f"{vector}^{axis}"] = e[:, i, component], rate[:, i, component]
+    director, turning = e[:, -1], rate[:, -1]
+    normal = -across(director)
+    angle = np.arctan2(normal[:, 1], normal[:, 0]) - reference_angle(mesh)
+    turns = np.round((_rotations(mesh, state) - angle) / (2.0 * np.pi))
+    values["theta"] = angle + 2.0 * np.pi * turns
+    rates["theta"] = cross(director, turning) / dot(director, director)
+    if "r_x" in mesh.vectors:
+        slope = e[:, mesh.vectors.index("r_x")]
+        along = normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+        values["s"] = dot(slope, along)
+        rates["s"] = dot(rate[:, mesh.vectors.index("r_x")], along)
+    return values, rates
+
+
+def _matched(source: Model, target: Model, name: str) -> list[tuple[BeamMesh, BeamMesh]]:
+    """Return the mesh of each beam in both models. Raises InputError if a beam has no counterpart."""
+    by_beam = {id(mesh.beam): mesh for mesh in source.meshes}
+    unmatched = [mesh for mesh in source.meshes if all(mesh.beam is not new.beam for new in target.meshes)]
+    pairs = []
+    for new in target.meshes:
+        old = by_beam.get(id(new.beam)) or next((mesh for mesh in unmatched if _alike(mesh, new)), None)
+        if old is None or not _alike(old, new):
+            like = old or next((mesh for mesh in unmatched if _divided_alike(mesh, new)), None)
+            if like is not None and (parted := _parted(source, target, like, new, name)):
+                raise InputError(parted)
+            other = [old] if old is not None else source.meshes[:5]
+            beams = "; ".join(_described(source, mesh) for mesh in other)
+            raise InputError(
+                f"{name} does not have the {_described(target, new)} of this model, it has {beams}, or nodes elsewhere "
+                f"in between; {_ADVICE}"
+            )
+        unmatched = [mesh for mesh in unmatched if mesh is not old]
+        pairs.append((old, new))
+    if unmatched:
+        raise InputError(f"this model does not have the {_described(source, unmatched[0])} of {name}; {_ADVICE}")
+    return pairs
+
+
+def _alike(old: BeamMesh, new: BeamMesh) -> bool:
+    """Return whether two beams have the same nodal vectors at the same places."""
+    if old.vectors != new.vectors or old.nodes != new.nodes:
+        return False
+    near = _SAME_PLACE * new.arc[-1]
+    distance = max(np.abs(old.position - new.position).max(), np.abs(old.arc - new.arc).max())
+    turned = np.abs(old.tangent * old.speed[:, None] - new.tangent * new.speed[:, None]).max()
+    return bool(distance <= near and turned <= _SAME_PLACE * new.speed.max())
+
+
+def _divided_alike(old: BeamMesh, new: BeamMesh) -> bool:
+    """Return whether two beams lie at the same place with the same elements, but for those that points divide."""
+    if old.vectors != new.vectors or old.beam.elements != new.beam.elements:
+        return False
+    ends = np.abs(old.position[[0, -1]] - new.position[[0, -1]]).max()
+    return bool(max(ends, abs(old.arc[-1] - new.arc[-1])) <= _SAME_PLACE * new.arc[-1])
+
+
+def _parted(source: Model, target: Model, old: BeamMesh, new: BeamMesh, name: str) -> str:
+    """Return the message that parts inside elements place nodes in one model only; empty if they do not.
+
+    A divided element has more freedom than a whole one, so that no transfer between them is exact.
+    """
+    beam, message = beam_in_words(target.beams, target.number_of(new.beam)), []
+    for one, mesh, other in ((source, old, new), (target, new, old)):
+        requested = nodes_asked(one)[one.number_of(mesh.beam)]
+        fractions = other.vertices / other.vertices[-1]
+        only = {at: part for at, part in sorted(requested) if np.abs(fractions - at).min() > _SAME_PLACE}
+        if not only:
+            continue
+        parts = ", ".join(f"{part} at fraction {at:.12g}" for at, part in list(only.items())[:_SEVERAL])
+        if len(only) > _SEVERAL:
+            parts += f" and {len(only) - _SEVERAL} more"
+        has, lacks = (f"the model of {name}", "this model") if one is source else ("this model", f"the model of {name}")
+        nodes, point = ("a node", "this point") if len(only) == 1 else ("nodes", "each point")
+        message.append(
+            f"{has} has {nodes} on {beam} for {parts}, and {lacks} has none there; add a PointForce of (0, 0) at "
+            f"{point} to {lacks}"
+        )
+    return "; and ".join(message)
+
+
+def _described(model: Model, mesh: BeamMesh) -> str:
+    (x0, y0), (x1, y1) = mesh.position[[0, -1]]
+    beam = beam_in_words(model.beams, model.number_of(mesh.beam))
+    return f"{mesh.nodes} nodes of {mesh.beam.element.name} on {beam} from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})"
+
 
 _SAME = 1e-9  # of the size of the model, or rad: tolerance of prescribed coordinates
 

@@ -9,7 +9,7 @@ from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, LimitPointError
 from beamfem.precision.roundoff import ENOUGH, digits_of, largest_force
 from beamfem.progress import progress
-from beamfem.results.mesh_advice import advice
+from beamfem.results.solution_checks import advice
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
 from beamfem.solve.statics.load_path import (
@@ -20,8 +20,7 @@ from beamfem.solve.statics.load_path import (
     TurnsBackError,
 )
 from beamfem.solve.statics.skipped_limit_points import is_short, skips_limit_points
-from beamfem.solve.statics.snap_through import rest_state, same_point
-from beamfem.solve.statics.stable_branch import BESIDE, leave
+from beamfem.solve.statics.snap_through import BESIDE, leave, rest_state, same_point
 from beamfem.solve.statics.static_record import StaticRecord, is_unstable
 
 Snap = Literal["error", "jump"]

@@ -15,13 +15,16 @@ from beamfem.results.full_turns import start_rotations
 from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import warned
 from beamfem.solve.newton.iteration import Newton, require_newton
-from beamfem.solve.start.functions_of_time import functions_of_time
-from beamfem.solve.start.kinks import SAME as NEAR
-from beamfem.solve.start.kinks import jumps_between, kinks_and_turning_points
+from beamfem.solve.start.functions_of_time import SAME as NEAR
+from beamfem.solve.start.functions_of_time import (
+    functions_of_time,
+    jumps_between,
+    kinks_and_turning_points,
+    warn_between_rows,
+)
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import refuse_memory, require_independent
 from beamfem.solve.start.partial_results import kept
-from beamfem.solve.start.unresolved_loads import warn_between_rows
 from beamfem.solve.statics.load_jumps import cross_jump
 from beamfem.solve.statics.load_steps import SAME, Snap, Unstable, reach
 from beamfem.solve.statics.preload import first_equilibrium, nothing_acts

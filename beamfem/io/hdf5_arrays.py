@@ -1,0 +1,202 @@
+"""Labelled arrays in HDF5 files, with names and units as in netCDF: axes of beams, limit points and bifurcations."""
+
+from collections.abc import Callable, Iterator
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from beamfem.io.hdf5 import read_checked, write_checked
+from beamfem.results.axis_fields import QUANTITIES, AxisPoints, rotation, section_forces
+from beamfem.results.batched_beams import VALUES, LikeBeams, like_beams
+from beamfem.results.path import Bifurcation, Path, PathState
+from beamfem.results.solution import Solution
+
+
+def array(group: Any, name: str, shape: tuple[int, ...], meaning: str, unit: str) -> Any:
+    """Return a new array of floats with the attributes `long_name` and `units`."""
+    from h5py import Dataset, h5d, h5s, h5t  # slow to import, and need not be installed
+
+    made = h5d.create(group.id, name.encode(), h5t.NATIVE_DOUBLE, h5s.create_simple(shape), _plain())
+    _describe(made, "long_name", meaning)
+    _describe(made, "units", unit)
+    return Dataset(made)
+
+
+def scale(group: Any, name: str, values: np.ndarray, meaning: str, unit: str) -> Any:
+    """Return a new dimension scale."""
+    from h5py import h5ds
+
+    result = array(group, name, values.shape, meaning, unit)
+    write(result, values)
+    h5ds.set_scale(result.id, name.encode())
+    return result
+
+
+def variable(group: Any, name: str, meaning: str, unit: str, scales: tuple[Any, ...]) -> Any:
+    """Return a new array over dimension scales."""
+    from h5py import h5ds
+
+    result = array(group, name, tuple(len(over) for over in scales), meaning, unit)
+    for dimension, over in enumerate(scales):
+        h5ds.attach_scale(result.id, over.id, dimension)
+    return result
+
+
+def write(dataset: Any, values: np.ndarray, rows: slice = slice(None)) -> None:
+    """Write values into some rows of an array, or all."""
+    from h5py import h5s
+
+    if dataset.shape == values.shape:
+        dataset.id.write(h5s.ALL, h5s.ALL, np.ascontiguousarray(values, dtype=float))
+    else:
+        dataset[rows] = values
+
+
+@lru_cache(maxsize=1)
+def _plain() -> Any:
+    """Return the properties of new arrays: files do not tell when they were made."""
+    from h5py import h5p
+
+    properties = h5p.create(h5p.DATASET_CREATE)
+    properties.set_obj_track_times(False)
+    return properties
+
+
+@lru_cache(maxsize=1)
+def _kind_of_text() -> Any:
+    """Return the type and the shape of a text in a file."""
+    from h5py import h5s, h5t, string_dtype
+
+    return h5t.py_create(string_dtype(), logical=True), h5s.create(h5s.SCALAR)
+
+
+def _describe(made: Any, name: str, text: str) -> None:
+    from h5py import h5a, string_dtype
+
+    h5a.create(made, name.encode(), *_kind_of_text()).write(np.array(text, dtype=string_dtype()))
+
+
+AXES = "beams"
+_MOST = 100_000  # elements times rows whose section forces are written, in a second or two
+_FORCES = ("normal", "shear", "moment")
+
+
+def save_axes(file: Any, solution: Solution, require_written: Callable[[], None]) -> None:
+    """Write groups beams/0, beams/1, ...: positions of element ends, rotations of sections and forces in them there.
+
+    x, y [m] and rotation [rad] (rows, stations) over the dimension scales `time` [s] or `load_factor` (rows,) and
+    `arc_length` [m] (stations,); normal, shear [N] and moment [N m] (rows, 2 elements) over `element_end` [m], where
+    each element has ends of its own, since forces jump at loads; long motions of large models have no forces, which
+    would take longer than the solve. All have the attributes `units`, those of the model, and `long_name`; a group has
+    the `name` of its beam, where it has one.
+    """
+    meshes = solution.model.meshes
+    small = len(solution) * sum(mesh.elements for mesh in meshes) <= _MOST
+    for group in like_beams(solution.model, [AxisPoints(mesh, 1) for mesh in meshes], len(solution)):
+        # several beams are together only where one table holds all rows
+        tables = _tables(solution, group, small) if len(group.numbers) == 1 else [*_tables(solution, group, small)]
+        for place, number in enumerate(group.numbers):
+            axis = _Axis(file, solution, number, group.single[place], small)
+            for rows, parts in tables:
+                axis.write(rows, parts[place])
+                require_written()
+
+
+def _tables(solution: Solution, group: LikeBeams, forces: bool) -> Iterator[tuple[slice, list[np.ndarray]]]:
+    """Yield x, y and rotation, and section forces if wanted (3 or 6, rows, points) of each beam, with their rows."""
+    points, block = group.points, max(VALUES // sum(group.counts), 1)
+    for first in range(0, len(solution), block):
+        rows = slice(first, min(first + block, len(solution)))
+        r = points.positions(solution.p[rows])[0]
+        values = [r[..., 0], r[..., 1], rotation(points, solution, rows)]
+        if forces:
+            found = section_forces(points, solution, rows)
+            values += [found[name] for name in _FORCES]
+        yield rows, group.parted(np.stack(values), 2)
+
+
+class _Axis:
+    """The group of one beam in the file."""
+
+    def __init__(self, file: Any, solution: Solution, number: int, points: AxisPoints, forces: bool) -> None:
+        unit, mesh = solution.model.unit, points.mesh
+        over, of_rows = ("load_factor", "1") if solution.static else ("time", unit("s"))
+        self._ends = np.append(np.arange(0, 2 * mesh.elements, 2), 2 * mesh.elements - 1)
+        group = file.create_group(f"{AXES}/{number}", track_order=True)
+        group.attrs["curve"] = type(mesh.beam.curve).__name__
+        group.attrs["element"] = mesh.beam.element.name
+        if mesh.beam.name is not None:
+            group.attrs["name"] = mesh.beam.name
+        arc = points.arc_length
+        at = scale(group, over, solution.at, over.replace("_", " "), of_rows)
+        along = scale(group, "arc_length", arc[self._ends], "arc length in the reference", unit("m"))
+        self._forces: list[Any] = []
+        if forces:
+            ends = scale(group, "element_end", arc, "arc length of the ends of each element", unit("m"))
+            about = ((name, QUANTITIES[name].label, unit(QUANTITIES[name].unit)) for name in _FORCES)
+            self._forces = [variable(group, *each, (at, ends)) for each in about]
+        moved = (
+            ("x", "position x", unit("m")),
+            ("y", "position y", unit("m")),
+            ("rotation", "rotation of the section", "rad"),
+        )
+        self._moved = [variable(group, *each, (at, along)) for each in moved]
+
+    def write(self, rows: slice, table: np.ndarray) -> None:
+        """Write some rows of the values of `_tables`."""
+        for moved, values in zip(self._moved, table, strict=False):
+            write(moved, values[:, self._ends], rows)
+        for force, values in zip(self._forces, table[3:], strict=True):
+            write(force, values, rows)
+
+
+_STATE = ("at", "p")
+_CROSSING = ("at", "p", "mode", "tangent")
+
+
+def load_factors(path: Path) -> np.ndarray:
+    """Return the load factors of the critical points of a path (m,), at which its functions are evaluated too."""
+    return np.array([state.at for state in (*path.limit_points, *path.bifurcations)])
+
+
+def save_critical(file: Any, path: Path) -> None:
+    """Write the critical points of a path, one per row."""
+    for name, states, parts in _groups(path):
+        group = file.create_group(name)
+        for part in parts:
+            write_checked(group, part, np.array([getattr(state, part) for state in states]))
+        turned = [state.turned for state in states if state.turned is not None]
+        if turned and turned[0].size:
+            write_checked(group, "turned", np.array(turned))
+
+
+def load_path(file: Any, rows: Solution) -> Solution:
+    """Return the rows as the saved path with its critical points, or unchanged if no path was saved."""
+    if "limit_points" not in file:
+        return rows
+    model, zeros = rows.model, np.zeros(rows.model.size)
+    states = tuple(
+        PathState(p, zeros, zeros, float(at), model, stability=False, turned=turned)
+        for at, p, turned in _rows(file["limit_points"], _STATE)
+    )
+    crossings = tuple(
+        Bifurcation(p, zeros, zeros, float(at), model, mode, tangent, stability=False, turned=turned)
+        for at, p, mode, tangent, turned in _rows(file["bifurcations"], _CROSSING)
+    )
+    return Path(**_parts(rows), limit_points=states, bifurcations=crossings)
+
+
+def _parts(solution: Solution) -> dict[str, Any]:
+    """Return the members of a solution by name."""
+    return {name: getattr(solution, name) for name in Solution.__dataclass_fields__}
+
+
+def _groups(path: Path) -> tuple[tuple[str, tuple[PathState, ...], tuple[str, ...]], ...]:
+    return ("limit_points", path.limit_points, _STATE), ("bifurcations", path.bifurcations, _CROSSING)
+
+
+def _rows(group: Any, parts: tuple[str, ...]) -> Any:
+    """Return the members of each state and its counted rotations, None if no beam needs them or the file is older."""
+    turned = read_checked(group, "turned") if "turned" in group else [None] * len(group["at"])
+    return zip(*(read_checked(group, part) for part in parts), turned, strict=True)

@@ -14,8 +14,7 @@ from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import PointLoads, Springs
 from beamfem.model.beam import Beam
 from beamfem.model.beam_mesh import BeamMesh
-from beamfem.model.load_arrays import forces_of
-from beamfem.model.load_base import LineLoad, PointLoad, factor
+from beamfem.model.load_base import LineLoad, PointLoad, factor, forces_of
 from beamfem.model.model import Model
 from beamfem.model.reference import jacobians, length_points, reference_axis, scales
 

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.cached_properties import cached_property
-from beamfem.model.load_arrays import forces_of
-from beamfem.model.load_base import factor
+from beamfem.model.load_base import factor, forces_of
 from beamfem.model.model import Model
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,12 +12,15 @@ from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError
 from beamfem.io.abaqus import read_abaqus
-from beamfem.io.frame import Frame, Members, build_frame
-from beamfem.io.mesh_chains import divided, merged, parts_of, warn_of_gaps
 from beamfem.io.mesh_file import MeshFile, read_through_meshio
+from beamfem.io.split_lines import divided, merged, parts_of, warn_of_gaps
 from beamfem.material import Material
 from beamfem.reprs import brief
 from beamfem.validation import LARGEST, flag, holds_truth_values, items, number_table, shown, text
+
+if TYPE_CHECKING:
+    from beamfem.io.frame import Frame, Members
+
 
 # distance from the plane z = 0 and length of a line that count as none, as a fraction of the size of the mesh
 _SAME = 1e-9
@@ -85,9 +88,9 @@ class LineMesh:
         element: Element | Mapping[str, Element],
         section: Any,
         material: Material | Mapping[str, Material] | None = None,
-        members: Members = "cells",
+        members: "Members" = "cells",
         hinges: str | Sequence[str] = (),
-    ) -> Frame:
+    ) -> "Frame":
         """Return beams along the lines and the joints between those that share a node.
 
         Members that share a node are joined rigidly. Each of elements, element, section and material may be a mapping
@@ -126,6 +129,9 @@ class LineMesh:
         >>> type(frame.joints[0]).__name__
         'Hinge'
         """
+
+        from beamfem.io.frame import build_frame
+
         return build_frame(self, elements, element, section, material, members, hinges)
 
 

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
@@ -11,8 +11,10 @@ from beamfem.model.beam import Beam
 from beamfem.model.jumps import find_jumps
 from beamfem.validation import function_of_one, shown
 
-if TYPE_CHECKING:
-    from beamfem.model.load_base import Load
+
+class _Varying(Protocol):
+    @property
+    def along(self) -> tuple[str, ...]: ...
 
 
 class AlongBeam(ABC):
@@ -31,7 +33,7 @@ class AlongBeam(ABC):
         """
 
 
-def functions_along(load: "AlongBeam | Load") -> dict[str, Callable[[float], Any]]:
+def functions_along(load: _Varying) -> dict[str, Callable[[float], Any]]:
     """Return the fields of a load that are functions of the arc length, none for a load at a point or on all mass."""
     fields = {name: getattr(load, name) for name in load.along}
     return {name: value for name, value in fields.items() if callable(value)}

@@ -14,7 +14,6 @@ from beamfem.element.element import Element
 from beamfem.element.fields import Cubic
 from beamfem.errors import InputError
 from beamfem.material import Material
-from beamfem.model.check_beam import require_law_fits, require_magnitudes
 from beamfem.model.jumps import find_jumps
 from beamfem.section.law import ConstitutiveLaw, law_of
 from beamfem.section.protocol import CrossSection
@@ -114,6 +113,8 @@ class Beam:
     name: str | None = None
 
     def __post_init__(self) -> None:
+        from beamfem.model.check_beam import require_law_fits, require_magnitudes
+
         if isinstance(self.elements, str):
             _check_knots(self.elements, self.curve, self.element)
         elif isinstance(self.elements, int | float | np.generic) or _without_dimensions(self.elements):

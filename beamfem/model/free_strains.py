@@ -7,8 +7,7 @@ import numpy as np
 from beamfem.element.coordinates import Gradients
 from beamfem.model.along_beam import jumps_along
 from beamfem.model.beam_grid import Grid
-from beamfem.model.imposed_strains import ImposedStrain
-from beamfem.model.load_arrays import free_strain_of
+from beamfem.model.imposed_strains import ImposedStrain, free_strain_of
 from beamfem.model.reference import energy_points, reference_axis
 
 _THICKNESS = 3  # column of the thickness stretch

@@ -11,7 +11,7 @@ from beamfem.element.coordinates import ShearFree
 from beamfem.errors import InputError
 from beamfem.model.along_beam import AlongBeam, check_along, ends_and_middle, require_names
 from beamfem.model.beam import Beam, require_beam
-from beamfem.model.load_arrays import free_strain_of, heat_of
+from beamfem.model.load_arrays import values_along
 from beamfem.model.load_base import Amplitude, Load
 from beamfem.model.load_shapes import LoadShape, Strains
 from beamfem.model.state_protocols import Placed
@@ -280,3 +280,13 @@ class Temperature(ImposedStrain):
     def heat(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the change of temperature [K] and its gradient [K/m] (n, 2), see `ImposedStrain.heat`."""
         return np.column_stack([self.values_of(name, arc_length) for name in self.along])
+
+
+def free_strain_of(load: ImposedStrain, arc_length: np.ndarray) -> np.ndarray:
+    """Return the free strains (n, 4) of a load at arc lengths (n,) [m]. Raises InputError for any other result."""
+    return values_along(load, "free_strain", load.free_strain, arc_length, 4)
+
+
+def heat_of(load: ImposedStrain, arc_length: np.ndarray) -> np.ndarray:
+    """Return temperature [K] and gradient [K/m] (n, 2) of a load. Raises InputError for any other result."""
+    return values_along(load, "heat", load.heat, arc_length, 2)

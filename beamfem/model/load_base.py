@@ -10,7 +10,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.model.along_beam import AlongBeam, check_along, ends_and_middle
 from beamfem.model.beam import Beam, Point, require_beam, require_point_of
-from beamfem.model.load_arrays import forces_of
+from beamfem.model.load_arrays import values_along
 from beamfem.model.load_shapes import Acceleration, Force, ForcesAlong, LoadShape, Moment
 from beamfem.model.state_protocols import Axes, Displaced, Placed, in_plane
 from beamfem.validation import (
@@ -379,3 +379,8 @@ def _arrows(load: LineLoad, placed: Placed) -> np.ndarray:
     at = placed.stations(load.beam)
     sizes = [np.abs(forces_of(load, arc_length)).max(axis=1) for arc_length in (at, even)]
     return np.union1d(even, at[sizes[0].argmax()]) if sizes[0].max() > sizes[1].max() else even
+
+
+def forces_of(load: LineLoad, arc_length: np.ndarray) -> np.ndarray:
+    """Return the forces (n, 2) [N/m] of a load at arc lengths (n,) [m]. Raises InputError for any other result."""
+    return values_along(load, "forces", load.forces, arc_length, 2)

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, is_dataclass, replace
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,12 +19,14 @@ from beamfem.model.contribution import Contribution, require_connector
 from beamfem.model.imposed_strains import ImposedStrain
 from beamfem.model.joints import Joint
 from beamfem.model.load_base import BodyLoad, LineLoad, Load, PointLoad
-from beamfem.model.model_meshes import NodesNeeded, NumberedMeshes, nodes_needed, numbered_meshes
-from beamfem.model.sharing import share
 from beamfem.model.supports import LineSupport, PointSupport, Support
 from beamfem.model.supports_along import SupportsAlong
 from beamfem.units import Units, units_of
 from beamfem.validation import of_package, shown
+
+if TYPE_CHECKING:
+    from beamfem.model.model_meshes import NodesNeeded, NumberedMeshes
+
 
 _UNNAMED = "N, m, s"
 _KINDS: dict[str, tuple[type, ...]] = {
@@ -151,6 +153,8 @@ class Model:
         return self._with(**changes)
 
     def _with(self, **changes: Any) -> "Model":
+        from beamfem.model.sharing import share
+
         model = replace(self, **changes)
         share(self, model)
         return model
@@ -248,13 +252,19 @@ class Model:
         return {id(beam): number for number, beam in enumerate(self.beams)}
 
     @cached_property
-    def numbered(self) -> NumberedMeshes:
+    def numbered(self) -> "NumberedMeshes":
         """The meshes of the beams with the numbers of their coordinates."""
+
+        from beamfem.model.model_meshes import numbered_meshes
+
         return numbered_meshes(self)
 
     @cached_property
-    def nodes_needed(self) -> NodesNeeded:
+    def nodes_needed(self) -> "NodesNeeded":
         """The nodes that supports, loads and connectors need."""
+
+        from beamfem.model.model_meshes import nodes_needed
+
         return nodes_needed(self)
 
     @cached_property

@@ -2,18 +2,19 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, SupportsIndex, overload
+from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
 import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.model.beam import Beam, Point
-from beamfem.results.check_arrays import require_crossing
-from beamfem.results.full_turns import start_rotations
 from beamfem.results.postprocess import Components, Fields
-from beamfem.results.section_forces import SectionForces
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
+
+if TYPE_CHECKING:
+    from beamfem.results.section_forces import SectionForces
+
 
 _SHOWN = 6  # critical points of each kind in the text of a path
 
@@ -140,7 +141,7 @@ class PathState(State):
         values = [getattr(of_row, name) for name in Fields.__dataclass_fields__]
         return Fields(*(_first(value) for value in values))
 
-    def section_forces(self, beam: Beam) -> SectionForces:
+    def section_forces(self, beam: Beam) -> "SectionForces":
         """Return normal force, shear force and moment of a beam.
 
         Parameters
@@ -186,6 +187,8 @@ class Bifurcation(PathState):
     __repr__ = PathState.__repr__
 
     def __post_init__(self) -> None:
+        from beamfem.results.check_arrays import require_crossing
+
         super().__post_init__()
         require_crossing(self)
 
@@ -229,6 +232,8 @@ class Path(Solution):
         return super().__getitem__(row)  # type: ignore[return-value]
 
     def _state(self, row: int) -> PathState:
+        from beamfem.results.full_turns import start_rotations
+
         stability = None if self.stability is None else bool(self.stability[row])
         parts = (self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model)
         return PathState(*parts, stability=stability, turned=start_rotations(self)[row])

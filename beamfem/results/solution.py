@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
-from typing import Any, Literal, SupportsIndex, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, TypeVar, overload
 
 import numpy as np
 
@@ -16,22 +16,17 @@ from beamfem.model.contribution import Contribution
 from beamfem.model.model import Model
 from beamfem.reprs import brief
 from beamfem.results import postprocess
-from beamfem.results.beam_stress import BeamStress, Part, Peak, beam_stress, peak_stress
-from beamfem.results.check_arrays import made_read_only, require_rows, require_state
-from beamfem.results.connector_results import connector_force, kinetic_of_connectors, momenta_of_connectors, multipliers
-from beamfem.results.energies import Energy, dissipated, potential
-from beamfem.results.energy_balance import EnergyDrift, energy_drift
-from beamfem.results.full_turns import rotations, start_rotations, turned_of
-from beamfem.results.imposed_measures import imposed_measures
 from beamfem.results.nodal import rate_at
 from beamfem.results.postprocess import Fields
-from beamfem.results.reactions import reaction, support_forces
-from beamfem.results.roundoff_corrections import remainders
-from beamfem.results.section_forces import Cuts, SectionForces, at_points, section_forces
-from beamfem.results.self_stress import self_stress
-from beamfem.results.solution_checks import findings
 from beamfem.results.status import Statistics, Status, counted
 from beamfem.validation import number_below, shown, whole
+
+if TYPE_CHECKING:
+    from beamfem.results.beam_stress import BeamStress, Part, Peak
+    from beamfem.results.energies import Energy
+    from beamfem.results.energy_balance import EnergyDrift
+    from beamfem.results.section_forces import SectionForces
+
 
 _Value = TypeVar("_Value")
 
@@ -75,6 +70,8 @@ class State:
     __repr__ = brief
 
     def __post_init__(self) -> None:
+        from beamfem.results.check_arrays import require_state
+
         require_state(self)
 
     def _repr_html_(self) -> str:
@@ -126,6 +123,8 @@ class Solution:
     loaded: np.ndarray | None = None
 
     def __post_init__(self) -> None:
+        from beamfem.results.check_arrays import made_read_only, require_rows
+
         require_rows(self)
         made_read_only(self)
 
@@ -162,10 +161,14 @@ class Solution:
         return self._state(number)
 
     def _state(self, row: int) -> State:
+        from beamfem.results.full_turns import start_rotations
+
         turned = start_rotations(self)[row]
         return State(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model, turned=turned)
 
     def _rows(self, rows: slice) -> "Solution":
+        from beamfem.results.full_turns import start_rotations
+
         try:
             chosen = range(len(self))[rows]
         except (TypeError, ValueError) as error:
@@ -190,6 +193,9 @@ class Solution:
 
         A solve has issued those of errors of 1 % and more as Python warnings too, each with a category.
         """
+
+        from beamfem.results.solution_checks import findings
+
         return (*self.statistics.warnings, *(finding.sentence for finding in findings(self)))
 
     @cached_property
@@ -237,6 +243,11 @@ class Solution:
         >>> fields.position[-1].round(4)
         array([ 0.9999, -0.0096])
         """
+
+        from beamfem.results.full_turns import turned_of
+        from beamfem.results.section_forces import Cuts, at_points
+        from beamfem.results.self_stress import self_stress
+
         mesh = self.model.mesh_of(point)
         element, xi = (np.array([value]) for value in mesh.locate(point.fraction))
         forces = at_points(self, mesh, Cuts(element, xi))
@@ -288,6 +299,9 @@ class Solution:
         >>> round(float(solution.rotation(beam.end)[-1]), 4)
         -0.0229
         """
+
+        from beamfem.results.full_turns import rotations
+
         self.model.mesh_of(point)  # refuses what is no point of this model
         return rotations(self, [point])[:, 0]
 
@@ -301,6 +315,9 @@ class Solution:
         >>> solution.reaction(beam.start)[-1, 1:].round()  # fy, m
         array([10000., 19997.])
         """
+
+        from beamfem.results.reactions import reaction
+
         return reaction(self, point)
 
     def connector_force(self, connector: Contribution) -> np.ndarray:
@@ -312,6 +329,9 @@ class Solution:
         --------
         >>> forces = solution.connector_force(model.connectors[0])  # doctest: +SKIP
         """
+
+        from beamfem.results.connector_results import connector_force
+
         return connector_force(self, connector)
 
     def multipliers(self, connector: Contribution) -> np.ndarray:
@@ -323,6 +343,9 @@ class Solution:
         --------
         >>> tension = solution.multipliers(model.connectors[0])[:, 0]  # doctest: +SKIP
         """
+
+        from beamfem.results.connector_results import multipliers
+
         return multipliers(self, connector)
 
     def __getstate__(self) -> dict[str, object]:
@@ -343,6 +366,9 @@ class Solution:
     @cached_property
     def support_forces(self) -> np.ndarray:
         """Generalized forces of all supports and springs (steps, n) [N, N m]."""
+
+        from beamfem.results.reactions import support_forces
+
         return support_forces(self)
 
     @cached_property
@@ -351,9 +377,12 @@ class Solution:
 
         In a stiff part of a model they may change the forces noticeably; zero where they do not, and for a motion.
         """
+
+        from beamfem.results.roundoff_corrections import remainders
+
         return remainders(self)
 
-    def section_forces(self, beam: Beam) -> SectionForces:
+    def section_forces(self, beam: Beam) -> "SectionForces":
         """Return normal force, shear force and moment along a beam over the steps.
 
         Raises InputError for a beam of another model.
@@ -364,10 +393,13 @@ class Solution:
         >>> round(float(forces.moment[-1, 0]), -1)  # at the clamp
         -20000.0
         """
+
+        from beamfem.results.section_forces import section_forces
+
         self.model.number_of(beam)  # rejects beams of other models
         return section_forces(self, beam)
 
-    def stresses(self, beam: Beam) -> BeamStress:
+    def stresses(self, beam: Beam) -> "BeamStress":
         """Return the extreme stresses of the sections along a beam over the steps.
 
         Raises InputError for a beam of another model.
@@ -378,10 +410,13 @@ class Solution:
         >>> round(stress.peak("von_mises").value / 1e6)  # MPa
         240
         """
+
+        from beamfem.results.beam_stress import beam_stress
+
         self.model.number_of(beam)
         return beam_stress(self, beam)
 
-    def peak_stress(self, part: Part = "von_mises") -> Peak:
+    def peak_stress(self, part: "Part" = "von_mises") -> "Peak":
         """Return the peak of a stress over all beams and rows.
 
         Parameters
@@ -405,13 +440,16 @@ class Solution:
         >>> round(peak.value / 1e6), peak.beam is beam  # MPa
         (240, True)
         """
+
+        from beamfem.results.beam_stress import peak_stress
+
         return peak_stress(self, part)
 
     @cached_property
     def _momenta(self) -> tuple[postprocess.Momenta, ...]:
         return tuple(postprocess.momenta(mesh, self.p, self.v) for mesh in self.model.meshes)
 
-    def energy(self) -> Energy:
+    def energy(self) -> "Energy":
         """Return kinetic, strain, potential, total and dissipated energy (steps,) [J], see `Energy`.
 
         The potential is zero in the reference configuration.
@@ -422,6 +460,11 @@ class Solution:
         >>> energy.strain.round(1)
         array([  0. , 152.6])
         """
+
+        from beamfem.results.connector_results import kinetic_of_connectors
+        from beamfem.results.energies import Energy, dissipated, potential
+        from beamfem.results.imposed_measures import imposed_measures
+
         kinetic = sum((m.kinetic for m in self._momenta), kinetic_of_connectors(self))
         imposed = ((mesh, imposed_measures(self, mesh)) for mesh in self.model.meshes)
         parts = (postprocess.strain_energies(mesh, self.p, measures) for mesh, measures in imposed)
@@ -430,11 +473,14 @@ class Solution:
         return Energy(kinetic, strain, acting, dissipated(self, lost), self.model.unit("J"))
 
     @cached_property
-    def energy_drift(self) -> EnergyDrift | None:
+    def energy_drift(self) -> "EnergyDrift | None":
         """Change of the total energy [J] over a motion on which no work is done: an error of the time steps.
 
         None for a static solution, and for a motion on which work is done.
         """
+
+        from beamfem.results.energy_balance import energy_drift
+
         return energy_drift(self) if len(self) else None
 
     def linear_momentum(self) -> np.ndarray:
@@ -446,6 +492,9 @@ class Solution:
         >>> motion.linear_momentum()[-1].round(1)
         array([ -1.5, -58.4])
         """
+
+        from beamfem.results.connector_results import momenta_of_connectors
+
         return np.asarray(sum(m.linear for m in self._momenta) + momenta_of_connectors(self)[:, :2])
 
     def angular_momentum(self) -> np.ndarray:
@@ -457,6 +506,9 @@ class Solution:
         >>> round(float(motion.angular_momentum()[-1]), 1)
         -86.1
         """
+
+        from beamfem.results.connector_results import momenta_of_connectors
+
         return np.asarray(sum(m.angular for m in self._momenta) + momenta_of_connectors(self)[:, 2])
 
     def spline(self, beam: Beam, row: int = -1) -> BSpline:

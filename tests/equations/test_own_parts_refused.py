@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.model.load_arrays import forces_of
+from beamfem.model.load_base import forces_of
 from tests.own_parts import Bracket, Growth, Guide, HalfWave, Traction, Weld
 
 STEEL = bf.Material(youngs_modulus=1e7, poisson_ratio=0.0, density=1000.0)

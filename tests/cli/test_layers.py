@@ -1,7 +1,9 @@
-"""The rooms of the package: imports go down only, inside functions too, but for methods that draw or write."""
+"""The layers of the package: imports go down only, inside functions too, and never in a circle."""
 
 import ast
+import graphlib
 from collections.abc import Iterator
+from itertools import takewhile
 from pathlib import Path
 
 import pytest
@@ -9,8 +11,8 @@ import pytest
 import beamfem as bf
 
 ROOT = Path(bf.__file__).parent
-# from top to bottom: a room is a folder or a file; it imports from rooms below it only
-ROOMS = (
+# from top to bottom: a layer is a folder or a file; it imports from layers below it only
+LAYERS = (
     "__main__",
     "cli",
     "testing",
@@ -66,13 +68,15 @@ ANALYSES = {
     "model/model.py": "beamfem.results.imperfection",
     "results/solution.py": "beamfem.solve.stability.stability",
 }
+# classes of data: their methods import what computes results from them, and for type checkers what it returns
+DATA = ("model/model.py", "results/solution.py", "results/path.py", "io/line_mesh.py")
 FILES = sorted(path.relative_to(ROOT) for path in ROOT.rglob("*.py"))
 
 
-def room(file: Path) -> str:
-    """Return the room of a file, given below the package: the longest name that it begins with."""
+def layer(file: Path) -> str:
+    """Return the layer of a file, given below the package: the longest name that it begins with."""
     name = file.with_suffix("").as_posix()
-    return max((own for own in ROOMS if name == own or name.startswith(f"{own}/")), key=len)
+    return max((own for own in LAYERS if name == own or name.startswith(f"{own}/")), key=len)
 
 
 def file_of(module: str) -> Path | None:
@@ -101,37 +105,58 @@ def imported(tree: ast.AST, package: str) -> Iterator[tuple[str, int]]:
 
 
 def imports_inside_methods(tree: ast.AST) -> set[int]:
-    """Return the lines of imports that open a method, after its docstring."""
+    """Return the lines of the imports that open a method, after its docstring."""
     lines = set()
     for kind in (node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)):
         for method in (node for node in kind.body if isinstance(node, ast.FunctionDef)):
             body = method.body[1:] if ast.get_docstring(method) else method.body
-            if body and isinstance(body[0], ast.ImportFrom):
-                lines.add(body[0].lineno)
+            lines |= {node.lineno for node in takewhile(lambda node: isinstance(node, ast.ImportFrom), body)}
     return lines
+
+
+def imports_for_types(tree: ast.Module) -> set[int]:
+    """Return the lines of the imports that only type checkers see."""
+    blocks = [node for node in tree.body if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"]
+    return {node.lineno for block in blocks for node in block.body}
+
+
+def imported_files(file: Path) -> set[Path]:
+    """Return the files that a file needs, without those that compute the results that methods of its class return."""
+    tree = ast.parse((ROOT / file).read_text())
+    left_out = imports_inside_methods(tree) | (imports_for_types(tree) if file.as_posix() in DATA else set())
+    targets = {
+        file_of(name)
+        for name, line in imported(tree, ".".join(["beamfem", *file.parent.parts]))
+        if line not in left_out
+    }
+    return {target for target in targets if target is not None} - {file}
 
 
 def upward(source: str, file: Path) -> list[str]:
     """Return the imports of a file that do not go down, each with its line."""
-    found, own, tree = [], ROOMS.index(room(file)), ast.parse(source)
+    found, own, tree = [], LAYERS.index(layer(file)), ast.parse(source)
     package = ".".join(["beamfem", *file.parent.parts])
     inside = imports_inside_methods(tree)
     for name, line in imported(tree, package):
         target = file_of(name)
         assert target is not None, f"{file}:{line} imports {name}, which is not there"
-        other = ROOMS.index(room(target))
-        allowed = room(target) in INSIDE_METHODS or name == ANALYSES.get(file.as_posix())
+        other = LAYERS.index(layer(target))
+        allowed = layer(target) in INSIDE_METHODS or name == ANALYSES.get(file.as_posix())
         if other < own and not (line in inside and allowed):
-            found.append(f"{file}:{line} imports {name}: {ROOMS[own]} is below {ROOMS[other]}")
+            found.append(f"{file}:{line} imports {name}: {LAYERS[own]} is below {LAYERS[other]}")
     return found
 
 
-def test_each_file_is_in_one_room_and_each_room_has_files():
-    assert {room(file) for file in FILES} == set(ROOMS)
+def test_each_file_is_in_a_layer_and_each_layer_has_files():
+    assert {layer(file) for file in FILES} == set(LAYERS)
 
 
 def test_imports_go_down():
-    assert [said for file in FILES for said in upward((ROOT / file).read_text(), file)] == []
+    assert [line for file in FILES for line in upward((ROOT / file).read_text(), file)] == []
+
+
+def test_no_file_imports_itself_through_others():
+    graphlib.TopologicalSorter({file: imported_files(file) for file in FILES}).prepare()
 
 
 @pytest.mark.parametrize(
@@ -158,3 +183,11 @@ def test_imports_that_go_up_are_found(source):
 def test_a_method_that_draws_or_writes_imports_what_does_it():
     source = "class Solution:\n    def plot(self):\n        from beamfem.view.drawing import plot_shapes"
     assert upward(source, Path("results/solution.py")) == []
+
+
+def test_a_circle_is_found(tmp_path, monkeypatch):
+    (tmp_path / "first.py").write_text("from beamfem.second import b")
+    (tmp_path / "second.py").write_text("def b():\n    from beamfem.first import a")
+    monkeypatch.setattr("test_layers.ROOT", tmp_path)
+    with pytest.raises(graphlib.CycleError):
+        graphlib.TopologicalSorter({Path(n): imported_files(Path(n)) for n in ("first.py", "second.py")}).prepare()

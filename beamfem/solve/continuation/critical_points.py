@@ -103,15 +103,29 @@ class Segment:
 
     def at_load(self, load_factor: float) -> PathPoint:
         """Return the point with a load factor that lies between those of the ends. Raises SegmentLostError."""
+        load = np.zeros(len(self.chord))
+        load[-1] = 1.0
+        point = self.at(self._fraction(load_factor), normal=load)
+        point.y[-1] = load_factor
+        return point
+
+    def critical_at_load(self, load_factor: float, modes: Sequence[np.ndarray]) -> PathPoint:
+        """Return the point with a load factor at which modes (k, n + 1) have no stiffness, with the pivots before it.
+
+        No equilibrium can be solved for there; it is interpolated from the points beside it. Raises SegmentLostError.
+        """
+        x = self._fraction(load_factor)
+        points = np.array([self.at(at).y for at in self.beside(x, x, _DISTANCE, 0.0, 1.0).tolist()])
+        y = self.balanced(interpolation_weights(points[:, -1], load_factor) @ points, modes)
+        y[-1] = load_factor
+        return PathPoint(y, self.before.tangent, self.before.factors)
+
+    def _fraction(self, load_factor: float) -> float:
+        """Return the fraction of a load factor by the cubic through the ends."""
         from scipy.optimize import brentq  # slow to import and rarely needed
 
         ends = (self.before.y[-1], self.after.y[-1], *(slope[-1] for slope in self.slopes))
-        x = brentq(lambda x: _cubic(x, *ends) - load_factor, 0.0, 1.0, xtol=1e-15)
-        load = np.zeros(len(self.chord))
-        load[-1] = 1.0
-        point = self.at(x, normal=load)
-        point.y[-1] = load_factor
-        return point
+        return float(brentq(lambda x: _cubic(x, *ends) - load_factor, 0.0, 1.0, xtol=1e-15))
 
     def _stresses(self, x: float) -> tuple[np.ndarray, ...] | None:
         """Return the stress resultants from a cubic whose slopes at the ends are those along the path."""

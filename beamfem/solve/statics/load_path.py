@@ -1,7 +1,7 @@
 """Follow the equilibrium path to the next row of a static solve if a load step alone would leave it."""
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +12,7 @@ from beamfem.cached_properties import cached_property
 from beamfem.errors import BeamfemError
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
+from beamfem.solve.continuation.crossings import Crossing
 from beamfem.solve.continuation.steps import Step, longest_step, take_step, too_small
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.statics.static_record import is_unstable
@@ -125,7 +126,7 @@ class PathFollower:
             above = [x for x, at in step.segment.found.items() if x <= turn and at.load_factor > end]
             if above:
                 rising = Segment(line, before, step.segment.at(max(above)))
-                point = _at_load(rising, end, iterations, cuts)
+                point = _at_load(rising, end, step.crossings, iterations, cuts)
             elif extrema:
                 limit = step.segment.critical(extrema[0])
                 if np.array_equal(limit, point.y):
@@ -171,9 +172,11 @@ def _at_maximum(line: Continuation, before: PathPoint, point: PathPoint) -> bool
     return gain <= _GAIN * abs(point.load_factor)
 
 
-def _at_load(segment: Segment, target: float, iterations: int, cuts: int) -> PathPoint:
+def _at_load(segment: Segment, target: float, crossings: Sequence[Crossing], iterations: int, cuts: int) -> PathPoint:
+    """Return the point with a load factor, which may be one of the bifurcations. Raises PathLostError."""
+    modes = [crossing.mode for crossing in crossings if abs(crossing.y[-1] - target) <= LOCATED * abs(target)]
     try:
-        return segment.at_load(target)
+        return segment.critical_at_load(target, modes) if modes else segment.at_load(target)
     except SegmentLostError as error:
         raise PathLostError(str(error), iterations, cuts) from error
 

@@ -186,7 +186,7 @@ def _start(done: StaticRecord, follower: PathFollower) -> tuple[np.ndarray, floa
     done.iterations += result.iterations
     if result.ended.good and not is_unstable(done.symmetric, result.negative_pivots):
         return result.state, below
-    return (before[1], before[0]) if done.lost_stability else (done.state, done.reached)
+    return before[1], before[0]
 
 
 def _merges(follower: PathFollower, done: StaticRecord, point: np.ndarray, beyond: np.ndarray, end: float) -> bool:

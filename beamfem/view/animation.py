@@ -16,7 +16,7 @@ from beamfem.view.deformed_shapes import FIELD_COLOURS, Shapes, draw_undeformed,
 from beamfem.view.drawing import LINE, bar, equal_axes, legend_above
 from beamfem.view.frames import moment_of, spread_rows
 from beamfem.view.load_drawing import FORCE, draw_loads
-from beamfem.view.notebook_figure import WrittenFile
+from beamfem.view.notebook_paths import WrittenFile
 from beamfem.view.support_symbols import PRESCRIBED, draw_joints, draw_supports
 
 _POINTS = 600  # of all beams; what moves in a small picture needs no more

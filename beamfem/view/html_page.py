@@ -8,7 +8,7 @@ from os import PathLike
 from pathlib import Path
 
 from beamfem.atomic_write import path_of, whole
-from beamfem.view.notebook_figure import WrittenFile
+from beamfem.view.notebook_paths import WrittenFile
 
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 62rem; margin: 2rem auto; padding: 0 1rem }

@@ -26,7 +26,7 @@ from beamfem.validation import count, optional, text
 from beamfem.view.deformed_shapes import Shapes, limits
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
 from beamfem.view.load_drawing import PlacedRow
-from beamfem.view.notebook_figure import WrittenFile
+from beamfem.view.notebook_paths import WrittenFile
 from beamfem.view.summary import model_rows, solution_rows
 from beamfem.view.support_symbols import joints_of, supports_of
 

@@ -17,7 +17,7 @@ from beamfem.validation import count, items, number_below, shown
 from beamfem.view.deformed_shapes import FIELD_COLOURS, Shapes
 from beamfem.view.drawing import plot_shapes
 from beamfem.view.frames import moment_of, one_row, spread_rows
-from beamfem.view.notebook_figure import WrittenFile
+from beamfem.view.notebook_paths import WrittenFile
 from beamfem.view.rendering import ADVICE, can_render, has_display, no_display_needed
 
 _POINTS = 6000  # of all beams

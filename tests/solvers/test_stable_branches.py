@@ -234,3 +234,51 @@ def test_a_bifurcation_at_the_end_of_a_load_step_is_left(element, ratio):
     assert (abs(x), y) == pytest.approx(
         (abs(other.displacement(beam.end)[-1, 0]), other.displacement(beam.end)[-1, 1]), abs=1e-7
     )
+
+
+def arch(rise, elements, load):
+    """A clamped or pinned shallow arc of span 1, pressed down by a weight; load [N/m] grows from 0."""
+    radius = (0.25 + rise**2) / (2.0 * rise)
+    side = np.arctan2(radius - rise, 0.5)
+    curve = bf.Arc((0.5, rise - radius), radius, np.pi - side, side)
+    beam = bf.Beam(curve, elements, bf.CRBF(2), bf.Rectangle(1.0, 0.01), MATERIAL)
+    return beam, bf.Model([beam], [bf.Pin(beam.start), bf.Pin(beam.end)], [bf.DistributedLoad(beam, (0.0, -load))])
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-9, -1e-9, 1e-6])
+@pytest.mark.parametrize("options", [{"unstable": "leave"}, {"snap": "jump"}])
+@pytest.mark.parametrize("row", [0.5, 0.9])
+def test_a_row_may_lie_on_the_bifurcation_that_is_left(row, options, off):
+    """The end is that of a solve whose rows lie elsewhere; the row on the bifurcation is still symmetric."""
+    rise, elements = 0.2, 6
+    _, model = arch(rise, elements, 1e-7)
+    critical = 1e-7 * bf.solve_buckling(model).load_factors[0]
+    beam, model = arch(rise, elements, (1.0 + off) * critical / row)
+    solution, other = (bf.solve_static(model, steps, **{"snap": "jump"} | options) for steps in (10, 7))
+    assert solution.stable.all()
+    apex = beam.at(0.5)
+    on = np.flatnonzero(solution.load_factor == row)[0]
+    assert abs(solution.displacement(apex)[on, 0]) < 1e-3 * abs(solution.displacement(apex)[on, 1])
+    end, expected = solution.displacement(apex)[-1], other.displacement(apex)[-1]
+    assert abs(end) == pytest.approx(abs(expected), rel=1e-6, abs=1e-9)  # either side of a symmetric bifurcation
+
+
+@pytest.mark.parametrize(("slender", "elements"), [(5, 11), (5, 19), (6, 19), (7, 11)])
+def test_the_way_of_a_table_turns_where_its_branch_has_merged(slender, elements):
+    """At the turn the table has a kink, towards which steps along the path once became ever shorter.
+
+    Nothing snaps, so the way back is the way out in reverse.
+    """
+    rise = 0.05
+    way = bf.Interpolated([(0.0, 0.0), (0.5, -2.0 * rise), (1.0, 0.0)])
+    curve = bf.Parametric(lambda x: (x, 0.5 * rise * (1.0 - np.cos(2.0 * np.pi * x))), 0.0, 1.0)
+    beam = bf.Beam(curve, elements, bf.CRBF(2), bf.Rectangle(1.0, rise / slender), MATERIAL)
+    led_centre = bf.Prescribed(beam.at(0.5), uy=way, rotation=0.0)
+    model = bf.Model([beam], [bf.Clamp(beam.start), bf.Clamp(beam.end), led_centre])
+    wanted = np.linspace(0.0, 1.0, 41)
+    solution = bf.solve_static(model, at=wanted, unstable="leave")
+    assert solution.stable.all()
+    rows = np.searchsorted(solution.load_factor, wanted - 1e-12)
+    force = solution.reaction(beam.at(0.5))[rows, 1]
+    assert force == pytest.approx(force[::-1], abs=1e-8 * np.abs(force).max())
+    assert solution.statistics.ended.count("loses its stability at a bifurcation") == 2

@@ -110,7 +110,7 @@ class PathFollower:
         while point.load_factor < beyond:
             self._require_pace(point.load_factor)
             try:
-                step, iterations, cuts = _step(line, point, self.size)
+                step, iterations, cuts = _step(line, point, self.size, end)
             except PathLostError as lost:
                 if before is None or not _at_maximum(line, before, point):
                     raise
@@ -130,7 +130,7 @@ class PathFollower:
             elif extrema:
                 limit = step.segment.critical(extrema[0])
                 if np.array_equal(limit, point.y):
-                    point = _step(line, point, self.size)[0].segment.after
+                    point = _step(line, point, self.size, np.inf)[0].segment.after
                 raise TurnsBackError(limit, point.y, iterations, cuts)
             yield Followed(point, iterations, cuts)
 
@@ -181,12 +181,18 @@ def _at_load(segment: Segment, target: float, crossings: Sequence[Crossing], ite
         raise PathLostError(str(error), iterations, cuts) from error
 
 
-def _step(line: Continuation, point: PathPoint, size: float) -> tuple[Step, int, int]:
-    """Return the longest accepted step up to `size`, the iterations of all attempts, and the number rejected."""
+def _step(line: Continuation, point: PathPoint, size: float, end: float) -> tuple[Step, int, int]:
+    """Return the longest accepted step up to `size`, the iterations of all attempts, and the number rejected.
+
+    Functions of the load factor may turn at `end`, so a step that would pass it ends there.
+    """
     size = min(size, longest_step(line, point))
     iterations = cuts = 0
+    slope = float(point.tangent[-1])
     while True:
-        outcome = take_step(line, point, size)
+        ends = bool(line.functions_of_time) and point.load_factor + size * slope > end
+        size = (end - point.load_factor) / slope if ends else size
+        outcome = take_step(line, point, size, end if ends else None)
         iterations += outcome.iterations
         if isinstance(outcome, Step):
             return outcome, iterations, cuts

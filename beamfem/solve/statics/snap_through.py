@@ -145,6 +145,7 @@ def leave(system: System, done: StaticRecord, at: BifurcatesError, end: float, n
     end: the largest load factor allowed. Raises LimitPointError.
     """
     load_factor = float(at.y[-1])
+    end = min([end, *(row[0] for row in done.rows if row[0] > (1.0 + LOCATED) * load_factor)])  # computed again
     done.rows[:] = [row for row in done.rows if row[0] <= (1.0 + LOCATED) * load_factor]
     if done.reached < (1.0 - LOCATED) * load_factor:
         done.add(load_factor, at.y[:-1], 0, Termination.CONVERGED)

@@ -264,8 +264,8 @@ def test_a_row_may_lie_on_the_bifurcation_that_is_left(row, options, off):
 
 
 @pytest.mark.parametrize(("slender", "elements"), [(5, 11), (5, 19), (6, 19), (7, 11)])
-def test_the_way_of_a_table_turns_where_its_branch_has_merged(slender, elements):
-    """At the turn the table has a kink, towards which steps along the path once became ever shorter.
+def test_the_way_of_a_table_turns_near_the_end_of_a_step(slender, elements):
+    """Steps along the path once became ever shorter towards the kink of the table.
 
     Nothing snaps, so the way back is the way out in reverse.
     """
@@ -281,4 +281,3 @@ def test_the_way_of_a_table_turns_where_its_branch_has_merged(slender, elements)
     rows = np.searchsorted(solution.load_factor, wanted - 1e-12)
     force = solution.reaction(beam.at(0.5))[rows, 1]
     assert force == pytest.approx(force[::-1], abs=1e-8 * np.abs(force).max())
-    assert solution.statistics.ended.count("loses its stability at a bifurcation") == 2

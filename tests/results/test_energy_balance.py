@@ -18,16 +18,28 @@ def straight(material=STEEL, elements=4):
     return bf.Beam(bf.Line((0, 0), (1, 0)), elements, bf.CRBF(order=3), SECTION, material)
 
 
-@pytest.mark.parametrize("pressed", [False, True])
-def test_energy_that_rises_between_start_and_end_is_warned_of(pressed):
-    """Sevenfold at 0.356 s, less than at the start in the end; a faint pressure hid it."""
-    halves = [bf.Beam(bf.Line((x, 0), (x + 0.5, 0)), 4, bf.CRBF(order=1), SECTION, ALUMINIUM) for x in (0.0, 0.5)]
+@pytest.mark.parametrize("order", [1, 2, 3])
+@pytest.mark.parametrize("step", [2.5e-4, 5e-4, 1e-3])
+def test_a_cantilever_that_loses_its_joint_keeps_its_energy(order, step):
+    """It once rose to the sevenfold, and 340-fold at order 3, and was below that of the start in the end."""
+    halves = [bf.Beam(bf.Line((x, 0), (x + 0.5, 0)), 4, bf.CRBF(order=order), SECTION, ALUMINIUM) for x in (0.0, 0.5)]
     clamp, push = [bf.Clamp(halves[0].start)], [bf.PointForce(halves[1].end, (0, 20.0))]
     joined = bf.Model(halves, clamp, push, joints=[bf.Rigid(halves[0].end, halves[1].start)])
-    apart = bf.Model(halves, clamp, [bf.Pressure(halves[0], 1e-9)] if pressed else [])
-    with pytest.warns(EnergyWarning, match="rises by 7.23 J until 0.356 s"):
-        motion = bf.simulate(apart, 0.5, 1e-3, start=bf.solve_static(joined)[-1])
-    assert motion.energy().total[-1] < motion.energy().total[0]
+    motion = bf.simulate(bf.Model(halves, clamp), 0.5, step, start=bf.solve_static(joined)[-1])
+    energy = motion.energy().total
+    assert energy.max() < 1.002 * energy[0]
+    assert not any("energy" in warning for warning in motion.warnings)
+
+
+@pytest.mark.parametrize("pressed", [False, True])
+def test_energy_that_rises_between_start_and_end_is_warned_of(pressed):
+    """It is judged in every row; a faint pressure once hid it."""
+    bar = bf.Beam(bf.Line((0, 0), (1, 0)), 8, bf.ANCF(forces=bf.ElasticLine()), SECTION, STEEL)
+    loads = [bf.Temperature(bar, 100.0), *([bf.Pressure(bar, 1e-9)] if pressed else [])]
+    with pytest.warns(EnergyWarning, match="rises by"):
+        motion = bf.simulate(bf.Model([bar], [bf.Clamp(bar.start)], loads), 0.1, 1e-3)
+    energy = motion.energy().total
+    assert energy[-1] < energy[0] < 0.01 * energy.max()
 
 
 def test_a_stiff_bar_that_spins_too_fast_for_its_steps_is_warned_of():

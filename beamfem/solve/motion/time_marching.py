@@ -27,6 +27,7 @@ from beamfem.solve.motion.user_integrators import OwnSteps
 
 _CHUNK_SECONDS = 0.25
 _FIRST_CHUNK = 200_000  # coordinates times steps
+_NEGLIGIBLE = 0.1  # of the inertia forces at the start: those that depend on the velocity after a step
 
 
 @dataclass(frozen=True)
@@ -107,6 +108,8 @@ def march(
                 statistics[OF_EQUAL_STEPS] = begun_anew[OF_EQUAL_STEPS]
             if relaxed:
                 state[2] = state[3] = initial_acceleration(system, state, part.loads_from, part.step)
+            if is_scheme(integrator):
+                state[2] = state[3] = mean_acceleration(system, state, part.loads_from, part.step)
             load_times = np.append(part.times[1:-1], part.loads_to)
             begun, steps = 0, len(load_times)
             with _steps(system, integrator, part, statistics) as motion:
@@ -200,6 +203,32 @@ def initial_acceleration(system: System, state: np.ndarray, time: float, step: f
         return a
     a[free] = mass.solve(-unbalanced[free], system.rotated)
     return a
+
+
+def mean_acceleration(system: System, state: np.ndarray, time: float, step: float) -> np.ndarray:
+    """Return p'' (n,) at the start, or its mean over the first step [s] where p'' itself is not representative.
+
+    A sudden load accelerates vibrations that the steps do not resolve as if nothing held them back. That does no harm
+    in a linear system. But where inertia forces depend on velocities, those of the velocity gained in one step, which
+    is step p'', may be as large as M p'' itself (both in the norm of M^-1). Unless they are negligible, the result a
+    satisfies (M + step^2 / 4 K) a = M p'', as the mean of the trapezoidal rule does.
+    """
+    p, v, start = state[:3]
+    free, zeros = system.free_dofs, np.zeros(len(start))
+    if len(system.connectors.multipliers):
+        return start
+    slower, resting, faster = (residual(system, p, v + way * step * start, zeros, time) for way in (-1.0, 0.0, 1.0))
+    quadratic, inertia = (
+        (0.5 * (slower + faster) - resting)[free],
+        (residual(system, p, v, start, time) - resting)[free],
+    )
+    mass = linearise(system, p, v, zeros, time, INERTIA)[1]
+    if quadratic @ mass.solve(quadratic, system.rotated) <= _NEGLIGIBLE**2 * (inertia @ start[free]):
+        return start
+    stiff = linearise(system, p, v, zeros, time, (0.25 * step**2, 0.0, 1.0))[1]
+    mean = start.copy()
+    mean[free] = stiff.solve(inertia, system.rotated)
+    return mean
 
 
 def _mass(system: System, motion: Motion, time: float, step: float) -> Tangent:

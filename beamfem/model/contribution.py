@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.model.beam import Point, require_point
 from beamfem.reprs import brief
-from beamfem.validation import count, finite, flag, items
+from beamfem.validation import count, finite, flag, items, shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,6 +158,8 @@ class Remembering(Contribution, Protocol):
 def require_connector(connector: Contribution) -> None:
     """Raise InputError if points, unknowns, conservative or rotations of a connector are invalid."""
     name = type(connector).__name__
+    if isinstance(connector, type) or not (hasattr(connector, "points") and hasattr(connector, "force")):
+        raise InputError(f"a connector is an object with the members of Contribution, got {shown(connector)}")
     flag(f"rotations of {name}", uses_rotations(connector))
     points = items(f"points of {name}", connector.points)
     if not points:

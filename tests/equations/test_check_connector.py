@@ -109,3 +109,9 @@ def test_parts_far_from_the_origin_are_judged_as_near_it(places):
     check_connector(linear(points))
     with pytest.raises(AssertionError, match="Linear is conservative"):
         check_connector(linear(points, "stiffness", 0, 4))
+
+
+@pytest.mark.parametrize("given", [None, 3, "spring", bf.Clamp])
+def test_what_is_no_connector_is_named(given):
+    with pytest.raises(bf.InputError, match="a connector is an object with the members of Contribution, got"):
+        check_connector(given)

@@ -69,3 +69,14 @@ def test_a_kink_found_next_to_the_end_of_a_path_is_its_end(length, share):
     path = bf.trace_equilibrium(bf.Model([bar], [bf.Clamp(bar.start), lift]), 1.0)
     assert path.load_factor[-1] == 1.0
     assert path.displacement(bar.end)[-1, 1] == pytest.approx(1.4 * share * length, rel=1e-12)
+
+
+def test_loads_may_begin_to_grow_late():
+    """They are flat up to load factor 1; beyond, the path is that of the loads without the flat part."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(2), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    ends = []
+    for table, until in (([(0, 0), (1, 0), (2, 1)], 2.0), ([(0, 0), (1, 1)], 1.0)):
+        push = bf.PointForce(beam.end, (0.0, 100.0), amplitude=bf.Interpolated(table))
+        path = bf.trace_equilibrium(bf.Model([beam], [bf.Clamp(beam.start)], [push]), until=until)
+        ends.append(path.displacement(beam.end)[-1])
+    assert ends[0] == pytest.approx(ends[1], rel=1e-10)

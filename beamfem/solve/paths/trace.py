@@ -170,7 +170,8 @@ def trace_equilibrium(
 
 def _require_load(system: System) -> None:
     """Raise InputError if nothing changes with the load factor."""
-    for at in (0.37, 1.0):
+    kinks = [kink for function in functions_of_time(system) for kink in function.kinks]
+    for at in (0.37, 1.0, *kinks):
         changes = [(system.prescribed_values(at), system.prescribed_values(0.0))]
         changes += zip(system.loads_at(at).arrays, system.loads_at(0.0).arrays, strict=True)
         if any(not np.array_equal(now, before) for now, before in changes):

@@ -10,7 +10,7 @@ import numpy as np
 from skfem import Basis, BilinearForm, Functional, LinearForm
 from skfem.helpers import ddot, dot, eye, grad, identity, mul, trace, transpose
 
-from beamfem.element.skfem_element import BeamMapping, FieldElement
+from beamfem.element.fields import BeamMapping, FieldElement
 from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.reference import sections_at
 from beamfem.quadrature import gauss

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Literal, cast
 
 import numpy as np
+from skfem import MeshLine, MeshLine1
 
 from beamfem.cached_properties import cached_property
 from beamfem.curves import BSpline, Curve, Line
@@ -65,6 +66,7 @@ def retardation_time(section: CrossSection, material: Material | None) -> float:
 
 Tapered = Callable[[float], CrossSection]
 _SAMPLES = 32
+_ENDS = 1e-9  # of the length: tolerance of the ends of a mesh
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,9 +77,10 @@ class Beam:
     ----------
     curve : Curve
         Axis of the beam in the reference.
-    elements : int, sequence of float or "knots"
-        Number of equal elements; or the fractions of the arc length from 0 to 1 at which elements end; or "knots" for
-        one cubic element per knot span of a cubic BSpline, which it represents exactly.
+    elements : int, sequence of float, MeshLine or "knots"
+        Number of equal elements; or the fractions of the arc length from 0 to 1 at which elements end; or a mesh of
+        scikit-fem over the arc length [m] from the start; or "knots" for one cubic element per knot span of a cubic
+        BSpline, which it represents exactly.
     element : Element
         Kind of the elements, such as `CRBF(order=3)`.
     section : Section or callable
@@ -106,7 +109,7 @@ class Beam:
     """
 
     curve: Curve
-    elements: int | Sequence[float] | np.ndarray | Literal["knots"]
+    elements: int | Sequence[float] | np.ndarray | MeshLine1 | Literal["knots"]
     element: Element
     section: CrossSection | Tapered
     material: Material | None = None
@@ -115,7 +118,11 @@ class Beam:
     def __post_init__(self) -> None:
         from beamfem.model.check_beam import require_law_fits, require_magnitudes
 
-        if isinstance(self.elements, str):
+        if not fulfils(self.curve, Curve):
+            raise InputError(f"curve of a Beam must be a curve such as Line, got {shown(self.curve)}")
+        if isinstance(self.elements, MeshLine1):
+            object.__setattr__(self, "elements", _fractions_of(self.elements, self.curve.length))
+        elif isinstance(self.elements, str):
             _check_knots(self.elements, self.curve, self.element)
         elif isinstance(self.elements, int | float | np.generic) or _without_dimensions(self.elements):
             object.__setattr__(self, "elements", count("elements", self.elements))
@@ -123,8 +130,6 @@ class Beam:
             object.__setattr__(self, "elements", _fractions(self.elements))
         if not isinstance(self.element, Element):
             raise InputError(f"element of a Beam must be an Element, such as CRBF(order=3), got {shown(self.element)}")
-        if not fulfils(self.curve, Curve):
-            raise InputError(f"curve of a Beam must be a curve such as Line, got {shown(self.curve)}")
         if self.material is not None and not isinstance(self.material, Material):
             swapped = "; the section comes before the material" if isinstance(self.section, Material) else ""
             raise InputError(f"material of a Beam must be a Material, got {shown(self.material)}{swapped}")
@@ -216,6 +221,28 @@ class Beam:
         if self.prismatic:
             return ()
         return find_jumps("section of a Beam", self.section, self._measured, self.curve.length, self.samples)
+
+    @cached_property
+    def mesh(self) -> MeshLine1:
+        """Mesh over the arc length [m] from the start, before supports, joints and loads divide any element.
+
+        Its boundaries are "start" and "end". If the section jumps, its subdomains are the parts between the jumps, "0",
+        "1" and so on from the start.
+
+        Examples
+        --------
+        >>> beam.mesh.p[0]
+        array([0. , 0.5, 1. , 1.5, 2. ])
+        """
+        from beamfem.model.beam_grid import make_grid
+
+        ends = make_grid(self, [jump / self.curve.length for jump in self.jumps]).vertices
+        boundaries = {"start": lambda s: s[0] == ends[0], "end": lambda s: s[0] == ends[-1]}
+        mesh = MeshLine(ends).with_boundaries(boundaries)
+        if not self.jumps:
+            return mesh
+        parts = np.searchsorted(np.array(self.jumps), 0.5 * (ends[1:] + ends[:-1]))
+        return mesh.with_subdomains({str(part): np.flatnonzero(parts == part) for part in range(parts[-1] + 1)})
 
     @property
     def element_count(self) -> int:
@@ -353,6 +380,22 @@ def _fractions(values: Sequence[float] | np.ndarray) -> tuple[float, ...]:
             f"elements as a list must rise from 0 to 1, the fractions where elements end, got {shown(ends)}"
         )
     return ends
+
+
+def _fractions_of(mesh: MeshLine1, length: float) -> tuple[float, ...]:
+    """Return the element ends of a mesh over the arc length [m] as fractions. Raises InputError."""
+    order = np.argsort(mesh.p[0])
+    ends, links = mesh.p[0, order], np.sort(np.argsort(order)[mesh.t], axis=0)
+    links = links[:, np.argsort(links[0])]
+    chain = np.arange(len(ends) - 1)
+    if not np.array_equal(links, [chain, chain + 1]) or np.any(np.diff(ends) <= 0.0):
+        raise InputError("elements as a MeshLine must be one chain of elements without gaps or overlaps")
+    if not np.allclose([ends[0], ends[-1]], [0.0, length], rtol=0.0, atol=_ENDS * length):
+        raise InputError(
+            f"elements as a MeshLine must cover the arc length of the beam from 0 to {length:g}, got {ends[0]:g} to "
+            f"{ends[-1]:g}"
+        )
+    return (0.0, *(ends[1:-1] / length).tolist(), 1.0)
 
 
 def _check_knots(elements: str, curve: Curve, element: Element) -> None:

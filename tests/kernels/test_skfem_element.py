@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from skfem import MeshLine
 
-from beamfem.element.fields import Cubic, Lagrange
-from beamfem.element.skfem_element import BeamMapping, FieldElement
+from beamfem.element.fields import BeamMapping, Cubic, FieldElement, Lagrange
 
 FIELDS = [Cubic(), Lagrange(1), Lagrange(2), Lagrange(3)]
 

@@ -268,7 +268,7 @@ def _over_section(section: CrossSection, material: Material | None, reference: A
     """Integrate a law over the section: stiffness (..., 6, 6) of (a, b, c, eyy, g0, g1).
 
     For a straight reference, the moments of the section are used; for a curved one, strips of the section and the
-    metric of the curved body, see `body.in_section_frame`.
+    metric of the curved body, see `body_strain.in_section_frame`.
     """
     low, high = section.bounds
     if np.abs(reference.d_s).max(initial=0.0) * (high - low) < _STRAIGHT:

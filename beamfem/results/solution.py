@@ -51,7 +51,7 @@ class State:
     model : Model
         The model.
     turned : array, [rad], (m,), optional
-        Rotations at the starts of beams, see `turns.start_rotations`; None if not known.
+        Rotations at the starts of beams, see `full_turns.start_rotations`; None if not known.
 
     Examples
     --------
@@ -100,7 +100,7 @@ class Solution:
     stability : array of bool, (steps,), optional
         Whether each row is a stable equilibrium, if the solver knows it.
     turned : array, [rad], (steps, m), optional
-        Rotations at the starts of beams, see `turns.start_rotations`, if the solver has counted them between the rows.
+        Rotations at the starts of beams, see `full_turns.start_rotations`, if the solver has counted them between the rows.
     loaded : array, [-], (steps,), optional
         Load factor of the loads in a motion about an equilibrium.
 

@@ -100,7 +100,7 @@ class Solution:
     stability : array of bool, (steps,), optional
         Whether each row is a stable equilibrium, if the solver knows it.
     turned : array, [rad], (steps, m), optional
-        Rotations at the starts of beams, see `full_turns.start_rotations`, if the solver has counted them between the rows.
+        Rotations at the starts of beams, see `full_turns.start_rotations`, if the solver has counted them between rows.
     loaded : array, [-], (steps,), optional
         Load factor of the loads in a motion about an equilibrium.
 

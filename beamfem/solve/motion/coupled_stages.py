@@ -124,7 +124,7 @@ class CoupledStages:
             self._routines[number] = cast(function, c_void_p).value
 
     def march(self, system: int, solver: np.ndarray, state: np.ndarray, times: np.ndarray, deferred: Deferred) -> int:
-        """March p, p', p'' and the auxiliary acceleration (4, n) to times (steps,) [s]; see `kernels.time_loop.march`."""
+        """March p, p', p'' and the auxiliary acceleration (4, n) to times (steps,) [s]; see `time_loop.march`."""
         self._state, self._times, self._deferred = state, times, deferred
         return int(march(system, solver, self._routines))
 

@@ -34,8 +34,8 @@ _NEGLIGIBLE = 0.1  # of the inertia forces at the start: those that depend on th
 class Record:
     """Stored states (rows, 3, n) of every n-th whole step, and of the last one in the row after them.
 
-    statistics: see `kernels.motion_record`; pairs (m, 2): see `full_turns.rotation_pairs`; rotations (rows, m) [rad]: of
-    the stored states.
+    statistics: see `kernels.motion_record`; pairs (m, 2): see `full_turns.rotation_pairs`; rotations (rows, m) [rad]:
+    of the stored states.
     """
 
     states: np.ndarray

@@ -6,9 +6,8 @@ import inspect
 import sys
 import typing
 from collections.abc import Callable
-from contextlib import nullcontext, redirect_stdout, suppress
+from contextlib import nullcontext, redirect_stdout
 from dataclasses import dataclass
-from itertools import zip_longest
 from pathlib import Path
 from pprint import pprint
 from typing import Annotated, Any
@@ -56,14 +55,12 @@ def study(
                 width = max(len(item.name) for item in studies)
                 print("\n".join(f"{item.name:{width}s}  {item.title}" for item in studies))
             return
-        chosen = _named(name, studies, folder)
-        main = _main_of(chosen, folder)
-        if {"--help", "-h"} & set(context.args):
-            print(_help(main, name, chosen.title))
-            return
+        command = _command(_main_of(found := _named(name, studies, folder), folder), found.title)
         as_json, quiet = as_json or "--json" in context.args, quiet or "--quiet" in context.args
     with reported(as_json, quiet), redirect_stdout(sys.stderr) if as_json or quiet else nullcontext():
-        result = main(**_options(main, [word for word in context.args if word not in ("--json", "--quiet")]))
+        words = [word for word in context.args if word not in ("--json", "--quiet")]
+        with command.make_context(f"beamfem study {name}", words) as own:
+            result = command.invoke(own)
     if as_json:
         print_json({"result": result})
     elif result is not None and not quiet:
@@ -127,45 +124,34 @@ def _main_of(item: Study, folder: Path) -> Callable[..., Any]:
     return main
 
 
-def _help(main: Callable[..., Any], name: str, title: str) -> str:
-    """Return the options of a study: the parameters of its main, their defaults, and its docstring."""
-    parameters = inspect.signature(main).parameters.values()
-    options = [
-        f"  --{item.name.replace('_', '-')}" + ("" if item.default is item.empty else f" (default: {item.default})")
-        for item in parameters
-    ]
-    words = (inspect.getdoc(main) or "").partition("Parameters\n----------\n")[2]
-    listed = "\n".join([*options, "  --json, --quiet, --help"])
-    return f"Usage: beamfem study {name} [OPTIONS]\n\n{title}\n\nOptions:\n{listed}\n\n{words}".rstrip()
-
-
-def _options(main: Callable[..., Any], words: list[str]) -> dict[str, Any]:
-    """Return the arguments of a function from --name value or --name=value, lists separated by commas.
-
-    Raises InputError.
-    """
-    from pydantic import ConfigDict, TypeAdapter, ValidationError
-
-    from beamfem.errors import InputError
-    from beamfem.validation import nearest
-
+def _command(main: Callable[..., Any], title: str) -> Any:
+    """Return a command whose options are the parameters of a function; values of a tuple are separated by commas."""
     hints, parameters = typing.get_type_hints(main), inspect.signature(main).parameters
-    values: dict[str, Any] = {}
-    words = [part for word in words for part in (word.split("=", 1) if word.startswith("--") else [word])]
-    for option, text in zip_longest(words[::2], words[1::2]):
-        name = option.removeprefix("--").replace("-", "_")
-        if name not in parameters or not option.startswith("--"):
-            raise InputError(f"there is no option {option}; {nearest(name, parameters)}")
-        if text is None:
-            raise InputError(f"{option} needs a value")
-        adapter: Any = TypeAdapter(hints.get(name, Any), config=ConfigDict(arbitrary_types_allowed=True))
-        for given in (text, text.split(",")):
-            with suppress(ValidationError):
-                values[name] = adapter.validate_python(given)
-                break
-        else:
-            raise InputError(f"{option} must be of the type {parameters[name].annotation}, got {text!r}")
-    missing = [item.name for item in parameters.values() if item.default is item.empty and item.name not in values]
-    if missing:
-        raise InputError(f"the option --{missing[0]} is missing")
-    return values
+
+    def run(**values: Any) -> Any:
+        return main(**values)
+
+    options = {}
+    for name, parameter in parameters.items():
+        hint = hints[name]
+        if typing.get_origin(hint) is tuple:
+            listed = typer.Option(parser=_list_of(typing.get_args(hint)[0]), metavar="LIST")
+            options[name] = parameter.replace(annotation=Annotated[Any, listed])
+        elif hint in (int, float, str, bool, Path):
+            options[name] = parameter.replace(annotation=Annotated[hint, typer.Option()])
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    run.__signature__ = inspect.Signature([item.replace(kind=keyword) for item in options.values()])  # type: ignore[attr-defined]
+    run.__annotations__ = {name: item.annotation for name, item in options.items()}
+    app = typer.Typer(add_completion=False, rich_markup_mode=None)
+    described = (inspect.getdoc(main) or "").partition("Parameters\n----------\n")[2].replace("\n\n", "\n\n\b\n")
+    app.command(help=f"{title}\n\n\b\n{described}")(run)
+    return typer.main.get_command(app)
+
+
+def _list_of(each: Callable[[str], Any]) -> Callable[[Any], tuple[Any, ...]]:
+    """Return what reads a list on the command line; a default is a tuple already."""
+
+    def separated(text: Any) -> tuple[Any, ...]:
+        return text if isinstance(text, tuple) else tuple(each(part) for part in text.split(","))
+
+    return separated

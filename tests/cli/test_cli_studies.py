@@ -1,6 +1,7 @@
 """The command `beamfem study`: studies are listed, described and run with their parameters as options."""
 
 import json
+import re
 import sys
 
 import pytest
@@ -51,7 +52,7 @@ def test_studies_are_listed_and_run_with_their_parameters(studies):
     listed = invoke("study")
     assert listed.stdout.splitlines()[-1].split(maxsplit=1) == ["nothing", "A study of nothing."]
     assert [item["name"] for item in json.loads(invoke("study", "--json").stdout)] == ["nothing"]
-    done = invoke("study", "nothing", "--elements", 3, "--fine", "true", "--meshes=4,8", "--some-order", 2, "--json")
+    done = invoke("study", "nothing", "--elements", 3, "--fine", "--meshes=4,8", "--some-order", 2, "--json")
     found = json.loads(done.stdout)["result"]
     assert found == {
         "elements": 6,
@@ -79,9 +80,9 @@ def test_studies_in_sub_folders_are_named_by_their_file_or_with_their_folder(stu
 
 def test_help_lists_the_options_with_their_defaults_and_descriptions(studies):
     text = invoke("study", "nothing", "--help").stdout
-    assert text.startswith("Usage: beamfem study nothing [OPTIONS]\n\nA study of nothing.\n")
-    assert "\n  --elements\n  --length (default: 1.5)\n" in text
-    assert "--some-order (default: 1)" in text
+    assert text.startswith("Usage: beamfem study nothing [OPTIONS]\n\n  A study of nothing.\n")
+    assert re.search(r"--elements <int> +\[required\]\n +--length <float> +\[default: 1.5\]\n", text)
+    assert re.search(r"--some-order <int> +\[default: 1\]", text)
     assert "Number of elements." in text
 
 
@@ -89,11 +90,11 @@ def test_help_lists_the_options_with_their_defaults_and_descriptions(studies):
     ("arguments", "words"),
     [
         (("nothin", "--elements", 1), "did you mean nothing"),
-        (("nothing",), "the option --elements is missing"),
-        (("nothing", "--elements", "x"), "--elements must be of the type <class 'int'>, got 'x'"),
-        (("nothing", "--elements"), "--elements needs a value"),
-        (("nothing", "--elements", 1, "--lenght", 2), "did you mean length"),
-        (("nothing", "--elements", 1, "--meshes", "1,x"), "got '1,x'"),
+        (("nothing",), "Missing option '--elements'"),
+        (("nothing", "--elements", "x"), "Invalid value for '--elements'"),
+        (("nothing", "--elements"), "Option '--elements' requires an argument"),
+        (("nothing", "--elements", 1, "--lenght", 2), "Possible options: --elements, --length"),
+        (("nothing", "--elements", 1, "--meshes", "1,x"), "Invalid value for '--meshes'"),
         (("nothing", "--elements", 1, "--length", "-1"), "length must be positive"),
         (("--folder", "none"), "--folder"),
     ],
@@ -101,7 +102,7 @@ def test_help_lists_the_options_with_their_defaults_and_descriptions(studies):
 def test_mistakes_with_studies(studies, arguments, words):
     done = invoke("study", *arguments)
     assert done.exit_code == 2
-    assert words in done.stderr
+    assert words in " ".join(done.stderr.replace("│", " ").split())
     assert invoke("study", "nothing", "--elements", 1, "--length", 200).exit_code == 1
 
 

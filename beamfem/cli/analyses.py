@@ -126,24 +126,6 @@ def _until(value: Any, names: Names) -> Any:
     return build(Until, value, names) if isinstance(value, dict) else finite("until", value)
 
 
-@dataclass(frozen=True)
-class Imperfection:
-    """The largest displacement of an axis, `size` [m], by a mode, counted from 1, of the perfect model."""
-
-    size: float
-    mode: int = 1
-    of: Literal["buckling", "modes"] = "buckling"
-    about: Start = None  # type: ignore[valid-type]
-
-    def __post_init__(self) -> None:
-        count("mode", self.mode)
-
-    def of_model(self, model: Model) -> Model:
-        """Return the imperfect model. Raises InputError, ConvergenceError."""
-        solve: Callable[..., Any] = solve_buckling if self.of == "buckling" else solve_modes
-        return model.with_imperfection(solve(model, self.mode, state(model, self.about)), self.size, self.mode - 1)
-
-
 def _analysis(kind: str, *sources: Callable[..., Any], **hints: Any) -> Callable[..., Any]:
     return with_keys(lambda keys: Analysis(kind, keys), sources, **hints)
 

@@ -2,8 +2,6 @@
 
 import platform
 import re
-import subprocess
-import sys
 import time
 from importlib.metadata import PackageNotFoundError, requires, version
 from typing import Any
@@ -12,13 +10,6 @@ import typer
 
 from beamfem.cli.report import FAILED, AsJson, print_json, reported, writable
 
-_RENDER = """
-import pyvista
-plotter = pyvista.Plotter(off_screen=True, window_size=(64, 48))
-plotter.add_mesh(pyvista.Sphere())
-picture = plotter.screenshot(None, return_img=True)
-assert picture.min() < picture.max()
-"""
 _TIP = 0.71385896416  # tip deflection over the length of the geometrically exact beam, P L^2 / (E I) = 5, L / h = 100
 _NO_EXTRAS = ("all", "test", "bench", "docs")
 
@@ -71,15 +62,14 @@ def _first_solve() -> dict[str, Any]:
 
 
 def _rendering() -> str:
-    """Return why VTK cannot draw, empty if it can; tested in a process, because a missing library may crash it."""
-    command = [sys.executable, "-c", _RENDER]
+    """Return why VTK cannot draw, empty if it can."""
+    from beamfem.errors import MissingPackageError
+    from beamfem.view.rendering import ADVICE, can_render
+
     try:
-        process = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
-    except subprocess.TimeoutExpired:
-        return "no picture within 120 s"
-    if process.returncode < 0:
-        return f"VTK was killed by signal {-process.returncode}; on Debian: apt-get install libegl1 libgl1-mesa-dri"
-    return (process.stderr.strip().splitlines() or ["no reason given"])[-1] if process.returncode else ""
+        return "" if can_render() else f"VTK cannot render here; {ADVICE}"
+    except MissingPackageError as error:
+        return str(error)
 
 
 def _version(name: str) -> str | None:

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from beamfem.assembly.system import System
-from beamfem.cli.analyses import ANALYSES, Analysis, Found, Imperfection
-from beamfem.cli.outputs import FILES, Output, OutputFile
+from beamfem.cli.analyses import ANALYSES, Analysis, Found
+from beamfem.cli.outputs import Output
 from beamfem.cli.part_kinds import ACTING, NAMED, TYPES, BeamTable, in_keys
 from beamfem.cli.schema import KeyFault, Kinds, Names, build, named_first, part, require_table, shown
 from beamfem.cli.toml_source import ModelFileError, Source, read_source
@@ -19,33 +19,18 @@ from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 from beamfem.validation import nearest
 
-_TEXTS, _TABLES = ("title", "units"), ("beams", "imperfection", "analysis", "outputs", "files")
+_TEXTS, _TABLES = ("title", "units"), ("beams", "analysis", "outputs")
 
 
 @dataclass(frozen=True)
 class Job:
-    """Contents of a model file: the model, the analysis, the outputs to print and the files to write."""
+    """Contents of a model file: the model, the analysis, and the outputs to print."""
 
     source: Source
-    names: Names
     title: str
     model: Model
     analysis: Analysis
     outputs: Sequence[Output]
-    files: Sequence[OutputFile]
-    imperfection: Imperfection | None = None
-
-    def imperfect(self) -> "Job":
-        """Return the job of the model with the imperfection, if there is one. Raises ModelFileError, ConvergenceError.
-
-        Its mode has to be solved for, so this comes after all checks of the file.
-        """
-        if self.imperfection is None:
-            return self
-        with _within(self.source, "imperfection"):
-            model = self.imperfection.of_model(self.model)
-        self.names.move(self.model, model)
-        return _job(self.source, self.names, model, None)
 
     def solve(self) -> Found:
         """Run the analysis and return what it finds. Raises ModelFileError, ConvergenceError."""
@@ -53,17 +38,14 @@ class Job:
             return self.analysis.run(self.model, [at for output in self.outputs for at in output.asked])
 
 
-def read_model_file(path: str | PathLike[str], files_anywhere: bool = False) -> Job:
-    """Return the contents of a model file (TOML). Raises ModelFileError with file, line and key.
-
-    files_anywhere: whether the file may name files to write that are not below its folder.
-    """
+def read_model_file(path: str | PathLike[str]) -> Job:
+    """Return the contents of a model file (TOML). Raises ModelFileError with file, line and key."""
     source = read_source(Path(path))
     known = [*_TEXTS, *NAMED, *_TABLES, *(name for name, kinds in ACTING.items() if kinds)]
     for key in source.values:
         if key not in known:
             raise source.error(f"unknown key; {nearest(key, known)}", key)
-    names = Names(source.file.parent, files_anywhere, TYPES)
+    names = Names(TYPES)
     for section, kinds in NAMED.items():
         names.parts[section] = {}
         for name, table in _named_tables(source, section).items():
@@ -81,27 +63,13 @@ def read_model_file(path: str | PathLike[str], files_anywhere: bool = False) -> 
     if "units" in source.values:
         with _within(source, "units"):
             model = replace(model, units=_text(source, "units"))
-    imperfection = None
-    if "imperfection" in source.values:
-        with _within(source, "imperfection"):
-            imperfection = build(Imperfection, source.values["imperfection"], names)
-    return _job(source, names, model, imperfection)
-
-
-def _job(source: Source, names: Names, model: Model, imperfection: Imperfection | None) -> Job:
     with _within(source, "analysis"):
         analysis = part(ANALYSES, source.values.get("analysis", {}), names, default="static")
     outputs = _tables(source, "outputs", lambda table: build(Output, table, names))
-    files = _tables(source, "files", lambda table: part(FILES, table, names))
-    for section, items in (("outputs", outputs), ("files", files)):
-        for number, item in enumerate(items):
-            with _within(source, section, number):
-                item.require(model, analysis)
-    for number, file in enumerate(files):
-        if file.file in [other.file for other in files[:number]]:
-            raise source.error(f"{file.file} is written twice", "files", number, "file")
-    title = _text(source, "title", source.file.stem)
-    return Job(source, names, title, model, analysis, outputs, files, imperfection)
+    for number, output in enumerate(outputs):
+        with _within(source, "outputs", number):
+            output.require(model, analysis)
+    return Job(source, _text(source, "title", source.file.stem), model, analysis, outputs)
 
 
 def _each_place(kinds: Kinds, names: Names, table: Any) -> list[Any]:

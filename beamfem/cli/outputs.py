@@ -1,25 +1,21 @@
-"""What a model file asks for: outputs to print, and files to write."""
+"""Quantities that model files print, and pictures of the command."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from beamfem.cli.analyses import Analysis, Found
-from beamfem.cli.report import require_target
-from beamfem.cli.schema import KeyFault, Kinds, Names, reader, shown, with_keys
+from beamfem.cli.analyses import Analysis
+from beamfem.cli.schema import Names, reader, shown
 from beamfem.errors import InputError
 from beamfem.io.description import describe
 from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
-from beamfem.results.axis_fields import QUANTITIES as COLOURS
 from beamfem.results.path import Path as EquilibriumPath
 from beamfem.results.path import PathState
 from beamfem.results.solution import Solution
-from beamfem.solve.modes.modes import Modes
-from beamfem.validation import count, finite, nearest, require_known
+from beamfem.validation import finite, nearest
 
 _NEAR = 1e-9
 # what a quantity is: the method of a Solution and the attributes or columns of its result; and the unit in SI
@@ -150,6 +146,9 @@ def _alone(path: EquilibriumPath, state: PathState) -> Solution:
     return Solution(path.model, True, *parts, turned=None if state.turned is None else state.turned[None])
 
 
+DRAWN = (".png", ".svg", ".pdf", ".html", ".gif", ".mp4")  # what `draw` writes
+
+
 def draw(solution: Solution, path: Path, **options: Any) -> None:
     """Write a picture, a page with a slider (.html) or a film (.gif, .mp4). Raises InputError."""
     kind = path.suffix.lower()
@@ -159,68 +158,6 @@ def draw(solution: Solution, path: Path, **options: Any) -> None:
     writers.get(kind, solution.plot)(path, **options)
 
 
-# the method that writes a file, and its suffixes
-_PICTURE, _FILM = (".png", ".svg", ".pdf"), (".gif", ".mp4")
-WRITERS: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
-    "results": (Solution.save, (".h5", ".hdf5")),
-    "vtk": (Solution.to_vtk, (".pvd", ".vtkhdf")),
-    "plot": (Solution.plot, _PICTURE),
-    "film": (Solution.animate, _FILM),
-    "page": (Solution.to_html, (".html",)),
-    "body": (Solution.picture, (".png",)),
-    "history": (Solution.plot_history, _PICTURE),
-    "load-displacement": (Solution.plot_load_displacement, _PICTURE),
-    "mode-shapes": (Modes.plot, _PICTURE),
-    "model": (Model.plot, _PICTURE),
-}
-
-
 def require_saved(model: Model) -> None:
     """Raise InputError if a model has parts that cannot be saved in a results file."""
     describe(model, np.zeros(1))
-
-
-DRAWN = (*_PICTURE, ".html", *_FILM)  # what `draw` writes
-
-
-@dataclass(frozen=True)
-class OutputFile:
-    """A file to write after the solve, with the options of a method of results."""
-
-    kind: str
-    file: Path
-    options: dict[str, Any] = field(default_factory=dict)
-
-    def require(self, model: Model, analysis: Analysis) -> None:
-        """Raise InputError or KeyFault for what cannot be written."""
-        try:
-            require_target(self.file, WRITERS[self.kind][1])
-        except InputError as error:
-            raise KeyFault.of(error, "file") from None
-        if "colour" in self.options:
-            require_known(f"colour has no {self.options['colour']!r}", self.options["colour"], COLOURS)
-        if self.kind == "results":
-            require_saved(model)
-        if self.kind in ("history", "load-displacement") and not analysis.span:
-            raise InputError("this analysis has no states to draw; these go with static, path and dynamics")
-        if self.kind == "load-displacement" and analysis.kind == "dynamics":
-            raise InputError("a motion has no load factor to draw; these go with static and path")
-        if self.kind == "mode-shapes" and analysis.span:
-            raise InputError("this analysis finds no modes; these go with buckling and modes")
-
-    def write(self, found: Found) -> None:
-        """Write the file. Raises InputError, FileError."""
-        options = self.options | ({"row": count("row", self.options["row"]) - 1} if "row" in self.options else {})
-        source = {"mode-shapes": found.modes, "model": found.solution.model}.get(self.kind, found.solution)
-        getattr(source, WRITERS[self.kind][0].__name__)(path=self.file, **options)
-
-
-FILES: Kinds = {
-    kind: with_keys(
-        lambda keys, kind=kind: OutputFile(kind, keys["file"], {name: keys[name] for name in keys if name != "file"}),
-        [method],
-        needed=["file"],
-        file=Path,
-    )
-    for kind, (method, _) in WRITERS.items()
-}

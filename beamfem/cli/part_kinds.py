@@ -5,7 +5,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import wraps
 from inspect import signature
-from pathlib import Path
 from typing import Any, get_type_hints
 
 import numpy as np
@@ -143,16 +142,6 @@ def _vector(value: Any, names: Names) -> Any:
     )
 
 
-def _file(value: Any, names: Names) -> Path:
-    """Return a file to write, below the folder of the model file, which may come from anybody."""
-    folder = names.folder.resolve()
-    if not isinstance(value, str):
-        raise InputError(f"must be a text, got {shown(value)}")
-    if not names.anywhere and not (folder / value).resolve().is_relative_to(folder):
-        raise InputError(f"{value} is not below the folder of the model file, {folder}; --files-anywhere allows it")
-    return names.folder / value
-
-
 _function = named("functions", FUNCTIONS)
 _material, _section, _element = named("materials", MATERIALS), named("sections", SECTIONS), named("elements", ELEMENTS)
 Elements = reader(_elements)
@@ -164,7 +153,6 @@ TYPES: dict[Any, Any] = {
     CrossSection: reader(_section),
     Element: reader(_element),
     Curve: reader(_curve),
-    Path: reader(_file),
     **dict.fromkeys((ContinuumMechanics, SplitContinuum, ElasticLine, Structural), reader(named("forces", FORCES))),
     "function": reader(_function),
     "number": reader(_number),

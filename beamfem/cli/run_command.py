@@ -46,21 +46,18 @@ def run(
         ),
     ] = None,
     colour: Colour = None,
-    files_anywhere: Annotated[
-        bool, typer.Option("--files-anywhere", help="Let [[files]] be outside the folder of the model file.")
-    ] = False,
     as_json: AsJson = False,
     quiet: Quiet = False,
 ) -> None:
-    """Solve a model file, print its outputs and write its files and those given as options."""
+    """Solve a model file, print its outputs and write the files given as options."""
     with reported(as_json, quiet):
         from beamfem.assembly.compilation_notice import tell_of_compilation
         from beamfem.cli.model_file import read_model_file
-        from beamfem.cli.outputs import DRAWN, WRITERS, draw, require_saved
+        from beamfem.cli.outputs import DRAWN, draw, require_saved
 
         with _warned():
-            job = read_model_file(model, files_anywhere)
-            for target, suffixes in ((out, WRITERS["results"][1]), (vtk, WRITERS["vtk"][1]), (plot, DRAWN)):
+            job = read_model_file(model)
+            for target, suffixes in ((out, (".h5", ".hdf5")), (vtk, (".pvd", ".vtkhdf")), (plot, DRAWN)):
                 require_target(target, suffixes)
             if out is not None:
                 require_saved(job.model)
@@ -68,7 +65,6 @@ def run(
                 tell_of_compilation()
             start = time.perf_counter()
             with _kept(job, out):
-                job = job.imperfect()
                 found = job.solve()
             seconds = time.perf_counter() - start
             if out is not None:
@@ -77,9 +73,7 @@ def run(
                 found.solution.to_vtk(vtk)
             if plot is not None:
                 draw(found.solution, plot, **({} if colour is None else {"colour": colour}))
-            for file in job.files:
-                file.write(found)
-            written = [str(path) for path in (out, vtk, plot, *(file.file for file in job.files)) if path is not None]
+            written = [str(path) for path in (out, vtk, plot) if path is not None]
             result = _result(job, found, seconds, written)
         if as_json:
             print_json(result)

@@ -9,7 +9,6 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, is_dataclass
 from difflib import get_close_matches
-from pathlib import Path
 from types import NoneType, UnionType
 from typing import Annotated, Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
@@ -18,7 +17,6 @@ from pydantic import BaseModel, ConfigDict, PlainValidator, Strict, ValidationEr
 
 from beamfem.errors import BeamfemError, InputError
 from beamfem.model.beam import Beam, Point
-from beamfem.model.model import Model
 from beamfem.validation import nearest, require_known
 from beamfem.validation import shown as in_python
 
@@ -36,7 +34,6 @@ _RULES = {
     "bool_type": "true or false",
     "string_type": "a text",
     "list_type": "an array",
-    "path_type": "a text",
 }
 
 
@@ -57,22 +54,15 @@ class KeyFault(ValueError):
 class Names:
     """What the keys of a model file may name; types: how pydantic reads values, by type hint."""
 
-    folder: Path
-    anywhere: bool  # whether files to write may be outside the folder
     types: Mapping[Any, Any]
     parts: dict[str, dict[str, Any]] = field(default_factory=dict)  # by section: materials, sections ...
     beams: dict[str, Beam] = field(default_factory=dict)
-    moved: dict[Beam | Point, Any] = field(default_factory=dict)  # what replaces beams and points in an imperfect model
     schemas: dict[Callable[..., Any], type[BaseModel]] = field(default_factory=dict)
-
-    def move(self, old: Model, new: Model) -> None:
-        """Let names stand for the beams and points of an imperfect model."""
-        self.moved.update(zip((*old.beams, *_points(old)), (*new.beams, *_points(new)), strict=True))
 
     def beam(self, name: Any) -> Beam:
         """Return the beam of a name. Raises InputError."""
         require_known(f"there is no beam {name!r}", name, self.beams)
-        return self.moved.get(self.beams[name], self.beams[name])
+        return self.beams[name]
 
     def point(self, text: Any) -> Point:
         """Return the point NAME.start, NAME.end or NAME.at(fraction). Raises InputError."""
@@ -84,20 +74,11 @@ class Names:
             raise InputError(f"must be a point such as {such}, got {shown(text)}")
         require_known(f"there is no beam {match['beam']!r}", match["beam"], self.beams)
         fraction = float(match["fraction"]) if match["fraction"] else float(match["end"] == "end")
-        point = Point(self.beams[match["beam"]], fraction)
-        return self.moved.get(point) or Point(self.moved.get(point.beam, point.beam), fraction)
+        return Point(self.beams[match["beam"]], fraction)
 
     def points(self, places: Any) -> list[Point]:
         """Return the points of a list, or a list of one point. Raises InputError."""
         return [self.point(place) for place in (places if isinstance(places, list) else [places])]
-
-
-def _points(model: Model) -> list[Point]:
-    """Return all points with supports, loads, joints or connectors."""
-    acting: list[Any] = [*model.point_supports, *model.point_loads]
-    points = [item.point for item in acting]
-    points += [point for joint in model.joints for point in (joint.a, joint.b)]
-    return points + [point for connector in model.connectors for point in connector.points]
 
 
 def part(kinds: Kinds, table: Any, names: Names, default: str | None = None) -> Any:
@@ -169,20 +150,18 @@ def _type(hint: Any, types: Mapping[Any, Any]) -> Any:
     return Annotated[hint, Strict()] if hint in (float, int, bool, str) else hint
 
 
-def with_keys(
-    make: Callable[..., Any], sources: Sequence[Callable[..., Any]], needed: Sequence[str] = (), **hints: Any
-) -> Callable[..., Any]:
+def with_keys(make: Callable[..., Any], sources: Sequence[Callable[..., Any]], **hints: Any) -> Callable[..., Any]:
     """Return a function whose keys are the parameters of others.
 
-    hints: types of further keys, None for parameters that are left out; needed: further keys without default.
+    hints: types of further keys, None for parameters that are left out.
     """
-    key_only, without = inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.empty
+    key_only = inspect.Parameter.KEYWORD_ONLY
 
     def made(**keys: Any) -> Any:
         return make(keys)
 
     found = {key: item for source in sources for key, item in inspect.signature(source).parameters.items()}
-    own = {key: inspect.Parameter(key, key_only, default=without if key in needed else None) for key in hints}
+    own = {key: inspect.Parameter(key, key_only, default=None) for key in hints}
     kept = {key: item for key, item in (found | own).items() if hints.get(key, make) is not None}
     types = {key: hint for source in sources for key, hint in get_type_hints(source).items()} | hints
     parameters = [item.replace(kind=key_only) for item in kept.values()]

@@ -136,8 +136,6 @@ MISTAKES = {
         "vector = [0, 833", 'amplitude = "ramp"\nvector = [0, 833',
         29, "loads[1].amplitude", "[functions.NAME]",
     ),
-    "no size": ("[[loads]]", "[imperfection]\nmode = 1\n[[loads]]", 26, "imperfection", "size is missing"),
-    "no mode 0": ("[[loads]]", "[imperfection]\nsize = 1\nmode = 0\n[[loads]]", 28, "imperfection.mode", "at least 1"),
     "unknown quantity": ('"ux", "uy", "rotation"', '"ux", "uz"', 34, "outputs[1].quantities", "no 'uz'"),
     "reaction nowhere": ('"ux", "uy", "rotation"', '"fx"', 34, "outputs[1].quantities", "no support"),
     "odd states": ('["fx", "fy", "m"]', '["fx"]\nat = "first"', 40, "outputs[2].at", '"last", "all"'),
@@ -153,19 +151,6 @@ MISTAKES = {
     "until of nothing": (
         "[[loads]]", '[analysis]\nkind = "path"\nuntil = { point = "arm.end", quantity = "uz" }\n[[loads]]', 28,
         "analysis.until.quantity", '"ux", "uy" or "rotation"',
-    ),
-    "colour": (
-        "[[loads]]", '[[files]]\nkind = "plot"\nfile = "a.svg"\ncolour = "momnet"\n[[loads]]',
-        29, "files[1].colour", "mean moment",
-    ),
-    "no file": ("[[loads]]", '[[files]]\nkind = "film"\n[[loads]]', 26, "files[1]", "file is missing; needed are file"),
-    "suffix": (
-        "[[loads]]", '[[files]]\nkind = "film"\nfile = "a.avi"\n[[loads]]',
-        28, "files[1].file", "end in .gif or .mp4",
-    ),
-    "flag": (
-        "[[loads]]", '[[files]]\nkind = "plot"\nfile = "a.svg"\nloads = 0\n[[loads]]',
-        29, "files[1].loads", "true or false",
     ),
     "dropped key": ("title =", 'code = "parts.py"\ntitle =', 3, "code", "unknown key"),
 }  # fmt: skip
@@ -224,10 +209,7 @@ def run(text, tmp_path, *options):
 
 
 def test_documented_files_are_right(tmp_path):
-    weight, crooked, string, column, driven = (run(block, tmp_path) for block in BLOCKS)
-    critical = np.pi**2 * 2e11 * 0.02 * 0.01**3 / 12.0 / 4.0
-    bent = 1e-3 / (1.0 - 600.0 / critical) - 1e-3
-    assert abs(crooked["outputs"][0]["rows"][0]["ux"]) == pytest.approx(bent, rel=2e-4)
+    weight, string, column, driven = (run(block, tmp_path) for block in BLOCKS)
     # reactions of weight and force; the moment has the deflected levers
     clamp = weight["outputs"][1]["rows"][0]
     assert clamp["fy"] == pytest.approx(10.0 + 7800.0 * 1e-4 * 9.81, rel=1e-9)
@@ -346,42 +328,6 @@ def test_quantities_are_those_of_python(tmp_path):
         rows = output.rows(solution)
         for name, column in zip(output.quantities, columns, strict=True):
             np.testing.assert_array_equal([row[name] for row in rows], column)
-
-
-FILES = {
-    "results": 'file = "a.h5"',
-    "vtk": 'file = "a.vtkhdf"\ngeometry = "reference"\nfields = ["displacement"]\nsingle = true',
-    "plot": 'file = "a.svg"\ncolour = "moment"\nshapes = 3\nundeformed = false\nsupports = false\nloads = false',
-    "film": 'file = "a.gif"\nfps = 5\nseconds = 1\ncolour = "speed"\ndpi = 50',
-    "page": 'file = "a.html"\ntitle = "How it moves"\nframes = 4',
-    "body": 'file = "a.png"\nrow = 3\ncolour = "moment"\nsize = [160, 120]',
-    "history": 'file = "a.svg"\npoint = ["arm.end", "arm.at(0.5)"]\nquantity = "velocity"',
-    "load-displacement": 'file = "a.svg"\npoint = "arm.end"\nquantity = "ux"',
-    "mode-shapes": 'file = "a.svg"\nmost = 2',
-    "model": 'file = "a.pdf"',
-}
-
-
-@pytest.mark.filterwarnings("ignore:VTK cannot render here:UserWarning")  # then it is drawn flat
-@pytest.mark.parametrize("kind", FILES)
-def test_a_file_is_written_with_its_options(kind, tmp_path):
-    analysis = {"load-displacement": "", "mode-shapes": MODES}.get(kind, MOTION)
-    text = f'{ARM}{analysis}[[files]]\nkind = "{kind}"\n{FILES[kind]}\n'
-    (written,) = run(text, tmp_path)["written"]
-    assert Path(written).stat().st_size > 1000
-    assert Path(written).parent == tmp_path
-
-
-@pytest.mark.parametrize("name", ["/tmp/other/a.html", "../a.html", "out/../../a.html"])
-def test_a_model_file_writes_only_below_its_folder_unless_that_is_allowed(tmp_path, name):
-    """A model file from somebody else could replace any .h5, .png or .html of the one who runs it."""
-    file = tmp_path / "below" / "a.toml"
-    file.parent.mkdir()
-    file.write_text(f'{ARM}{MOTION}[[files]]\nkind = "page"\nfile = "{name}"\n')
-    with pytest.raises(ModelFileError, match="is not below the folder of the model file") as caught:
-        read_model_file(file)
-    assert caught.value.key == "files[1].file"
-    assert read_model_file(file, files_anywhere=True).files[0].file == file.parent / name
 
 
 def test_the_same_results_as_python_saves(tmp_path):

@@ -42,6 +42,11 @@ def faults_of_steps(motion: bf.Solution, options: Mapping[str, object]) -> Itera
     if options["save_every"] != 1 or kinks:
         return
     p, v, a = (each[:, free] / scale for each in (motion.p, motion.v, motion.a))
+    # under sudden loads the first step begins with a mean of p'', which its p' shows; p must follow from it too
+    of_start, of_end = (of_force - of_mean) / (1.0 - of_mean), (1.0 - of_force) / (1.0 - of_mean)
+    begun = ((v[1] - v[0]) / h - gamma * of_end * a[1]) / (1.0 - gamma + gamma * of_start)
+    if np.abs(begun - a[0]).max() > 0.01 * np.abs(a[0]).max():
+        a = np.concatenate([begun[None], a[1:]])
     mean = a[0]
     for row in range(1, len(time)):
         new = (of_force * a[row - 1] + (1.0 - of_force) * a[row] - of_mean * mean) / (1.0 - of_mean)

@@ -11,8 +11,8 @@ from skfem import Basis, BilinearForm, Functional, LinearForm
 from skfem.helpers import ddot, dot, eye, grad, identity, mul, trace, transpose
 
 from beamfem.element.fields import BeamMapping, FieldElement
-from beamfem.model.beam_mesh import BeamMesh
-from beamfem.model.reference import sections_at
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.reference import sections_at
 from beamfem.quadrature import gauss
 from beamfem.section.protocol import CrossSection
 

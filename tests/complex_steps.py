@@ -10,9 +10,7 @@ import numpy as np
 import beamfem as bf
 from beamfem.element.coordinates import Gradients, labels, nodal_rates
 from beamfem.element.fields import d_slots, r_slots
-from beamfem.model.along_beam import jumps_along
-from beamfem.model.load_base import factor
-from beamfem.model.reference import (
+from beamfem.mesh.reference import (
     energy_points,
     energy_stiffness_at,
     inertia_points,
@@ -22,6 +20,8 @@ from beamfem.model.reference import (
     reference_position,
     scales,
 )
+from beamfem.model.along_beam import jumps_along
+from beamfem.model.load_base import factor
 from beamfem.results.postprocess import axis, nodal_vectors
 
 _STEP = 1e-40

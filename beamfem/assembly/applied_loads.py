@@ -12,11 +12,11 @@ from beamfem.cached_properties import cached_property
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import PointLoads, Springs
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.reference import jacobians, length_points, reference_axis, scales
 from beamfem.model.beam import Beam
-from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.load_base import LineLoad, PointLoad, factor, forces_of
 from beamfem.model.model import Model
-from beamfem.model.reference import jacobians, length_points, reference_axis, scales
 
 _NONE = Springs(np.empty(0, dtype=np.int64), np.empty(0), np.empty(0), np.empty(0, dtype=np.int64))
 

@@ -10,8 +10,8 @@ from beamfem.assembly.law_pass import LawPass
 from beamfem.element.coordinates import Gradients
 from beamfem.element.element import Element
 from beamfem.kernels.block import NO_HISTORY, Block
-from beamfem.model.beam_mesh import BeamMesh
-from beamfem.model.element_types import Classes, likenesses
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.element_types import Classes, likenesses
 from beamfem.model.imposed_strains import ImposedStrain
 
 PER_CLASS = tuple(name for name in Classes._fields if name != "kind")

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from beamfem.kernels.block import Imposed
-from beamfem.model.beam_mesh import BeamMesh
-from beamfem.model.free_strains import free_strains
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.free_strains import free_strains
 from beamfem.model.imposed_strains import ImposedStrain
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from beamfem.element.coordinates import across, labels
 from beamfem.kernels.block import ROTATED_GRADIENTS, Block
-from beamfem.model.beam_mesh import BeamMesh
+from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.model import Model
 
 Columns = list[tuple[str, np.ndarray, np.ndarray]]

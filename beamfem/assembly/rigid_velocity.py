@@ -6,7 +6,7 @@ import numpy as np
 
 from beamfem.assembly.reference_state import Columns, columns_of, coordinate_columns
 from beamfem.assembly.system import System
-from beamfem.model.beam_mesh import BeamMesh
+from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.validation import convert, finite, squared, vector
 
 

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.reference import length_points, reference_position
 from beamfem.model.beam import Beam, Point
-from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.contribution import Contribution
 from beamfem.model.load_base import Load, factor
 from beamfem.model.model import Model
-from beamfem.model.reference import length_points, reference_position
 from beamfem.model.state_protocols import in_plane
 from beamfem.model.supports import DIRECTIONS, LineSupport, PointSupport
 from beamfem.results import postprocess

@@ -14,12 +14,12 @@ from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinu
 from beamfem.errors import InputError
 from beamfem.io.user_classes import made, name_of
 from beamfem.material import Material
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.reference import energy_points, length_points, stations
 from beamfem.model.along_beam import AlongBeam, functions_along, jumps_along, kinks_along
 from beamfem.model.beam import Beam, Point
-from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.parts_registry import listed_parts
-from beamfem.model.reference import energy_points, length_points, stations
 from beamfem.model.sampled_functions import Sampled, SampledAlong, SampledSection
 from beamfem.model.time_functions import Interpolated
 from beamfem.section import Layer, Layered, Section, ShapedSection, StiffnessSection

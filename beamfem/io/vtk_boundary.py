@@ -7,8 +7,8 @@ import numpy as np
 from beamfem.cached_properties import cached_property
 from beamfem.io.boundary_conditions import COMPONENTS, ROLES, vertices
 from beamfem.io.vtk_cells import VERTEX, Content, by_precision, legend_of_beams
+from beamfem.mesh.reference import reference_position
 from beamfem.model.model import Model
-from beamfem.model.reference import reference_position
 from beamfem.results import postprocess
 
 if TYPE_CHECKING:

@@ -6,9 +6,9 @@ import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.material import Material
-from beamfem.model.beam_mesh import BeamMesh
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.reference import reference_axis
 from beamfem.model.model import Model
-from beamfem.model.reference import reference_axis
 from beamfem.results import postprocess
 from beamfem.results.axis_fields import AxisPoints, rotation, section_forces
 from beamfem.results.batched_beams import LikeBeams, like_beams

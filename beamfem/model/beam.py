@@ -234,7 +234,7 @@ class Beam:
         >>> beam.mesh.p[0]
         array([0. , 0.5, 1. , 1.5, 2. ])
         """
-        from beamfem.model.beam_grid import make_grid
+        from beamfem.mesh.beam_grid import make_grid
 
         ends = make_grid(self, [jump / self.curve.length for jump in self.jumps]).vertices
         boundaries = {"start": lambda s: s[0] == ends[0], "end": lambda s: s[0] == ends[-1]}

@@ -13,7 +13,6 @@ from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
 from beamfem.model.argument_hints import beam_like, listed, refused, touching
 from beamfem.model.beam import Beam, Point, reference_positions, require_different_names
-from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.check_units import warn_of_units
 from beamfem.model.contribution import Contribution, require_connector
 from beamfem.model.imposed_strains import ImposedStrain
@@ -25,7 +24,8 @@ from beamfem.units import Units, units_of
 from beamfem.validation import of_package, shown
 
 if TYPE_CHECKING:
-    from beamfem.model.model_meshes import NodesNeeded, NumberedMeshes
+    from beamfem.mesh.beam_mesh import BeamMesh
+    from beamfem.mesh.model_meshes import NodesNeeded, NumberedMeshes
 
 
 _UNNAMED = "N, m, s"
@@ -255,7 +255,7 @@ class Model:
     def numbered(self) -> "NumberedMeshes":
         """The meshes of the beams with the numbers of their coordinates."""
 
-        from beamfem.model.model_meshes import numbered_meshes
+        from beamfem.mesh.model_meshes import numbered_meshes
 
         return numbered_meshes(self)
 
@@ -263,7 +263,7 @@ class Model:
     def nodes_needed(self) -> "NodesNeeded":
         """The nodes that supports, loads and connectors need."""
 
-        from beamfem.model.model_meshes import nodes_needed
+        from beamfem.mesh.model_meshes import nodes_needed
 
         return nodes_needed(self)
 
@@ -273,7 +273,7 @@ class Model:
         return {}
 
     @property
-    def meshes(self) -> tuple[BeamMesh, ...]:
+    def meshes(self) -> "tuple[BeamMesh, ...]":
         """The mesh of each beam, in the order of the beams."""
         return self.numbered.meshes
 
@@ -311,7 +311,7 @@ class Model:
     def _unknown(self, message: str, beam: Beam) -> UnknownPointError:
         return UnknownPointError("; ".join(filter(None, (message, beam_like(self.beams, beam)))))
 
-    def mesh_of(self, point: Point) -> BeamMesh:
+    def mesh_of(self, point: Point) -> "BeamMesh":
         """Return the mesh that a point lies on, which is that of its beam.
 
         Raises InputError for anything but a point, UnknownPointError for a point on a beam that is not in the model.

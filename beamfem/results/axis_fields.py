@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from beamfem.cached_properties import cached_property
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.reference import reference_axis
+from beamfem.mesh.section_stress import Distributions, distributions, layers
 from beamfem.model.beam import Beam
-from beamfem.model.beam_mesh import BeamMesh
-from beamfem.model.reference import reference_axis
-from beamfem.model.section_stress import Distributions, distributions, layers
 from beamfem.results import postprocess
 from beamfem.results.beam_stress import stress_at, stress_over_height
 from beamfem.results.free_bodies import Cuts

@@ -8,7 +8,7 @@ from typing import TypeVar
 import numpy as np
 
 from beamfem.cached_properties import cached_property
-from beamfem.model.joined_mesh import join
+from beamfem.mesh.joined_mesh import join
 from beamfem.model.model import Model
 from beamfem.results.axis_fields import AxisPoints
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.section_stress import distributions
 from beamfem.model.beam import Beam
-from beamfem.model.beam_mesh import BeamMesh
-from beamfem.model.section_stress import distributions
 from beamfem.results.extremes import Measure, Part, Peak, estimate, extreme_of_beams
 from beamfem.results.free_bodies import Cuts
 from beamfem.results.neighbouring_beams import of_beam

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from beamfem.cached_properties import cached_property
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.reference import inertia_points, length_points, reference_axis, reference_position
 from beamfem.model.beam import Beam, Point
-from beamfem.model.beam_mesh import BeamMesh
-from beamfem.model.reference import inertia_points, length_points, reference_axis, reference_position
 from beamfem.results import postprocess
 from beamfem.results.full_turns import rotations
 

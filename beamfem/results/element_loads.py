@@ -9,8 +9,8 @@ from beamfem.assembly.system import System
 from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import across
 from beamfem.element.fields import d_slots, r_slots
-from beamfem.model.beam_mesh import BeamMesh
-from beamfem.model.reference import inertia_points, length_points, scales
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.reference import inertia_points, length_points, scales
 from beamfem.quadrature import gauss
 from beamfem.results.lumped_values import nearest, to_more_points
 from beamfem.results.solution_system import loading

@@ -11,7 +11,7 @@ import numpy as np
 
 from beamfem.assembly.system import System
 from beamfem.element.coordinates import KINEMATICS, labels
-from beamfem.model.beam_mesh import BeamMesh
+from beamfem.mesh.beam_mesh import BeamMesh
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution

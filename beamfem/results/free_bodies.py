@@ -14,8 +14,8 @@ from beamfem.assembly.blocks import classes_of
 from beamfem.assembly.stress_resultants import elastic_forces
 from beamfem.element.axis import cross, dot
 from beamfem.kernels.block import Block
-from beamfem.model.beam_mesh import BeamMesh
-from beamfem.model.reference import interpolate
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.reference import interpolate
 from beamfem.results.element_loads import Acting, Rows, acting_on, at_more_points
 from beamfem.results.lumped_values import fractions_before
 from beamfem.results.postprocess import direction

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.beam import Point
-from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.results import postprocess
 from beamfem.results.nodal import axis_at

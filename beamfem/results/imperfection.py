@@ -11,9 +11,9 @@ from beamfem.assembly.system import system_of
 from beamfem.curves import Chain, Curve, spline_through_hermite
 from beamfem.element.coordinates import across
 from beamfem.errors import InputError
+from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.along_beam import functions_along
 from beamfem.model.beam import Beam, Point
-from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.check_replaceable import require_remade
 from beamfem.model.load_base import Load
 from beamfem.model.model import Model

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.model.beam_mesh import BeamMesh
+from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.results.solution_system import imposing, loading
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.model.beam_mesh import BeamMesh
-from beamfem.model.joined_mesh import join
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.joined_mesh import join
 from beamfem.model.model import Model
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ import numpy as np
 
 from beamfem.element import coordinates
 from beamfem.element.axis import Axis
-from beamfem.model.beam_mesh import BeamMesh
-from beamfem.model.reference import interpolate
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.reference import interpolate
 
 
 def nodal_vectors(mesh: BeamMesh, p: np.ndarray, some: np.ndarray | None = None) -> np.ndarray:

@@ -10,8 +10,8 @@ from beamfem.element import coordinates
 from beamfem.element.axis import Axis, cross, dot
 from beamfem.element.structural import section_frame
 from beamfem.element.thickness_law import THICKNESS, ThicknessLaw
-from beamfem.model.beam_mesh import BeamMesh
-from beamfem.model.reference import (
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.reference import (
     energy_points,
     energy_stiffness_at,
     inertia_points,
@@ -19,7 +19,7 @@ from beamfem.model.reference import (
     reference_axis,
     reference_position,
 )
-from beamfem.model.section_stress import distributions
+from beamfem.mesh.section_stress import distributions
 from beamfem.reprs import brief
 from beamfem.results.nodal import axis, axis_at, has_angles, nodal_angles, nodal_vectors, nodal_velocities
 from beamfem.section.law import ConstitutiveLaw

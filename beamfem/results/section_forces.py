@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
+from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.beam import Beam
-from beamfem.model.beam_mesh import BeamMesh
 from beamfem.reprs import brief
 from beamfem.results.element_loads import Rows, rows_of
 from beamfem.results.extremes import Force, Measure, Part, Peak, extreme

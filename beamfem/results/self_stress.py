@@ -4,10 +4,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.joined_mesh import JoinedMesh
 from beamfem.model.along_beam import jumps_along
-from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.imposed_strains import heat_of
-from beamfem.model.joined_mesh import JoinedMesh
 from beamfem.results.solution_system import imposing
 from beamfem.section.protocol import CrossSection
 from beamfem.section.thermal import expands_evenly, thermal_strain

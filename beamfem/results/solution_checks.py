@@ -14,12 +14,12 @@ from beamfem.kernels.block import GREEN_LAGRANGE, STRUCTURAL
 from beamfem.kernels.neighbouring_nodes import LOCKED, STRAINED, exceeds
 from beamfem.kernels.pointers import address_of
 from beamfem.material import Material
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.reference import energy_points, energy_stiffness_at
+from beamfem.mesh.section_stress import layers
 from beamfem.model.beam import beam_in_words
-from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.missing_joints import in_words, unjoined_ends
 from beamfem.model.model import Model
-from beamfem.model.reference import energy_points, energy_stiffness_at
-from beamfem.model.section_stress import layers
 from beamfem.results import locking
 from beamfem.results.beam_stress import peak_stress
 from beamfem.results.element_shapes import ROWS, heights, pairs, rows_looked_at

@@ -7,7 +7,7 @@ import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.element.axis import Axis
-from beamfem.model.beam_mesh import BeamMesh
+from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.results import postprocess
 from beamfem.results.full_turns import turned_of
 from beamfem.results.nodal import axis_at

@@ -6,9 +6,9 @@ import numpy as np
 
 from beamfem.element.axis import Axis
 from beamfem.errors import InputError, UnknownStressWarning, warn
+from beamfem.mesh.beam_grid import Grid
+from beamfem.mesh.reference import sections_at
 from beamfem.model.beam import Beam, names
-from beamfem.model.beam_grid import Grid
-from beamfem.model.reference import sections_at
 from beamfem.section.protocol import CrossSection
 
 

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any, assert_never
 import numpy as np
 
 from beamfem.element.coordinates import across
+from beamfem.mesh.reference import length_points
 from beamfem.model.beam import Beam, Point
 from beamfem.model.load_base import factor
 from beamfem.model.load_shapes import Acceleration, Force, ForcesAlong, LoadShape, Moment, Strains, drawn
-from beamfem.model.reference import length_points
 from beamfem.results.solution_system import loading
 from beamfem.results.stations import StationsOfRows
 from beamfem.view import symbols

@@ -13,8 +13,8 @@ import numpy as np
 
 from beamfem.atomic_write import path_of, whole
 from beamfem.errors import InputError
+from beamfem.mesh.joined_mesh import join
 from beamfem.model.beam import Beam
-from beamfem.model.joined_mesh import join
 from beamfem.model.load_base import factor
 from beamfem.model.load_shapes import Acceleration, Force, ForcesAlong, Moment, Strains
 from beamfem.results.axis_fields import QUANTITIES, AxisPoints, section_forces

@@ -10,7 +10,7 @@ import numpy as np
 from beamfem.atomic_write import path_of, whole
 from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError, warn
-from beamfem.model.reference import sections_at
+from beamfem.mesh.reference import sections_at
 from beamfem.results.axis_fields import AxisPoints
 from beamfem.results.solution import Solution
 from beamfem.validation import count, items, number_below, shown

@@ -42,6 +42,7 @@ LAYERS = (
     "precision",
     "linalg",
     "forms",
+    "mesh",
     "model",
     "element",
     "physics",
@@ -62,8 +63,8 @@ LAYERS = (
     "extras",
     "errors",
 )
-# what a method may import inside: what draws and writes the object, and two analyses of it
-INSIDE_METHODS = ("view", "io")
+# what a method may import inside: what meshes, draws and writes the object, and two analyses of it
+INSIDE_METHODS = ("mesh", "view", "io")
 ANALYSES = {
     "model/model.py": "beamfem.results.imperfection",
     "results/solution.py": "beamfem.solve.stability.stability",
@@ -136,7 +137,7 @@ def upward(source: str, file: Path) -> list[str]:
     """Return the imports of a file that do not go down, each with its line."""
     found, own, tree = [], LAYERS.index(layer(file)), ast.parse(source)
     package = ".".join(["beamfem", *file.parent.parts])
-    inside = imports_inside_methods(tree)
+    inside = imports_inside_methods(tree) | (imports_for_types(tree) if file.as_posix() in DATA else set())
     for name, line in imported(tree, package):
         target = file_of(name)
         assert target is not None, f"{file}:{line} imports {name}, which is not there"

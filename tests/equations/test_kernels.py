@@ -10,7 +10,7 @@ from beamfem.assembly.equations import linearise, predicted_stresses
 from beamfem.assembly.reference_state import coordinate_columns
 from beamfem.assembly.system import System
 from beamfem.linalg.tangent import BandTangent, _solve_pivoted
-from beamfem.model.reference import stations
+from beamfem.mesh.reference import stations
 from beamfem.results.postprocess import axis, nodal_vectors
 
 NONE_TURNED = (np.empty(0, dtype=np.int64), np.empty((0, 2)))

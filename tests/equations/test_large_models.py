@@ -12,8 +12,8 @@ from test_sparse import MATERIAL, SECTION, grid, tangent_at
 import beamfem as bf
 from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import System
+from beamfem.mesh.beam_grid import Grid, distances, make_grid, make_grids, nearest
 from beamfem.model.beam import reference_positions
-from beamfem.model.beam_grid import Grid, distances, make_grid, make_grids, nearest
 from beamfem.results import postprocess
 from beamfem.results import roundoff_corrections as last_digits
 from beamfem.solve.start.mechanisms import Conditions, mechanisms

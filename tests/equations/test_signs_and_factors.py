@@ -6,7 +6,7 @@ import pytest
 import beamfem as bf
 from beamfem.assembly.reference_state import coordinate_columns
 from beamfem.assembly.system import System
-from beamfem.model.reference import reference_axis
+from beamfem.mesh.reference import reference_axis
 from beamfem.results.postprocess import axis, green_strain, nodal_vectors
 
 STIFF = bf.Section.from_stiffness(1e9, 1e9, 1.0, 1.0, 1.0)

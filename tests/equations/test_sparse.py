@@ -14,7 +14,7 @@ from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import System
 from beamfem.element.axis import cross
 from beamfem.linalg.lapack import LinAlgError, superlu
-from beamfem.model.reference import energy_points
+from beamfem.mesh.reference import energy_points
 from beamfem.results.postprocess import axis, nodal_vectors
 
 SECTION = bf.Rectangle(0.05, 0.05)

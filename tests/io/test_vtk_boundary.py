@@ -8,7 +8,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import beamfem as bf
 from beamfem.element.axis import Axis
-from beamfem.model.reference import length_points
+from beamfem.mesh.reference import length_points
 from beamfem.results.stresses import second_piola_kirchhoff
 from tests.connectors import SpringDamper
 from tests.own_parts import Bracket, Guide, HalfWave, Traction

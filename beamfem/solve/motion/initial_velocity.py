@@ -11,8 +11,8 @@ from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import labels
 from beamfem.errors import InputError
 from beamfem.kernels.block import SHEAR_RIGID, STRETCH
-from beamfem.model.beam_mesh import BeamMesh
-from beamfem.model.reference import reference_position
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.reference import reference_position
 from beamfem.model.supports import PointSupport
 from beamfem.results.postprocess import nodal_vectors
 from beamfem.results.solution import State

@@ -8,11 +8,11 @@ from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import across
 from beamfem.errors import InputError, warn
 from beamfem.kernels.block import ROTATED_GRADIENTS
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.model_meshes import nodes_asked
+from beamfem.mesh.reference import reference_angle
 from beamfem.model.beam import beam_in_words
-from beamfem.model.beam_mesh import BeamMesh
 from beamfem.model.model import Model
-from beamfem.model.model_meshes import nodes_asked
-from beamfem.model.reference import reference_angle
 from beamfem.results import postprocess
 from beamfem.results.check_arrays import require_finite
 from beamfem.results.solution import Solution, State

@@ -12,8 +12,8 @@ from scipy.sparse.csgraph import connected_components
 
 from beamfem.element.coordinates import labels
 from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS, ROTATION, STRETCH
-from beamfem.model.beam_grid import Grid
-from beamfem.model.reference import reference_angle
+from beamfem.mesh.beam_grid import Grid
+from beamfem.mesh.reference import reference_angle
 
 Pairs = Sequence[tuple[int, ...]]
 _FEW = 2000  # nodes; the numbering of larger models is not cached

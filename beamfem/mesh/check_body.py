@@ -6,8 +6,8 @@ import numpy as np
 
 from beamfem.element.axis import cross
 from beamfem.errors import InputError
-from beamfem.model.beam_grid import Grid
-from beamfem.model.reference import curvature, reference_axis, sections_at, stations
+from beamfem.mesh.beam_grid import Grid
+from beamfem.mesh.reference import curvature, reference_axis, sections_at, stations
 from beamfem.section.protocol import CrossSection, HasParts
 
 _SAMPLES = 33  # along an element

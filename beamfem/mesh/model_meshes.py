@@ -14,13 +14,13 @@ from beamfem.element.element import Element
 from beamfem.errors import InputError
 from beamfem.installed_memory import USABLE_FRACTION, in_gib, installed_memory
 from beamfem.kernels.block import NO_HISTORY
+from beamfem.mesh.beam_grid import Grid, make_grids
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.check_body import require_body
+from beamfem.mesh.numbering import first_of_group, groups, number_nodes
 from beamfem.model.along_beam import AlongBeam, functions_along, kinks_along
 from beamfem.model.beam import Beam, Point
-from beamfem.model.beam_grid import Grid, make_grids
-from beamfem.model.beam_mesh import BeamMesh
-from beamfem.model.check_body import require_body
 from beamfem.model.contribution import remembered, uses_rotations
-from beamfem.model.numbering import first_of_group, groups, number_nodes
 from beamfem.model.supports import PointSupport
 from beamfem.value_keys import by_value
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.model.beam_grid import Grid
-from beamfem.model.reference import curvature, sections_at
+from beamfem.mesh.beam_grid import Grid
+from beamfem.mesh.reference import curvature, sections_at
 from beamfem.section.distribution import Distribution, distribution, layers_of
 from beamfem.section.protocol import CrossSection
 

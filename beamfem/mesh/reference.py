@@ -12,8 +12,8 @@ from beamfem.element.forces import Forces
 from beamfem.element.shape_tables import length_rule
 from beamfem.element.structural import section_frame
 from beamfem.errors import InputError
+from beamfem.mesh.beam_grid import Grid
 from beamfem.model.beam import Beam
-from beamfem.model.beam_grid import Grid
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import of_package, shown
 

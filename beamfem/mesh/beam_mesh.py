@@ -6,9 +6,9 @@ import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.element.coordinates import Gradients, labels
-from beamfem.model.beam_grid import Grid
-from beamfem.model.element_types import Classes, element_classes
-from beamfem.model.numbering import Nodes
+from beamfem.mesh.beam_grid import Grid
+from beamfem.mesh.element_types import Classes, element_classes
+from beamfem.mesh.numbering import Nodes
 
 
 @dataclass(frozen=True, eq=False)

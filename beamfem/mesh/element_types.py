@@ -8,9 +8,8 @@ import numpy as np
 
 from beamfem.element.element import Element
 from beamfem.kernels.block import ELASTIC_LINE
-from beamfem.model.beam import retardation_time
-from beamfem.model.beam_grid import Grid
-from beamfem.model.reference import (
+from beamfem.mesh.beam_grid import Grid
+from beamfem.mesh.reference import (
     energy_points,
     energy_stiffness_at,
     inertia_at,
@@ -18,6 +17,7 @@ from beamfem.model.reference import (
     length_points,
     scales,
 )
+from beamfem.model.beam import retardation_time
 from beamfem.value_keys import by_value
 
 _ALIKE = 1e-9  # of the longest element: elements whose lengths differ by less are in one class

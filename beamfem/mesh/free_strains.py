@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from beamfem.element.coordinates import Gradients
+from beamfem.mesh.beam_grid import Grid
+from beamfem.mesh.reference import energy_points, reference_axis
 from beamfem.model.along_beam import jumps_along
-from beamfem.model.beam_grid import Grid
 from beamfem.model.imposed_strains import ImposedStrain, free_strain_of
-from beamfem.model.reference import energy_points, reference_axis
 
 _THICKNESS = 3  # column of the thickness stretch
 

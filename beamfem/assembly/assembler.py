@@ -63,12 +63,12 @@ class Equations:
 class Assembler:
     """Equations with a workspace: one for each solve and thread.
 
-    stresses: resultants (ne, nq, ns) of each group for the geometric part of the tangent; lent: whether `work_in`
+    stresses: resultants (ne, nq, ns) of each group for the geometric part of the tangent; shared: whether `work_in`
     provides scratch memory before each solve; numbers: size of the workspace in floats; scratch: the part of it in
     scratch memory.
     """
 
-    def __init__(self, equations: Equations, stresses: Stresses | None = None, lent: bool = False) -> None:
+    def __init__(self, equations: Equations, stresses: Stresses | None = None, shared: bool = False) -> None:
         self.equations, self.size, groups = equations, equations.size, equations.groups
         self._imposes = any(group.imposed is not None for group in groups)
         self._laws = tuple(group.law for group in groups if group.law is not None)
@@ -108,7 +108,7 @@ class Assembler:
         self.table[record.FACTORS] = room.addresses["factors"]
         self._tables = self.table, tables, lists
         self._scratch = _NONE
-        if not lent:
+        if not shared:
             self.work_in(new(self.scratch))
 
     def work_in(self, scratch: Scratch) -> None:

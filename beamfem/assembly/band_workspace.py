@@ -23,7 +23,7 @@ class BandWorkspace:
 
     def __init__(self, system: System) -> None:
         n, unknown, half = system.model.size, len(system.free_dofs), system.layouts[0].half_width
-        self.assembler = system.assembler(lent=True)
+        self.assembler = system.assembler(shared=True)
         self.assembler.weigh(STATICS)
         self.assembler.require("tangent", "prediction")
         self._room = Arena(
@@ -70,16 +70,16 @@ class BandWorkspace:
         caller = self.assembler if self._connected is None else self._connected
         return caller.call(driver, *self.addresses)
 
-    def give_back(self, system: System) -> None:
+    def return_scratch(self, system: System) -> None:
         """Return the scratch memory, and keep the workspace for the next solve if it is small."""
         scratch.take_back(self._scratch)
         if self._entries <= _KEPT:
             system.spare.append(self)
 
-    def take(self, lent: scratch.Scratch) -> None:
-        """Use lent scratch memory until `give_back`."""
-        self._scratch = lent
-        self.assembler.work_in(lent)
+    def take(self, shared: scratch.Scratch) -> None:
+        """Use shared scratch memory until `return_scratch`."""
+        self._scratch = shared
+        self.assembler.work_in(shared)
 
 
 def band_workspace(system: System) -> BandWorkspace:

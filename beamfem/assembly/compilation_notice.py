@@ -14,7 +14,7 @@ def compiled_here() -> list[Routine]:
 
 
 @cache
-def tell_of_compilation() -> None:
+def announce_compilation() -> None:
     """Print once, on a terminal or in a notebook, that the first solve must wait for the compiler."""
     if not (sys.stderr.isatty() or in_notebook()) or kept():
         return

@@ -25,16 +25,16 @@ def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: 
 
     dt [s]: time step since the committed history, 0 in an accepted state.
     """
-    result, assembler = np.empty(len(p)), _borrowed(system)
+    result, assembler = np.empty(len(p)), _acquired(system)
     assembler.take(system.loads_at(time))
     assembler.weigh((1.0, 1.0, 1.0), dt)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, _EMPTY, False)
-    _give_back(system, assembler)
+    _return_assembler(system, assembler)
     system.connectors.add_forces(result, (p, v, a), time)
     return result
 
 
-def _borrowed(system: System) -> Assembler:
+def _acquired(system: System) -> Assembler:
     """Return an assembler whose workspace no other evaluation uses: a spare one, or a new one."""
     try:
         return system.spare_assemblers.pop()
@@ -42,7 +42,7 @@ def _borrowed(system: System) -> Assembler:
         return system.assembler()
 
 
-def _give_back(system: System, assembler: Assembler) -> None:
+def _return_assembler(system: System, assembler: Assembler) -> None:
     """Keep an assembler for the next evaluation if its workspace is small."""
     if assembler.numbers <= _KEPT:
         system.spare_assemblers.append(assembler)
@@ -71,13 +71,13 @@ def linearise(
     p'' has no weight, which statics lacks.
     """
     matrix, result = _entries(system), np.empty(len(p))
-    borrowed = stresses is None and equations is None
-    assembler = _borrowed(system) if borrowed else Assembler(equations or system.equations, stresses)
+    shared = stresses is None and equations is None
+    assembler = _acquired(system) if shared else Assembler(equations or system.equations, stresses)
     assembler.take(system.loads_at(time))
     assembler.weigh(coefficients, dt, moving)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, matrix, stresses is not None)
-    if borrowed:
-        _give_back(system, assembler)
+    if shared:
+        _return_assembler(system, assembler)
     system.connectors.add_forces(result, (p, v, a), time)
     tangent = tangent_of(system, matrix, system.connectors.tangents((p, v, a), time, coefficients))
     if Proven.LOSES_DIGITS in system.proven and coefficients[0] != 0.0 and equations is None:
@@ -90,12 +90,12 @@ def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float
     zeros = np.zeros(len(p))
     if Proven.LOSES_DIGITS in system.proven:
         return linearise(system, p, zeros, zeros, time, STATICS, predicted_stresses(system, p, step, time))[1]
-    matrix, assembler = _entries(system), _borrowed(system)
+    matrix, assembler = _entries(system), _acquired(system)
     assembler.take(system.loads_at(time))
     assembler.weigh(STATICS)
     assembler.predict(p, step)
     assembler.balance(p, zeros, zeros, np.empty(len(p)), matrix, True)
-    _give_back(system, assembler)
+    _return_assembler(system, assembler)
     return tangent_of(system, matrix, system.connectors.tangents((p, zeros, zeros), time, STATICS))
 
 

@@ -139,9 +139,9 @@ class System:
         groups = [make_group(*parts) for parts in zip(blocks, self.layouts, self.point_loads, strict=True)]
         return Equations(groups, self.springs, self.model.size)
 
-    def assembler(self, lent: bool = False) -> Assembler:
-        """Return the equations with a new workspace; lent: see `Assembler`."""
-        return Assembler(self.equations, lent=lent)
+    def assembler(self, shared: bool = False) -> Assembler:
+        """Return the equations with a new workspace; shared: see `Assembler`."""
+        return Assembler(self.equations, shared=shared)
 
     @shared_table
     def solver_table(self) -> SolverTable:

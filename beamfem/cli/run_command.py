@@ -51,7 +51,7 @@ def run(
 ) -> None:
     """Solve a model file, print its outputs and write the files given as options."""
     with reported(as_json, quiet):
-        from beamfem.assembly.compilation_notice import tell_of_compilation
+        from beamfem.assembly.compilation_notice import announce_compilation
         from beamfem.cli.model_file import read_model_file
         from beamfem.cli.outputs import DRAWN, draw, require_saved
 
@@ -62,7 +62,7 @@ def run(
             if out is not None:
                 require_saved(job.model)
             if not quiet:
-                tell_of_compilation()
+                announce_compilation()
             start = time.perf_counter()
             with _kept(job, out):
                 found = job.solve()

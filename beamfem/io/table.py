@@ -10,7 +10,7 @@ from beamfem.extras import needed_for
 from beamfem.model.beam import Beam, names
 from beamfem.model.model import Model
 from beamfem.results.axis_fields import QUANTITIES, AxisPoints, section_forces
-from beamfem.results.batched_beams import LikeBeams, like_beams
+from beamfem.results.batched_beams import LikeBeams, equal_beams
 from beamfem.results.beam_stress import stress_at
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ def _of_group(solution: "Solution", group: LikeBeams, energy: "Energy") -> tuple
 def groups_of(model: Model, beam: Beam | None, rows: int) -> list[LikeBeams]:
     """Return the stations of one beam, or of all in groups of like beams."""
     if beam is None:
-        return like_beams(model, [AxisPoints(mesh, _PIECES) for mesh in model.meshes], rows)
+        return equal_beams(model, [AxisPoints(mesh, _PIECES) for mesh in model.meshes], rows)
     number = model.number_of(beam)
     return [LikeBeams([number], [AxisPoints(model.meshes[number], _PIECES)])]
 

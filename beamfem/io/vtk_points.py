@@ -11,7 +11,7 @@ from beamfem.mesh.reference import reference_axis
 from beamfem.model.model import Model
 from beamfem.results import postprocess
 from beamfem.results.axis_fields import AxisPoints, rotation, section_forces
-from beamfem.results.batched_beams import LikeBeams, like_beams
+from beamfem.results.batched_beams import LikeBeams, equal_beams
 from beamfem.results.self_stress import self_stress
 from beamfem.results.stresses import in_the_plane, second_piola_kirchhoff, von_mises
 from beamfem.section import Layered
@@ -145,13 +145,13 @@ def bodies(model: Model, alike: bool = False) -> list[Samples]:
 
     They are exact for the field r0(x) + y d(x), and for the parabola of the shear stress in a rectangle.
     """
-    groups = like_beams(model, [AxisPoints(mesh, _degree(mesh)) for mesh in model.meshes], 1)
+    groups = equal_beams(model, [AxisPoints(mesh, _degree(mesh)) for mesh in model.meshes], 1)
     return [sample for group in groups for sample in _body(group, alike)]
 
 
 def centrelines(model: Model) -> list[Samples]:
     """Return the points of straight pieces, because ParaView 5.11 crashes on Lagrange curves."""
-    groups = like_beams(model, [AxisPoints(mesh, _LINES_PER_ELEMENT) for mesh in model.meshes], 1)
+    groups = equal_beams(model, [AxisPoints(mesh, _LINES_PER_ELEMENT) for mesh in model.meshes], 1)
     return [Samples(group, None, np.arange(_LINES_PER_ELEMENT + 1)) for group in groups]
 
 

@@ -42,7 +42,7 @@ class Classes(NamedTuple):
 
 def element_classes(grid: Grid) -> Classes:
     """Return the classes of a grid: by length on a straight prismatic beam, otherwise one per element."""
-    first, kind = _likes(grid)
+    first, kind = _equal_elements(grid)
     element, xi, weight = energy_points(grid, first)
     count, size = len(first), len(element) // len(first)
     stiffness, reference = energy_stiffness_at(grid, element, xi)
@@ -76,7 +76,7 @@ def _derivatives(
     return np.ascontiguousarray(table * scaled * inverse), second
 
 
-def _likes(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+def _equal_elements(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     """Return the first element (nc,) of each class and the class (ne,) of each element."""
     if not (grid.straight and grid.beam.prismatic):
         every = np.arange(grid.elements)

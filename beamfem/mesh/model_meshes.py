@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from beamfem.model.model import Model
 
 
-def nodes_asked(model: "Model") -> list[list[tuple[float, str]]]:
+def required_nodes(model: "Model") -> list[list[tuple[float, str]]]:
     """Return for each beam the fractions of its length [-] at which parts of the model need a node, with their names.
 
     Jumps of sections belong to the beam itself and have the name "section".
@@ -54,7 +54,7 @@ _COORDINATE = 300  # bytes per coordinate; 310 to 370 were measured in statics
 _LITTLE = 2**24  # bytes that every computer has
 
 
-def require_room(beams: Sequence[Beam]) -> None:
+def require_fits_memory(beams: Sequence[Beam]) -> None:
     """Raise InputError if the elements of a model need more memory [bytes] than this computer has."""
     needed = _COORDINATE * sum(map(_coordinates, beams))
     if needed <= _LITTLE:
@@ -185,7 +185,7 @@ class NodesNeeded(NamedTuple):
 
 def nodes_needed(model: "Model") -> NodesNeeded:
     """Return the nodes that supports, loads and connectors of a model need."""
-    asked = zip(model.beams, nodes_asked(model), strict=True)
+    asked = zip(model.beams, required_nodes(model), strict=True)
     fractions = [_inside(beam, {fraction for fraction, _ in requested}) for beam, requested in asked]
     points = [support.point for support in model.point_supports if _turns(support)]
     points += [point for connector in model.connectors if uses_rotations(connector) for point in connector.points]
@@ -204,7 +204,7 @@ def _inside(beam: Beam, fractions: set[float]) -> list[float]:
 
 def numbered_meshes(model: "Model") -> NumberedMeshes:
     """Return the meshes of a model. Raises InputError for a beam that cannot be meshed."""
-    require_room(model.beams)
+    require_fits_memory(model.beams)
     needed = model.nodes_needed
     grids = make_grids(model.beams, needed.fractions)
     places = [(number, grids[number].node_at(fraction)) for number, fraction in needed.angled]

@@ -37,7 +37,7 @@ def refused(name: str, item: object, kinds: Kinds) -> str:
     return f"{said}, but {_named(kinds[name])}"
 
 
-def beam_like(beams: Sequence[Beam], beam: Beam) -> str:
+def resembles_beam(beams: Sequence[Beam], beam: Beam) -> str:
     """Return in words which beam of a model is on the axis of one that is not in it, empty if none is."""
     alike = (number for number, own in enumerate(beams) if type(own.curve) is type(beam.curve))
     same = next((number for number in alike if beams[number].curve == beam.curve), None)

@@ -11,7 +11,7 @@ from beamfem.cached_properties import cached_property
 from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
-from beamfem.model.argument_hints import beam_like, listed, refused, touching
+from beamfem.model.argument_hints import listed, refused, resembles_beam, touching
 from beamfem.model.beam import Beam, Point, reference_positions, require_different_names
 from beamfem.model.check_units import warn_of_units
 from beamfem.model.contribution import Contribution, require_connector
@@ -207,7 +207,7 @@ class Model:
         beam = place.beam if isinstance(place, Point) else place
         if beam is not None and id(beam) not in self._numbers:
             where = f" at {place}" if isinstance(place, Point) else ""
-            remedy = ", or ".join(filter(None, ("add it to beams", beam_like(self.beams, beam))))
+            remedy = ", or ".join(filter(None, ("add it to beams", resembles_beam(self.beams, beam))))
             raise UnknownPointError(f"{kind}{where} is on a beam that is not in this model; {remedy}")
 
     def _require_touches(self) -> None:
@@ -309,7 +309,7 @@ class Model:
         return self._numbers[id(beam)]
 
     def _unknown(self, message: str, beam: Beam) -> UnknownPointError:
-        return UnknownPointError("; ".join(filter(None, (message, beam_like(self.beams, beam)))))
+        return UnknownPointError("; ".join(filter(None, (message, resembles_beam(self.beams, beam)))))
 
     def mesh_of(self, point: Point) -> "BeamMesh":
         """Return the mesh that a point lies on, which is that of its beam.

@@ -42,7 +42,7 @@ class LikeBeams:
         return np.split(values, np.cumsum(self.counts)[:-1], axis=over)
 
 
-def like_beams(model: Model, points: Sequence[AxisPoints], rows: int) -> list[LikeBeams]:
+def equal_beams(model: Model, points: Sequence[AxisPoints], rows: int) -> list[LikeBeams]:
     """Return the points of all beams of a model by groups of like beams, as large as the number of rows allows."""
     result = []
     for numbers in model.numbered.joinable:

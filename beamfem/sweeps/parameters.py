@@ -25,7 +25,7 @@ def split(parameters: Mapping[str, Any]) -> tuple[dict[str, tuple[Any, ...]], di
     """
     varied: dict[str, tuple[Any, ...]] = {}
     fixed: dict[str, Any] = {}
-    _require_room([len(value) for value in parameters.values() if _varies(value)])
+    _require_fits_memory([len(value) for value in parameters.values() if _varies(value)])
     for name, value in parameters.items():
         if _varies(value):
             varied[name] = tuple(value.tolist() if isinstance(value, np.ndarray) else value)
@@ -40,7 +40,7 @@ def _varies(value: Any) -> bool:
     return isinstance(value, list | tuple | range) or (isinstance(value, np.ndarray) and value.ndim == 1)
 
 
-def _require_room(counts: Sequence[int]) -> None:
+def _require_fits_memory(counts: Sequence[int]) -> None:
     """Raise InputError if the points of a study need more memory than this computer has."""
     points, memory = math.prod(counts), installed_memory()
     if memory is not None and points * _POINT > USABLE_FRACTION * memory:

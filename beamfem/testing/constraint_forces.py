@@ -46,7 +46,7 @@ def check_constraint_forces(item: Connector) -> None:
             f"force of {item.name}: multiplier {wrong} does not act along the derivative of its condition by q; the "
             "force must contain each multiplier times the derivative of its own condition, with this sign"
         )
-    if least == np.inf or _knows_what_slides(item):
+    if least == np.inf or _depends_on_sliding(item):
         return
     point, direction = divmod(least_row, item.per_point)
     raise AssertionError(
@@ -120,7 +120,7 @@ def _besides(item: Connector, forces: np.ndarray, conditions: np.ndarray) -> tup
     return float(residual.max()), int(residual.argmax()), int(opposed[0]) if len(opposed) else -1
 
 
-def _knows_what_slides(item: Connector) -> bool:
+def _depends_on_sliding(item: Connector) -> bool:
     """Return whether the forces of the multipliers depend on velocities or on the past, as those of friction do."""
     number, rng = len(item.dofs), np.random.default_rng(7)
     for motion in _on_the_conditions(item):

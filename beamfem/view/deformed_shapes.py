@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
 from beamfem.results.axis_fields import AxisPoints, Quantity, quantity
-from beamfem.results.batched_beams import LikeBeams, like_beams, of_each
+from beamfem.results.batched_beams import LikeBeams, equal_beams, of_each
 from beamfem.results.beam_stress import HEIGHTS
 from beamfem.results.solution import Solution
 from beamfem.view.frames import axis_points
@@ -48,7 +48,7 @@ class Shapes:
     @cached_property
     def groups(self) -> list[LikeBeams]:
         """The points of like beams, which are evaluated together."""
-        return like_beams(self.solution.model, self.points, len(self.rows))
+        return equal_beams(self.solution.model, self.points, len(self.rows))
 
     @cached_property
     def _moved(self) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -14,7 +14,7 @@ from beamfem.results import batched_beams as many_beams
 from beamfem.results import beam_stress, free_bodies
 from beamfem.results import neighbouring_beams as neighbours
 from beamfem.results.axis_fields import QUANTITIES, AxisPoints
-from beamfem.results.batched_beams import like_beams, of_each
+from beamfem.results.batched_beams import equal_beams, of_each
 from tests.many_beams import PLASTIC, SECTION, mixed_model
 
 FORCES = ("arc_length", "normal", "shear", "moment")
@@ -58,7 +58,7 @@ FIELDS |= {"forces": _all_forces, "stresses": _all_stresses}
 def test_fields_of_beams_evaluated_together_are_those_of_each(solutions, values, motion):
     solution = solutions[motion]
     points = [AxisPoints(mesh, 1 + number % 2) for number, mesh in enumerate(solution.model.meshes)]
-    groups = like_beams(solution.model, points, len(solution))
+    groups = equal_beams(solution.model, points, len(solution))
     assert 1 < len(groups) < len(points)
     rows = slice(1, None)
     each = [values(own, solution, rows) for own in points]
@@ -98,7 +98,7 @@ def test_files_and_tables_are_the_same_beam_by_beam(solutions, monkeypatch, tmp_
     monkeypatch.setattr(many_beams, "VALUES", 0)
     monkeypatch.setattr(hdf5_arrays, "VALUES", 0)  # row by row
     points = [AxisPoints(mesh, 1) for mesh in solution.model.meshes]
-    assert len(like_beams(solution.model, points, 1)) == len(points)
+    assert len(equal_beams(solution.model, points, 1)) == len(points)
     each = solution.to_pandas(), Cells(solution.model, True).arrays(solution, slice(None))
     solution.save(tmp_path / "each.h5")
     assert joined[0].equals(each[0])
@@ -145,7 +145,7 @@ def test_more_beams_do_not_take_more_evaluations(evaluate, monkeypatch, tmp_path
 def test_the_more_rows_the_fewer_beams_are_evaluated_at_once(rows):
     """All beams of a long motion at once would take more memory than its coordinates."""
     model = mixed_model()
-    groups = like_beams(model, [AxisPoints(mesh, 4) for mesh in model.meshes], rows)
+    groups = equal_beams(model, [AxisPoints(mesh, 4) for mesh in model.meshes], rows)
     assert sorted(number for group in groups for number in group.numbers) == list(range(len(model.beams)))
     for group in groups:
         assert len(group.numbers) == 1 or sum(group.counts) * rows <= many_beams.VALUES

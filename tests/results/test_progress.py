@@ -8,7 +8,7 @@ import pytest
 from bad_inputs import CANTILEVER
 
 import beamfem as bf
-from beamfem.assembly.compilation_notice import tell_of_compilation
+from beamfem.assembly.compilation_notice import announce_compilation
 
 
 class Terminal(io.StringIO):
@@ -59,7 +59,7 @@ def test_the_first_solve_says_once_that_kernels_are_compiled(solve, folder, word
     monkeypatch.setattr("beamfem.progress._held", ContextVar("held", default=True))  # no bars
     monkeypatch.setattr("beamfem.assembly.compilation_notice.kept", lambda: 0)
     monkeypatch.setattr("beamfem.assembly.compilation_notice.cache_folder", lambda: folder)
-    tell_of_compilation.cache_clear()
+    announce_compilation.cache_clear()
     solve(CANTILEVER)
     solve(CANTILEVER)
     assert terminal.getvalue().count("compiling kernels") == 1

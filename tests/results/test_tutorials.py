@@ -37,9 +37,9 @@ def test_a_first_solve_in_a_kernel_says_that_it_compiles(tmp_path, monkeypatch):
     monkeypatch.setenv("BEAMFEM_CACHE_DIR", str(tmp_path))
     lines = [
         "import beamfem as bf",
-        "from beamfem.assembly.compilation_notice import tell_of_compilation",
-        "tell_of_compilation()",
-        "tell_of_compilation()",
+        "from beamfem.assembly.compilation_notice import announce_compilation",
+        "announce_compilation()",
+        "announce_compilation()",
     ]
     cell = nbformat.v4.new_code_cell("\n".join(lines))
     notebook = nbformat.v4.new_notebook(cells=[cell])

@@ -22,7 +22,7 @@ from beamfem.solve.modes.lowest_modes import WRONG, lowest_pairs
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.modes.rigid_modes import unresisted
-from beamfem.solve.start.check_states_memory import require_room
+from beamfem.solve.start.check_states_memory import require_fits_memory
 from beamfem.solve.start.equilibrium_check import left_over
 from beamfem.solve.start.multipliers import refuse_dampers, refuse_multipliers
 from beamfem.solve.start.start_state import resting_state
@@ -136,7 +136,7 @@ class Modes:
         mode = number_below("mode", mode, len(self))
         if whole_number("frames", frames) < 2:
             raise InputError("frames must be at least 2")
-        require_room(frames, self.model.size)
+        require_fits_memory(frames, self.model.size)
         if amplitude is None:
             amplitude = 0.1 * max(beam.curve.length for beam in self.model.beams)
         amplitude = squared(positive)("amplitude", amplitude)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from beamfem.assembly.compilation_notice import tell_of_compilation
+from beamfem.assembly.compilation_notice import announce_compilation
 from beamfem.assembly.rigid_velocity import RigidVelocity
 from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, EnergyWarning, InputError, warn
@@ -101,7 +101,7 @@ def simulate(
         )
     system = system_of(model, static=False)
     rule = require_rule(integrator, step) if is_scheme(integrator) else ()
-    tell_of_compilation()
+    announce_compilation()
     require_memory(model.size, duration, step, save_every)
     times = step * np.arange(int(np.ceil(duration / step - 1e-9)) + 1)
     acting, second = functions_of_time(system), system.model.unit("s")
@@ -158,8 +158,8 @@ def _solution(
     rule: tuple[float, ...],
 ) -> Solution:
     done, state, last_rotations = last.step
-    kept_steps = np.append(np.arange(0, done, record.every), done)
-    states, rotations = record.states[: len(kept_steps)], record.rotations[: len(kept_steps)]
+    stored_steps = np.append(np.arange(0, done, record.every), done)
+    states, rotations = record.states[: len(stored_steps)], record.rotations[: len(stored_steps)]
     if done % record.every:
         states[-1], rotations[-1] = state, last_rotations
     ended = f"{done} step{'' if done == 1 else 's'} of {times[1]:g} {system.model.unit('s')}"
@@ -170,4 +170,4 @@ def _solution(
     status = Status.COMPLETED if done == len(times) - 1 else Status.STOPPED
     summary = Statistics(int(record.statistics[ITERATIONS]), done, 0, ended, status, rule=rule)
     p, v, a = states.swapaxes(0, 1)
-    return Solution(system.model, False, times[kept_steps], p, v, a, summary, turned=rotations)
+    return Solution(system.model, False, times[stored_steps], p, v, a, summary, turned=rotations)

@@ -109,9 +109,9 @@ class BandProblem:
         space.p[:] = self.start
         return int(space.call(count_after_step.compiled))
 
-    def give_back(self) -> None:
+    def return_scratch(self) -> None:
         """Release the workspace for the next solve."""
-        self.space.give_back(self.system)
+        self.space.return_scratch(self.system)
 
 
 class PivotedProblem(SingleCorrections):

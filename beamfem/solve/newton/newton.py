@@ -132,7 +132,7 @@ def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton
     if system.unknowns.pattern is None and Proven.LOSES_DIGITS not in system.proven:
         problem = BandProblem(system, start, load_factor, newton, step, keep)
         result = find_equilibrium(problem, newton, keep)
-        problem.give_back()
+        problem.return_scratch()
     if result is None or result.ended is Termination.SINGULAR:
         result = find_equilibrium(PivotedProblem(system, start, load_factor, newton, step), newton, keep)
     return result

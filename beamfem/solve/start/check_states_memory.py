@@ -25,7 +25,7 @@ def require_memory(coordinates: int, duration: float, step: float, save_every: i
     raise InputError(f"{message}; take a larger step, or a shorter duration and continue from the last state")
 
 
-def require_room(states: int, coordinates: int) -> None:
+def require_fits_memory(states: int, coordinates: int) -> None:
     """Raise InputError if this many states of a mode need more memory [bytes] than this computer has."""
     memory, needed = installed_memory(), float(states) * 2 * _STATE * coordinates
     if memory is not None and needed > USABLE_FRACTION * memory:

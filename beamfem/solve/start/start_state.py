@@ -9,7 +9,7 @@ from beamfem.element.coordinates import across
 from beamfem.errors import InputError, warn
 from beamfem.kernels.block import ROTATED_GRADIENTS
 from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.mesh.model_meshes import nodes_asked
+from beamfem.mesh.model_meshes import required_nodes
 from beamfem.mesh.reference import reference_angle
 from beamfem.model.beam import beam_in_words
 from beamfem.model.model import Model
@@ -128,7 +128,7 @@ def _matched(source: Model, target: Model, name: str) -> list[tuple[BeamMesh, Be
     for new in target.meshes:
         old = by_beam.get(id(new.beam)) or next((mesh for mesh in unmatched if _alike(mesh, new)), None)
         if old is None or not _alike(old, new):
-            like = old or next((mesh for mesh in unmatched if _divided_alike(mesh, new)), None)
+            like = old or next((mesh for mesh in unmatched if _divided_equally(mesh, new)), None)
             if like is not None and (parted := _parted(source, target, like, new, name)):
                 raise InputError(parted)
             other = [old] if old is not None else source.meshes[:5]
@@ -154,7 +154,7 @@ def _alike(old: BeamMesh, new: BeamMesh) -> bool:
     return bool(distance <= near and turned <= _SAME_PLACE * new.speed.max())
 
 
-def _divided_alike(old: BeamMesh, new: BeamMesh) -> bool:
+def _divided_equally(old: BeamMesh, new: BeamMesh) -> bool:
     """Return whether two beams lie at the same place with the same elements, but for those that points divide."""
     if old.vectors != new.vectors or old.beam.elements != new.beam.elements:
         return False
@@ -169,7 +169,7 @@ def _parted(source: Model, target: Model, old: BeamMesh, new: BeamMesh, name: st
     """
     beam, message = beam_in_words(target.beams, target.number_of(new.beam)), []
     for one, mesh, other in ((source, old, new), (target, new, old)):
-        requested = nodes_asked(one)[one.number_of(mesh.beam)]
+        requested = required_nodes(one)[one.number_of(mesh.beam)]
         fractions = other.vertices / other.vertices[-1]
         only = {at: part for at, part in sorted(requested) if np.abs(fractions - at).min() > _SAME_PLACE}
         if not only:

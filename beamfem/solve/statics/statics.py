@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.compilation_notice import tell_of_compilation
+from beamfem.assembly.compilation_notice import announce_compilation
 from beamfem.assembly.system import system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
@@ -159,7 +159,7 @@ def solve_through(
     if unstable == "leave":
         refuse_memory(system, 'unstable="leave"')
         snap = "jump"
-    tell_of_compilation()
+    announce_compilation()
     if nothing_acts(system):
         require_support(system)
     require_independent(system, system.reference)

@@ -1,4 +1,4 @@
-"""What can go wrong, by name. Every message says what is wrong, where, and what would be right."""
+"""Exceptions and warnings. Each message names the problem, its place and a remedy."""
 
 import sys
 import warnings

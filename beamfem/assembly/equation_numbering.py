@@ -175,7 +175,7 @@ class Unknowns:
 
     @cached_property
     def chosen(self) -> slice | np.ndarray:
-        """What the unknown coordinates are among all, as an index."""
+        """Index of the unknown coordinates among all."""
         return slice(self.first, self.first + len(self.dofs)) if self.first >= 0 else self.dofs
 
     def diagonal(self, numbers: np.ndarray) -> np.ndarray:

@@ -36,7 +36,7 @@ _NO_MOVEMENT = 1e300  # scale of history variables: no change of them counts as 
 
 
 class Proven(Enum):
-    """What solves of a system have found out about it."""
+    """Properties of a system found by earlier solves."""
 
     LOSES_DIGITS = auto()  # the tangent, unless stress resultants are unknowns of their own
     KEEPS_DIGITS = auto()

@@ -52,7 +52,7 @@ class KeyFault(ValueError):
 
 @dataclass
 class Names:
-    """What the keys of a model file may name; types: how pydantic reads values, by type hint."""
+    """Parts of a model file by name; types: readers of values for pydantic, by type hint."""
 
     types: Mapping[Any, Any]
     parts: dict[str, dict[str, Any]] = field(default_factory=dict)  # by section: materials, sections ...

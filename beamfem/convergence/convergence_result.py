@@ -60,7 +60,7 @@ class Convergence:
 
     @property
     def error_name(self) -> str:
-        """What the errors are: "relative error", or "error" if the limit of a curve is zero."""
+        """Name of the errors: "relative error", or "error" if the limit of a curve is zero."""
         return "relative error" if all(curve.relative for curve in self.curves) else "error"
 
     @property

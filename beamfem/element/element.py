@@ -75,7 +75,7 @@ class Element:
             if part.code not in codes:
                 raise InputError(
                     f"{name} of an element: code of {type(part).__name__} is {shown(part.code)}, but compiled code "
-                    f"knows {', '.join(map(str, codes))} only"
+                    f"supports only {', '.join(map(str, codes))}"
                 )
         require_field(self.field)
         has_slope = "r_x" in self.field.vectors

@@ -1,4 +1,4 @@
-"""What a user-defined field must have for an element to be made of it: members, nodes, shapes of tables."""
+"""Requirements of user-defined fields: members, nodes, shapes of tables."""
 
 from typing import Any, NoReturn
 

@@ -47,7 +47,7 @@ class Boundary:
 
     @property
     def offsets(self) -> np.ndarray:
-        """Where in the connectivity each cell begins, and its length."""
+        """Offset of each cell in the connectivity, and its length."""
         return np.arange(self.points + 1)
 
     @property
@@ -64,7 +64,7 @@ class Boundary:
 
     @property
     def legend(self) -> dict[str, list[str]]:
-        """What the numbers of kinds and roles stand for, by name."""
+        """Names of the numbers of kinds and roles."""
         return {**legend_of_beams(self.beams), "kinds": self.kinds, "roles": list(ROLES)}
 
     @property

@@ -49,7 +49,7 @@ _TENSORS = ("cauchy_stress", "second_piola_kirchhoff_stress")
 
 @dataclass(frozen=True)
 class Content:
-    """What files hold: points of the deformed or the reference geometry, which fields, numbers of 4 or 8 bytes."""
+    """Content of files: points of the deformed or the reference geometry, fields, numbers of 4 or 8 bytes."""
 
     geometry: Geometry = "deformed"
     fields: tuple[str, ...] | None = None
@@ -73,7 +73,7 @@ WHOLE = Content()
 
 
 class Grid(Protocol):
-    """What is written: cells of one type, the fields at their points, and numbers of the cells."""
+    """Data to write: cells of one type, the fields at their points, and numbers of the cells."""
 
     @property
     def cell_type(self) -> int:
@@ -92,7 +92,7 @@ class Grid(Protocol):
 
     @property
     def offsets(self) -> np.ndarray:
-        """Where in the connectivity each cell begins, and its length."""
+        """Offset of each cell in the connectivity, and its length."""
         ...
 
     @property
@@ -111,7 +111,7 @@ class Grid(Protocol):
 
     @property
     def legend(self) -> dict[str, list[str]]:
-        """What numbers of cells stand for, by name."""
+        """Meaning of the numbers of cells, by name."""
         ...
 
     def arrays(self, solution: "Solution", rows: slice) -> dict[str, np.ndarray]:
@@ -170,7 +170,7 @@ class Cells:
 
     @property
     def legend(self) -> dict[str, list[str]]:
-        """What the numbers of materials and sections stand for, and those of beams where some have names."""
+        """Names of the numbers of materials and sections, and of beams if some have names."""
         unit = self.unit
         return {
             **legend_of_beams(self.beams),

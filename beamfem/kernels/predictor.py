@@ -1,4 +1,4 @@
-"""The acceleration that a time step begins with, extrapolated through the last steps by what would have served best."""
+"""Predictor: polynomial extrapolation of the acceleration, with the order that fitted the last step best."""
 
 import math
 

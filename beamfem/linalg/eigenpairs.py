@@ -36,8 +36,8 @@ def digits_for(what: str) -> Iterator[None]:
         yield
     except (LinAlgError, ArpackError, ZeroDivisionError, OverflowError) as error:
         raise ConvergenceError(
-            f"{what} of this model cannot be found, round-off leaves its tangent no digits: stiffnesses, lengths and "
-            f"loads of its parts are too far apart ({error})"
+            f"{what} of this model cannot be found: its tangent is numerically singular, because stiffnesses, lengths "
+            f"or loads differ by too many orders of magnitude ({error})"
         ) from error
 
 

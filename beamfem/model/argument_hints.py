@@ -1,4 +1,4 @@
-"""What would be right where a model is given a part of another kind, or a point of another model."""
+"""Hints for parts passed to the wrong argument of Model, and for points of another model."""
 
 from collections.abc import Mapping, Sequence
 from itertools import product

@@ -13,12 +13,12 @@ def require_remade(what: str, part: Any) -> None:
     try:
         again = replace(part)
     except Exception as error:
-        raise InputError(f"{what}: it cannot be made anew from its fields: {error}") from error
+        raise InputError(f"{what}: it cannot be recreated from its fields: {error}") from error
     for field in fields(part):
         if not _same(getattr(part, field.name), getattr(again, field.name)):
             raise InputError(
-                f"{what}: its field {field.name} changes each time that it is made anew from its fields; keep what is "
-                "given there, and derive the rest in properties or methods"
+                f"{what}: its field {field.name} changes when the object is recreated from its fields; store the given "
+                "values there, and derive the rest in properties or methods"
             )
 
 

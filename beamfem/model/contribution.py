@@ -171,7 +171,7 @@ def require_connector(connector: Contribution) -> None:
     if connector.unknowns:
         count(f"unknowns of {name}", connector.unknowns)
     if hasattr(connector, "memory") and not isinstance(connector, Remembering):
-        raise InputError(f"{name} has a memory, but no remember(at) that returns it anew after a step")
+        raise InputError(f"{name} defines memory but no remember(at) to update it after each step")
     remembered(connector)
     flag(f"conservative of {name}", connector.conservative)
 

@@ -16,7 +16,6 @@ def values_along(
     table = number_table(what, called(what, function, arc_length), columns)
     if len(table) != len(arc_length):
         raise InputError(
-            f"{what} must have a row for each of the {len(arc_length)} arc lengths that it is asked for, "
-            f"got {len(table)} rows"
+            f"{what} must have a row for each of the {len(arc_length)} requested arc lengths, got {len(table)} rows"
         )
     return table

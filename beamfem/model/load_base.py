@@ -212,7 +212,7 @@ class PointLoad(Load):
 
     @property
     def layout(self) -> tuple[Point, bool]:
-        """Where the load acts, and whether it follows the section; see `Load.layout`."""
+        """Point of the load, and whether it follows the section; see `Load.layout`."""
         return self.point, self.follower
 
     @property

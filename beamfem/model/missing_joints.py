@@ -1,4 +1,4 @@
-"""Ends of beams that lie on a beam without a joint: most mechanisms of frames are a joint that was forgotten."""
+"""Beam ends that touch another beam without a joint, the usual cause of a mechanism."""
 
 from collections import defaultdict
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""What a model made by `with_loads` or `with_` shares with the one that it is made from."""
+"""Data that a model made by `with_loads` or `with_` shares with its original."""
 
 from typing import TYPE_CHECKING, Any
 

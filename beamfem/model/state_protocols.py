@@ -1,4 +1,4 @@
-"""What loads and supports ask of states of a model: directions of the axis, and displacements from the reference."""
+"""Data of a state that loads and supports need: directions of the axis, and displacements from the reference."""
 
 from collections.abc import Iterable
 from typing import Literal, Protocol

@@ -1,1 +1,1 @@
-"""What guards the last digits of results."""
+"""Bounds of round-off and tangents that keep the last digits of results."""

@@ -179,7 +179,7 @@ class _Forces:
 
 @dataclass(frozen=True)
 class _Balance:
-    """What work does not explain in rows (rows,) [J].
+    """Energy in rows (rows,) [J] that work does not explain.
 
     rise: change of energy less the work done; loss: its negative less what is dissipated, nan if that is not known;
     doubt: how accurately rows give the work; exchanged: largest energy exchanged.

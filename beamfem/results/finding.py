@@ -1,4 +1,4 @@
-"""What is found wrong with results: a sentence, and the category of the Python warning if it is large."""
+"""A problem found in results: a sentence, and the category of the Python warning if it is large."""
 
 from typing import NamedTuple
 

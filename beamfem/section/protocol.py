@@ -52,7 +52,7 @@ class Inertia:
 
 @runtime_checkable
 class CrossSection(Protocol):
-    """What a beam needs of a section. The material is that of the beam, None if the section has its own.
+    """Protocol of sections. The material is that of the beam, None if the section has its own.
 
     Methods that need a material raise an InputError without one.
     """

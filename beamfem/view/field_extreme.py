@@ -18,7 +18,7 @@ _COLOUR = "#CC3311"
 
 @dataclass(frozen=True, eq=False)
 class Extreme:
-    """What the legend says about the value of largest magnitude, in two parts, and its position (2,) [m].
+    """Text of the legend for the value of largest magnitude, in two parts, and its position (2,) [m].
 
     at: None if all values are equal.
     """

@@ -251,7 +251,7 @@ class Heavy(Bracket):
     ("load", "message"),
     [
         (lambda at: Degrees(at, 80.0), "Degrees cannot be .*: its field angle changes each time"),
-        (lambda at: Heavy(at), "Heavy cannot be .*: it cannot be made anew from its fields"),
+        (lambda at: Heavy(at), "Heavy cannot be .*: it cannot be recreated from its fields"),
     ],
 )
 def test_parts_that_differ_when_made_anew_are_neither_saved_nor_moved(tmp_path, load, message):

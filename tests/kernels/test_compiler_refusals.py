@@ -223,7 +223,7 @@ def division_by_zero(n, x):
         (whole_numbers_joined, "and, or join conditions, and n is a whole number"),
         (range_of_four, "is not known to compiled code"),
         (in_nothing, r"n in \(\)"),
-        (call_with_default, "names without defaults"),
+        (call_with_default, "parameters without defaults"),
         (endless_calls, "RecursionError"),
     ],
 )

@@ -102,7 +102,7 @@ def test_what_remembers_is_refused_where_it_cannot_be_taken():
             solve(model)
     stiffness = (1.0, 1.0, 1.0)
     for kind, words in (
-        (Forgetful, "has a memory, but no remember"),
+        (Forgetful, "defines memory but no remember"),
         (Confused, "remember of Confused must return 1 finite numbers"),
         (Unsure, "memory of Unsure"),
     ):

@@ -44,7 +44,7 @@ def definition(function: Callable[..., Any]) -> ast.FunctionDef:
         )
     arguments = tree.args
     if arguments.posonlyargs or arguments.kwonlyargs or arguments.vararg or arguments.kwarg or arguments.defaults:
-        raise TypeError(f"arguments of compiled code are names without defaults, those of {tree.name} are more")
+        raise TypeError(f"kernel {tree.name}: only positional parameters without defaults are supported")
     return tree
 
 

@@ -25,7 +25,7 @@ class Kind:
 
 
 class Extent(NamedTuple):
-    """Where the array of a pointer starts and ends, as integers, and its name; known only with checks."""
+    """Start and end of the array of a pointer, as integers, and its name; known only with checks."""
 
     start: ir.Value
     end: ir.Value

@@ -1,4 +1,4 @@
-"""Where on a loading path the tangent is singular: bifurcations and limit points."""
+"""Singular points of the tangent on a loading path: bifurcations and limit points."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

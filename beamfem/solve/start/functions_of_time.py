@@ -120,7 +120,7 @@ SAME = 1e-7  # of the range: kinks closer than this are one
 
 
 class Jump(NamedTuple):
-    """Where a function jumps: neighbouring load factors, in ascending order, with its values there."""
+    """A jump of a function: neighbouring load factors, in ascending order, and its values there."""
 
     before: float
     after: float

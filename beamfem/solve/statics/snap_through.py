@@ -1,4 +1,4 @@
-"""Where a static solve continues if its path loses stability: the rest beyond a limit point, or a stable branch."""
+"""Continuation of a static solve whose path loses stability: rest beyond a limit point, or a stable branch."""
 
 import numpy as np
 

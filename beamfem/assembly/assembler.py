@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.assembly.applied_loads import LoadsAt
 from beamfem.assembly.callbacks import Deferred
 from beamfem.assembly.element_group import ElementGroup
-from beamfem.assembly.load_values import LoadsAt
 from beamfem.assembly.scratch_memory import Arena, Scratch, new
 from beamfem.kernels import element_passes, model_passes, node_passes, record
 from beamfem.kernels.block import Springs

@@ -4,9 +4,9 @@ from collections.abc import Callable
 from typing import Any
 
 from beamfem.assembly import scratch_memory as scratch
+from beamfem.assembly.applied_loads import LoadsAt
 from beamfem.assembly.connector_equilibrium import ConnectedBalance
 from beamfem.assembly.equations import STATICS
-from beamfem.assembly.load_values import LoadsAt
 from beamfem.assembly.scratch_memory import Arena
 from beamfem.assembly.system import System
 from beamfem.kernels import newton_record, record

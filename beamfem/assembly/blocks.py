@@ -10,8 +10,7 @@ from beamfem.assembly.law_pass import LawPass
 from beamfem.element.coordinates import Gradients
 from beamfem.element.element import Element
 from beamfem.kernels.block import NO_HISTORY, Block
-from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.mesh.element_types import Classes, likenesses
+from beamfem.mesh.beam_mesh import BeamMesh, Classes, likenesses
 from beamfem.model.imposed_strains import ImposedStrain
 
 PER_CLASS = tuple(name for name in Classes._fields if name != "kind")

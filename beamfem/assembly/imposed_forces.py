@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from beamfem.assembly.applied_loads import LoadsAt
 from beamfem.assembly.equations import STATICS
-from beamfem.assembly.load_values import LoadsAt
 from beamfem.assembly.system import System
 
 

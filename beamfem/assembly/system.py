@@ -8,14 +8,20 @@ from typing import Any, TypeVar
 import numpy as np
 
 from beamfem.assembly import equation_numbering as layout
-from beamfem.assembly.applied_loads import Actions, build_actions, grounded_springs, pressures_have_potential
+from beamfem.assembly.applied_loads import (
+    Actions,
+    LoadsAt,
+    body_loads,
+    build_actions,
+    grounded_springs,
+    pressures_have_potential,
+)
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.blocks import build_block
 from beamfem.assembly.connectors import Connectors, connectors_of
 from beamfem.assembly.element_group import make_group
 from beamfem.assembly.equation_numbering import Unknowns
 from beamfem.assembly.history_variables import History
-from beamfem.assembly.load_values import LoadsAt, body_loads
 from beamfem.assembly.prescribed import PrescribedCoordinate, inclined_rollers, prescribed_coordinates
 from beamfem.assembly.reference_state import stress_free
 from beamfem.assembly.rotating_vectors import rotating_vectors

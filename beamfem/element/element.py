@@ -9,10 +9,8 @@ import numpy as np
 from beamfem.cached_properties import cached_property
 from beamfem.element import lobatto
 from beamfem.element.coordinates import Coordinates, Gradients, ShearFree, labels
-from beamfem.element.field_shapes import require_field
-from beamfem.element.fields import Cubic, Field
+from beamfem.element.fields import Cubic, Field, Tables, require_field, tables_of
 from beamfem.element.forces import ElasticLine, Forces
-from beamfem.element.shape_tables import Tables, tables_of
 from beamfem.errors import InputError
 from beamfem.kernels import block
 from beamfem.quadrature import gauss

@@ -1,10 +1,10 @@
-"""Field bases r(x, y) = r0(x) + y d(x) on the unit interval, and as scikit-fem elements on line meshes."""
+"""Field bases r(x, y) = r0(x) + y d(x) on the unit interval, their tables, and fields as scikit-fem elements."""
 
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
 from math import factorial
-from typing import ClassVar, Protocol, runtime_checkable
+from typing import Any, ClassVar, NamedTuple, NoReturn, Protocol, runtime_checkable
 
 import numpy as np
 from skfem import Element, MappingAffine
@@ -13,7 +13,7 @@ from skfem.refdom import RefLine
 
 from beamfem.errors import InputError
 from beamfem.quadrature import gauss
-from beamfem.validation import count
+from beamfem.validation import called, count, fulfils, members, shown, text
 
 HIGHEST_ORDER = 8
 
@@ -348,3 +348,117 @@ class FieldElement(Element):
             scale = h if name == "r_x" else 1.0
             value[axis], grad[axis, 0] = scale * shape, scale * slope / h
         return (DiscreteField(value=value, grad=grad),)
+
+
+_VECTORS = (("r", "r_y"), ("r", "r_x", "r_y"))
+_ENDS = 1e-12
+
+
+def require_field(field: Any) -> None:
+    """Raise InputError if a field that is not of the package lacks members, or its tables have another shape."""
+    if type(field) in (Cubic, Lagrange):  # elements of the package are made in microseconds
+        return
+    if not fulfils(field, Field):
+        missing = [name for name in members(Field) if not hasattr(field, name)]
+        raise InputError(
+            "field of an element must be Cubic, Lagrange or an object with all members of "
+            "beamfem.element.fields.Field, got "
+            f"{shown(field)}{' without ' + ', '.join(missing) if missing else ': it is a class'}"
+        )
+    if type(field).__hash__ is not None:
+        try:
+            hash(field)
+        except TypeError as error:
+            _refuse(
+                field, f"elements are compared by their fields, but {error}; let it hold tuples, not arrays or lists"
+            )
+    text(f"name of the field {type(field).__name__}", field.name)
+    if not isinstance(field.vectors, tuple) or field.vectors not in _VECTORS:
+        _refuse(field, f"vectors must be {_VECTORS[0]} or {_VECTORS[1]}, got {shown(field.vectors)}")
+    for name in ("degree", "director_degree"):
+        count(f"{name} of the field {type(field).__name__}", getattr(field, name))
+    nodes = _nodes(field)
+    for name, orders in (("centreline", 3), ("director", 2)):
+        for order in range(orders):
+            shape_functions(field, name, nodes, order)
+    rule_of(field)
+
+
+def _nodes(field: Field) -> np.ndarray:
+    nodes: Any = field.nodes
+    valid = isinstance(nodes, np.ndarray) and nodes.dtype.kind in "fiu" and nodes.ndim == 1 and len(nodes) > 1
+    if not valid or not np.isfinite(nodes).all() or np.any(np.diff(nodes) <= 0.0):
+        _refuse(field, f"nodes must be an array of two or more increasing numbers, got {shown(nodes)}")
+    if np.abs(nodes[[0, -1]] - [0.0, 1.0]).max() > _ENDS:
+        _refuse(field, f"nodes must begin at 0 and end at 1, the ends of an element, got {nodes[0]:g} to {nodes[-1]:g}")
+    return nodes
+
+
+def shape_functions(field: Field, name: str, xi: np.ndarray, order: int) -> np.ndarray:
+    """Return the shape functions (n, k) of a field at xi (n,), or a derivative of them."""
+    kind = type(field).__name__
+    width = len(field.nodes) * (1 if name == "director" else len(field.vectors) - 1)
+    # a copy, as it may change its argument
+    table = np.asarray(called(f"{name} of the field {kind}", getattr(field, name), xi.copy(), order))
+    if table.shape != (len(xi), width) or table.dtype.kind != "f" or not np.isfinite(table).all():
+        said = f"{table.dtype} {table.shape}"
+        _refuse(
+            field,
+            f"{name}(xi, derivative={order}) of {len(xi)} points must be an array ({len(xi)}, {width}) of finite "
+            f"numbers, got {said if table.shape != (len(xi), width) or table.dtype.kind != 'f' else shown(table)}",
+        )
+    return table
+
+
+def rule_of(field: Field) -> tuple[np.ndarray, np.ndarray]:
+    """Return nodes and weights (nn,) of the quadrature of a field. Raises InputError for another shape."""
+    rule = called(f"director_rule of the field {type(field).__name__}", field.director_rule)
+    try:
+        points, weights = (np.asarray(part, dtype=float) for part in rule)
+        if points.shape == weights.shape == (len(field.nodes),) and np.isfinite([points, weights]).all():
+            return points, weights
+    except (TypeError, ValueError):
+        pass
+    number = len(field.nodes)
+    _refuse(field, f"director_rule() must return the nodes ({number},) and weights ({number},), got {shown(rule)}")
+
+
+def _refuse(field: object, what: str) -> NoReturn:
+    raise InputError(f"the field {type(field).__name__}: {what}")
+
+
+class Tables(NamedTuple):
+    """Shape functions of r0 and d, and their derivatives by xi, for the nodal vectors (nv,) of an element.
+
+    At the points of the energy: slope (nq, nv), first derivatives of r0 and d; curve (nq, nv), second derivatives of
+    r0; director (nq, nn), those of d at its nodes. At the points that integrate mass: r, d (points, nv), and their
+    products rr, dd, rd (points, nv nv), rd that of r0 and d plus its transpose.
+    """
+
+    slope: np.ndarray
+    curve: np.ndarray
+    director: np.ndarray
+    r: np.ndarray
+    d: np.ndarray
+    rr: np.ndarray
+    dd: np.ndarray
+    rd: np.ndarray
+
+
+def length_rule(field: Field) -> tuple[np.ndarray, np.ndarray]:
+    """Return points and weights on [0, 1] that integrate mass exactly on a straight prismatic beam."""
+    return gauss(max(field.degree, field.director_degree) + 1)
+
+
+def tables_of(field: Field, xi: np.ndarray) -> Tables:
+    """Return the shape functions of a field; xi (nq,): points of the energy."""
+    of_r, of_d, count = r_slots(field), d_slots(field), len(field.nodes) * len(field.vectors)
+    slope, curve = np.zeros((2, len(xi), count))
+    slope[:, of_r], slope[:, of_d] = field.centreline(xi, 1), field.director(xi, 1)
+    curve[:, of_r] = field.centreline(xi, 2)
+    at, _ = length_rule(field)
+    r, d = np.zeros((2, len(at), count))
+    r[:, of_r], d[:, of_d] = field.centreline(at), field.director(at)
+    rr, dd, rd = (one[:, :, None] * other[:, None, :] for one, other in ((r, r), (d, d), (r, d)))
+    products = (product.reshape(len(at), -1) for product in (rr, dd, rd + np.swapaxes(rd, 1, 2)))
+    return Tables(slope, curve, np.ascontiguousarray(field.director(xi)), r, d, *products)

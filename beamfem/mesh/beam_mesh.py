@@ -1,14 +1,128 @@
-"""The numbered mesh of one beam: its grid, and the coordinates of the model at its nodes."""
+"""The numbered mesh of one beam: grid, types of identical elements, coordinates of the model at its nodes."""
 
+from collections import defaultdict
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.element.coordinates import Gradients, labels
+from beamfem.element.element import Element
+from beamfem.kernels.block import ELASTIC_LINE
 from beamfem.mesh.beam_grid import Grid
-from beamfem.mesh.element_types import Classes, element_classes
 from beamfem.mesh.numbering import Nodes
+from beamfem.mesh.reference import energy_points, energy_stiffness_at, inertia_at, jacobians, length_points, scales
+from beamfem.model.beam import retardation_time
+from beamfem.value_keys import by_value
+
+_ALIKE = 1e-9  # of the longest element: elements whose lengths differ by less are in one class
+
+
+class Classes(NamedTuple):
+    """Data of nc classes; kind (ne,) is the class of each element, the rest as in `kernels.block.Block`."""
+
+    kind: np.ndarray
+    slope: np.ndarray
+    second: np.ndarray
+    scale: np.ndarray
+    jacobian: np.ndarray
+    weight: np.ndarray
+    stiffness: np.ndarray
+    reference: np.ndarray
+    mass: np.ndarray
+    gravity: np.ndarray
+    length: np.ndarray
+    damping: np.ndarray
+
+
+def element_classes(grid: Grid) -> Classes:
+    """Return the classes of a grid: by length on a straight prismatic beam, otherwise one per element."""
+    first, kind = _equal_elements(grid)
+    element, xi, weight = energy_points(grid, first)
+    count, size = len(first), len(element) // len(first)
+    stiffness, reference = energy_stiffness_at(grid, element, xi)
+    scale = scales(grid.beam.element, grid.lengths[first])
+    mass, gravity, length = _inertia(grid, first, scale)
+    damping = np.full(count, retardation_time(grid.beam.section_at(0.0), grid.beam.material))
+
+    def by_class(values: np.ndarray) -> np.ndarray:
+        return values.reshape(count, size, *values.shape[1:])
+
+    jacobian, jacobian_xi = map(by_class, jacobians(grid, element, xi))
+    slope, second = _derivatives(grid.beam.element, scale, jacobian, jacobian_xi)
+    weight, stiffness, reference = map(by_class, (weight, stiffness, reference))
+    shapes = kind, slope, second, scale, jacobian
+    return Classes(*shapes, weight, stiffness, reference, mass, gravity, length, damping)
+
+
+def _derivatives(
+    element: Element, scale: np.ndarray, jacobian: np.ndarray, jacobian_xi: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return dN/ds (nc, nq, nv) at the points of the energy, and d2N/ds2, empty except for the elastic line.
+
+    scale (nc, nv): scale of the nodal vectors, included in N; jacobian, jacobian_xi (nc, nq): ds/dxi [m] and its
+    derivative.
+    """
+    table, curved = element.tables.slope, element.tables.curve
+    scaled, inverse = scale[:, None, :], 1.0 / jacobian[:, :, None]
+    second = np.empty((len(scale), 0, 0))
+    if element.forces.code == ELASTIC_LINE:
+        second = np.ascontiguousarray((curved - jacobian_xi[:, :, None] * inverse * table) * scaled * inverse**2)
+    return np.ascontiguousarray(table * scaled * inverse), second
+
+
+def _equal_elements(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+    """Return the first element (nc,) of each class and the class (ne,) of each element."""
+    if not (grid.straight and grid.beam.prismatic):
+        every = np.arange(grid.elements)
+        return every, every
+    lengths = grid.lengths
+    longest = lengths.max()
+    if lengths.min() >= (1.0 - 0.5 * _ALIKE) * longest:
+        return np.zeros(1, dtype=np.int64), np.zeros(grid.elements, dtype=np.int64)
+    rounded = np.round(lengths / (_ALIKE * longest))
+    _, first, kind = np.unique(rounded, return_index=True, return_inverse=True)
+    return first, kind.astype(np.int64)
+
+
+def likenesses(grids: Sequence[Grid]) -> list[Hashable]:
+    """Return for each grid a key that straight prismatic beams of one element share if their classes are equal.
+
+    Lengths are compared to a relative 1e-12. Any other beam has its number as key.
+    """
+    keys: list[Hashable] = list(range(len(grids)))
+    if len(grids) == 1:
+        return keys
+    sized: defaultdict[int, list[int]] = defaultdict(list)
+    for number, grid in enumerate(grids):
+        if grid.straight and grid.beam.prismatic:
+            sized[len(grid.parameter)].append(number)
+    for numbers in sized.values():
+        rate = np.array([grids[i].rate for i in numbers])[:, None]
+        lengths = rate * np.diff(np.array([grids[i].parameter for i in numbers]), axis=1)
+        unit = 2.0 ** np.ceil(np.log2(lengths.max(axis=1)))
+        rounded = np.round(lengths / unit[:, None], 12)
+        for i, size, row in zip(numbers, unit.tolist(), rounded, strict=True):
+            beam = grids[i].beam
+            keys[i] = size, row.tobytes(), by_value(beam.section), by_value(beam.material)
+    return keys
+
+
+def _inertia(grid: Grid, chosen: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return mass (nc, nv, nv), load of a uniform acceleration (nc, nv) and load of a uniform force (nc, nv)."""
+    tables = grid.beam.element.tables
+    where, at, weight = length_points(grid, chosen)
+    inertia = inertia_at(grid, where, at, weight)
+    count, points = len(chosen), len(tables.r)
+    mass, first, rotary = inertia.reshape(count, points, 3).transpose(2, 0, 1)
+    matrix, gravity = mass @ tables.rr + rotary @ tables.dd, mass @ tables.r
+    if first.any():
+        matrix += first @ tables.rd
+        gravity += first @ tables.d
+    matrix = matrix.reshape(count, *scale.shape[1:], -1) * (scale[:, :, None] * scale[:, None, :])
+    return matrix, gravity * scale, weight.reshape(count, points) @ tables.r * scale
 
 
 @dataclass(frozen=True, eq=False)

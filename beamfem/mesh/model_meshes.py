@@ -1,7 +1,7 @@
 """The meshes of all beams of a model, with the numbers of its coordinates."""
 
 from collections import defaultdict
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, fields, replace
 from math import prod
 from typing import TYPE_CHECKING, NamedTuple
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from beamfem.cached_properties import cached_property
+from beamfem.element.axis import cross
 from beamfem.element.coordinates import labels
 from beamfem.element.element import Element
 from beamfem.errors import InputError
@@ -16,16 +17,82 @@ from beamfem.installed_memory import USABLE_FRACTION, in_gib, installed_memory
 from beamfem.kernels.block import NO_HISTORY
 from beamfem.mesh.beam_grid import Grid, make_grids
 from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.mesh.check_body import require_body
 from beamfem.mesh.numbering import first_of_group, groups, number_nodes
+from beamfem.mesh.reference import curvature, reference_axis, sections_at, stations
 from beamfem.model.along_beam import AlongBeam, functions_along, kinks_along
 from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import remembered, uses_rotations
 from beamfem.model.supports import PointSupport
+from beamfem.section.protocol import CrossSection, HasParts
 from beamfem.value_keys import by_value
 
 if TYPE_CHECKING:
     from beamfem.model.model import Model
+
+_SAMPLES = 33  # along an element
+
+
+def require_body(grid: Grid, unit: Callable[[str], str]) -> None:
+    """Raise InputError if a face of a section of known shape lies at or beyond the centre of curvature.
+
+    The axis and its sections are interpolated between nodes, so elements that turn by too large an angle are refused as
+    well. unit: see `Model.unit`.
+    """
+    if grid.straight:
+        return
+    element, xi = stations(grid)
+    section = grid.beam.section
+    if isinstance(section, CrossSection):
+        faces = np.array(_faces(section, grid))
+    else:
+        faces = np.array([_faces(own, grid) for own in sections_at(grid, element, xi)])
+    bend = curvature(grid, element, xi)
+    reach = (bend[:, None] * faces).max(axis=1)
+    worst = int(np.argmax(reach))
+    if reach[worst] >= 1.0:
+        at, metre = float(grid.arc_length(element, xi)[worst]), unit("m")
+        face = float(np.broadcast_to(faces, (len(bend), 2))[worst, int(bend[worst] > 0.0)])
+        raise InputError(
+            f"at arc length {at:g} {metre} the axis of {grid.beam!r} has a radius of curvature of "
+            f"{1.0 / abs(bend[worst]):g} {metre}, and its section reaches {abs(face):g} {metre} towards the centre: "
+            "the body would overlap itself; take a larger radius or a lower section"
+        )
+    _require_short(grid, element, xi, faces, unit)
+
+
+def _require_short(
+    grid: Grid, element: np.ndarray, xi: np.ndarray, faces: np.ndarray, unit: Callable[[str], str]
+) -> None:
+    """Raise InputError if the interpolated body has det J = (r0' + y d') x d <= 0.
+
+    This is checked on the axis and, for forces integrated over the body, at its faces (2,) or (n, 2).
+    """
+    axis = reference_axis(grid, element, xi)
+    heights = np.zeros((len(xi), 3))  # of both faces and of the axis
+    if grid.beam.element.forces.fills_body:
+        heights[:, :2] = faces
+    volume = (cross(axis.r_s, axis.d)[:, None] + heights * cross(axis.d_s, axis.d)[:, None]).min(axis=1)
+    worst = int(np.argmin(volume))
+    if volume[worst] <= 0.0:
+        elements = np.full(_SAMPLES, element[worst])
+        along = np.linspace(0.0, 1.0, _SAMPLES)
+        arc = grid.arc_length(elements, along)
+        turn = np.degrees(np.abs(np.trapezoid(curvature(grid, elements, along), arc)))
+        raise InputError(
+            f"elements of {grid.beam!r} are too long: that from arc length {arc[0]:g} {unit('m')} to {arc[-1]:g} "
+            f"{unit('m')} turns by {turn:.0f} degrees, and the sections that it interpolates between its nodes "
+            "overlap; take more elements"
+        )
+
+
+def _faces(section: CrossSection, grid: Grid) -> tuple[float, float]:
+    """Return lower and upper y [m] of a section, zero if its height is unknown and forces do not integrate over it."""
+    if grid.beam.element.forces.fills_body:
+        return section.bounds
+    parts = section.parts(grid.beam.material) if isinstance(section, HasParts) else ()
+    if not parts or not all(part.outline.known for part in parts):
+        return 0.0, 0.0
+    return parts[0].outline.low, parts[-1].outline.high
 
 
 def required_nodes(model: "Model") -> list[list[tuple[float, str]]]:

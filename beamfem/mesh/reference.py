@@ -7,9 +7,8 @@ import numpy as np
 from beamfem.element.axis import Axis, cross, dot
 from beamfem.element.coordinates import across
 from beamfem.element.element import Element
-from beamfem.element.fields import d_slots, r_slots, slots
+from beamfem.element.fields import d_slots, length_rule, r_slots, slots
 from beamfem.element.forces import Forces
-from beamfem.element.shape_tables import length_rule
 from beamfem.element.structural import section_frame
 from beamfem.errors import InputError
 from beamfem.mesh.beam_grid import Grid

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import LinAlgError
 
+from beamfem.assembly.applied_loads import LoadsAt
 from beamfem.assembly.differences import differentiated
 from beamfem.assembly.equations import ROUND_OFF, STATICS, linearise, residual, sizes, with_stresses
 from beamfem.assembly.imposed_forces import imposed_forces
-from beamfem.assembly.load_values import LoadsAt
 from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.assembly.system import Proven, System
 

@@ -22,10 +22,10 @@ from beamfem.model.missing_joints import in_words, unjoined_ends
 from beamfem.model.model import Model
 from beamfem.results import locking
 from beamfem.results.beam_stress import peak_stress
-from beamfem.results.element_shapes import ROWS, heights, pairs, rows_looked_at
 from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.finding import Finding
 from beamfem.results.imposed_measures import imposed_measures
+from beamfem.results.locking import ROWS, heights, pairs, rows_looked_at
 from beamfem.results.nodal import axis, nodal_vectors
 from beamfem.results.postprocess import nodal_rotations
 from beamfem.results.solution_system import loading

@@ -4,8 +4,7 @@ from typing import NoReturn
 
 import numpy as np
 
-from beamfem.element.field_shapes import require_field, rule_of, shape_functions
-from beamfem.element.fields import Field
+from beamfem.element.fields import Field, require_field, rule_of, shape_functions
 
 _PLACES = np.array([0.0371, 0.2718, 0.4142, 0.5772, 0.8319, 0.9634])  # arbitrary, inside of an element
 _STEP = 1e-5  # of central differences

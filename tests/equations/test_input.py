@@ -7,7 +7,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.installed_memory import installed_memory
-from beamfem.solve.start import check_states_memory as memory
+from beamfem.solve.start import start_checks as memory
 
 LINE = bf.Line((0, 0), (1, 0))
 SECTION = bf.Rectangle(0.01, 0.01)

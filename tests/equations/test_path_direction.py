@@ -9,7 +9,7 @@ from random_models import random_recipe
 
 import beamfem as bf
 from beamfem.assembly.system import system_of
-from beamfem.solve.statics.skipped_limit_points import leaves_path
+from beamfem.solve.statics.load_steps import leaves_path
 
 
 def arch(angle=0.0, unit=1.0, sign=1.0):

@@ -16,7 +16,7 @@ from beamfem.forms import axis_basis, nodal_numbers, pressure_load
 from beamfem.results.postprocess import nodal_vectors, nodal_velocities
 from beamfem.solve.newton.iteration import NewtonResult
 from beamfem.solve.newton.newton import solve_equilibrium
-from beamfem.solve.statics.skipped_limit_points import skips_limit_points
+from beamfem.solve.statics.load_steps import skips_limit_points
 from beamfem.solve.statics.static_record import StaticRecord
 
 STIFF = bf.Section.from_stiffness(1e9, 1e9, 1e3, 1.0, 1.0)

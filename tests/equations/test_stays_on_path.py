@@ -12,7 +12,7 @@ from shooting import Member, solved
 import beamfem as bf
 from beamfem.assembly.system import System
 from beamfem.solve.newton.iteration import NewtonResult, Termination
-from beamfem.solve.statics.skipped_limit_points import skips_limit_points
+from beamfem.solve.statics.load_steps import skips_limit_points
 from beamfem.solve.statics.static_record import StaticRecord
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)

@@ -22,9 +22,7 @@ from beamfem.solve.modes.lowest_modes import WRONG, lowest_pairs
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.modes.rigid_modes import unresisted
-from beamfem.solve.start.check_states_memory import require_fits_memory
-from beamfem.solve.start.equilibrium_check import left_over
-from beamfem.solve.start.multipliers import refuse_dampers, refuse_multipliers
+from beamfem.solve.start.start_checks import left_over, refuse_dampers, refuse_multipliers, require_fits_memory
 from beamfem.solve.start.start_state import resting_state
 from beamfem.tables import as_pandas
 from beamfem.validation import count as whole_number

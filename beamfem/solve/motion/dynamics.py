@@ -24,9 +24,9 @@ from beamfem.solve.motion.period_error import detuned
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.time_marching import Last, Record, initial_acceleration, march, new_statistics
 from beamfem.solve.motion.time_steps import SIDE, stretches
-from beamfem.solve.start.check_states_memory import require_memory
 from beamfem.solve.start.functions_of_time import functions_of_time, name_unresolved
 from beamfem.solve.start.partial_results import kept
+from beamfem.solve.start.start_checks import require_memory
 from beamfem.solve.start.start_state import last_state, start_state, transferred_turns
 from beamfem.validation import count, positive, shown
 

@@ -22,8 +22,8 @@ from beamfem.solve.paths.branches import leave
 from beamfem.solve.paths.path_record import PathRecord
 from beamfem.solve.start.functions_of_time import SAME, Jump, functions_of_time, jumps_between, kinks_between
 from beamfem.solve.start.mechanisms import require_support
-from beamfem.solve.start.multipliers import refuse_memory, refuse_multipliers
 from beamfem.solve.start.partial_results import kept
+from beamfem.solve.start.start_checks import refuse_memory, refuse_multipliers
 from beamfem.solve.statics.preload import first_equilibrium, nothing_acts
 from beamfem.validation import count, finite, function_of_one, optional, positive, shown
 

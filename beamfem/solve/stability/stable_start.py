@@ -10,7 +10,7 @@ from beamfem.results.solution import Solution, State
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.newton.newton import solve_equilibrium
 from beamfem.solve.stability.stability import unstable_directions
-from beamfem.solve.start.equilibrium_check import left_over
+from beamfem.solve.start.start_checks import left_over
 from beamfem.solve.start.start_state import resting_state
 from beamfem.solve.statics.preload import first_equilibrium
 

@@ -16,7 +16,7 @@ from beamfem.model.model import Model
 from beamfem.results import postprocess
 from beamfem.results.check_arrays import require_finite
 from beamfem.results.solution import Solution, State
-from beamfem.solve.start.equilibrium_check import left_over
+from beamfem.solve.start.start_checks import left_over
 from beamfem.value_keys import equal
 
 _SAME_PLACE = 1e-9  # of the length of a beam: tolerance between positions of nodes

@@ -23,8 +23,8 @@ from beamfem.solve.start.functions_of_time import (
     warn_between_rows,
 )
 from beamfem.solve.start.mechanisms import require_support
-from beamfem.solve.start.multipliers import refuse_memory, require_independent
 from beamfem.solve.start.partial_results import kept
+from beamfem.solve.start.start_checks import refuse_memory, require_independent
 from beamfem.solve.statics.load_jumps import cross_jump
 from beamfem.solve.statics.load_steps import SAME, Snap, Unstable, reach
 from beamfem.solve.statics.preload import first_equilibrium, nothing_acts

@@ -1,0 +1,154 @@
+"""Checks at the start of a solve: multipliers, equilibrium, memory."""
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.assembly.connectors import damps_at_rest
+from beamfem.assembly.equations import STATICS, linearise, residual
+from beamfem.assembly.system import System
+from beamfem.errors import InputError
+from beamfem.installed_memory import USABLE_FRACTION, in_gib, installed_memory
+from beamfem.linalg.lapack import qr
+from beamfem.precision.roundoff import digits_of, load_size, remainder, row_floors
+
+_DEPENDENT = 1e-10  # of a condition of unit size: its part that is independent of all others
+
+
+def refuse_multipliers(system: System, analysis: str) -> None:
+    """Raise InputError if a connector has unknowns of its own."""
+    for item in system.connectors.items:
+        if len(item.own):
+            raise InputError(
+                f"{analysis} does not support connectors with unknowns of their own, such as {item.name}; solve_static "
+                "and simulate do. A stiff spring in its place has none"
+            )
+
+
+def refuse_memory(system: System, analysis: str) -> None:
+    """Raise InputError if a connector or a section law has history, so that states do not depend on the load alone."""
+    for kind, name in system.history.holders:
+        raise InputError(
+            f"{analysis} does not support {kind} with history, such as {name}; solve_static and simulate do"
+        )
+
+
+def refuse_dampers(system: System) -> None:
+    """Raise InputError if the force of a connector depends on velocities about rest, which free vibrations neglect."""
+    for item in system.connectors.items:
+        if damps_at_rest(item):
+            raise InputError(
+                f"solve_modes finds undamped vibrations, but the force of {item.name} depends on velocities; leave it "
+                "out, or let simulate show how the motion decays"
+            )
+
+
+def require_independent(system: System, p: np.ndarray) -> None:
+    """Raise InputError if conditions of connectors, supports and joints are redundant in a state p (n,)."""
+    multipliers = len(system.connectors.multipliers)
+    if multipliers == 0:
+        return
+    zeros = np.zeros(len(p))
+    tangent = linearise(system, p, zeros, zeros, 0.0, STATICS)[1].sparse(system.rotated)
+    scale = system.scale[system.free_dofs][:-multipliers]
+    rows = (tangent[-multipliers:, :-multipliers].toarray() * scale).T
+    sizes = np.linalg.norm(rows, axis=0)
+    diagonal = np.abs(np.diagonal(qr(rows / np.where(sizes > 0.0, sizes, 1.0), mode="r", pivoting=True)[0]))
+    if len(diagonal) < multipliers or np.any(diagonal <= _DEPENDENT):
+        raise InputError(dependent(system))
+
+
+def dependent(system: System) -> str:
+    """Return the message that conditions of connectors are linearly dependent."""
+    names = ", ".join(sorted({item.name for item in system.connectors.items if len(item.own)}))
+    return (
+        f"conditions of connectors ({names}) are redundant, among themselves or with supports and joints: their "
+        "multipliers are not unique; leave out those that are not needed"
+    )
+
+
+_TOLERANCE = 1e-6  # of the largest force: largest residual of an equilibrium
+_SAME = 1e-9  # of the movement of a state: a smaller correction does not change the results
+_LAST_DIGIT = 8.0 * np.finfo(float).eps  # of the size of the model
+_CANCELLED = 1e4 * np.finfo(float).eps  # round-off of strains due to positions, up to this for fields of high order
+
+
+def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
+    """Return the largest unbalanced force [N, N m] in the state p (n,); 0 if it is small enough."""
+    zeros = np.zeros_like(p)
+    unbalanced, tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)
+    remaining = np.abs(system.along_free(unbalanced))
+    acting = [float(np.abs(values).max(initial=0.0)) for values in system.point_values(load_factor)]
+    if system.imposing(load_factor).any():
+        acting.append(load_size(system, system.loads_at(load_factor)) / system.extent)
+    force = max([float(np.abs(unbalanced).max()), *acting])
+    reach = max([float(np.abs(p).max()), *(beam.curve.length for beam in system.model.beams)])
+    round_off = _CANCELLED * reach * np.asarray(abs(tangent.sparse(system.rotated)).sum(axis=1))
+    if np.all(remaining <= _TOLERANCE * force):
+        return 0.0
+    # small loads may be below the round-off of stiff rows, but still bend a slender beam
+    if np.all(remaining <= np.maximum(_TOLERANCE * force, round_off)) and _sure(system, p, load_factor):
+        return 0.0
+    return float(remaining.max())
+
+
+def _sure(system: System, p: np.ndarray, load_factor: float) -> bool:
+    """Return whether a state (n,) balances the loads except for its last digits; without loads, all rows count."""
+    if not system.loads_at(load_factor).any:
+        zeros = np.zeros_like(p)
+        unbalanced = np.abs(system.along_free(residual(system, p, zeros, zeros, load_factor)))
+        if np.all(unbalanced <= row_floors(system, p)[system.free_dofs]):
+            return True
+    if digits_of(system, p, load_factor) >= 1.0:
+        return True
+    if remainder(system, p, load_factor).digits >= 1.0:
+        return True
+    # where a structure was unloaded, no force is left to compare with, but the movement that is missing may be nothing
+    moved = float(np.max(np.abs(p - system.reference) / system.scale, initial=0.0))
+    return _missing(system, p, load_factor) <= max(_SAME * moved, _LAST_DIGIT)
+
+
+def _missing(system: System, p: np.ndarray, load_factor: float) -> float:
+    """Return the size of the correction, relative to the model, that balances a state (n,); inf if none does."""
+    zeros, free = np.zeros_like(p), system.free_dofs
+    unbalanced, tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)
+    try:
+        step = tangent.factorised(system.rotated).solve(-unbalanced[free])
+    except LinAlgError:
+        return np.inf
+    return float(np.max(np.abs(step) / system.scale[free], initial=0.0))
+
+
+_STATE = 3 * 8  # bytes of a coordinate: p, p', p''
+_STEP = 8 * 8  # bytes of a step, stored or not: its time, prescribed values and loads
+
+
+def require_memory(coordinates: int, duration: float, step: float, save_every: int) -> None:
+    """Raise InputError if the states of a motion need more memory [bytes] than this computer has."""
+    steps = duration / step
+    memory = installed_memory()
+    needed = steps * (_STATE * coordinates / save_every + _STEP)
+    if memory is None or needed <= USABLE_FRACTION * memory:
+        return
+    room = USABLE_FRACTION * memory - steps * _STEP
+    message = (
+        f"{steps:.3g} steps of {coordinates} coordinates, of which every {_ordinal(save_every)} is kept, need "
+        f"{in_gib(needed)}, and this computer has {in_gib(memory)}"
+    )
+    if room > 0.0:
+        enough = int(-(-(steps * _STATE * coordinates) // room))
+        raise InputError(f"{message}; save_every={enough} would fit")
+    raise InputError(f"{message}; take a larger step, or a shorter duration and continue from the last state")
+
+
+def require_fits_memory(states: int, coordinates: int) -> None:
+    """Raise InputError if this many states of a mode need more memory [bytes] than this computer has."""
+    memory, needed = installed_memory(), float(states) * 2 * _STATE * coordinates
+    if memory is not None and needed > USABLE_FRACTION * memory:
+        raise InputError(
+            f"{states:.3g} frames of {coordinates} coordinates need {in_gib(needed)}, and this computer has "
+            f"{in_gib(memory)}; take fewer"
+        )
+
+
+def _ordinal(number: int) -> str:
+    return "one" if number == 1 else f"{number}th"

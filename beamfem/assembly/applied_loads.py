@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from beamfem.assembly.equation_numbering import Unknowns
-from beamfem.assembly.prescribed import COORDINATES
+from beamfem.assembly.model_coordinates import COORDINATES
 from beamfem.cached_properties import cached_property
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots

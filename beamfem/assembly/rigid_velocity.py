@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.assembly.reference_state import Columns, columns_of, coordinate_columns
+from beamfem.assembly.model_coordinates import Columns, columns_of, coordinate_columns
 from beamfem.assembly.system import System
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.validation import convert, finite, squared, vector

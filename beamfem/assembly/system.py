@@ -22,8 +22,12 @@ from beamfem.assembly.connectors import Connectors, connectors_of
 from beamfem.assembly.element_group import make_group
 from beamfem.assembly.equation_numbering import Unknowns
 from beamfem.assembly.history_variables import History
-from beamfem.assembly.prescribed import PrescribedCoordinate, inclined_rollers, prescribed_coordinates
-from beamfem.assembly.reference_state import stress_free
+from beamfem.assembly.model_coordinates import (
+    PrescribedCoordinate,
+    inclined_rollers,
+    prescribed_coordinates,
+    stress_free,
+)
 from beamfem.assembly.rotating_vectors import rotating_vectors
 from beamfem.assembly.solver_table import SolverTable
 from beamfem.assembly.strain_rates import StrainRates, strain_rates

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem.assembly.equations import residual
-from beamfem.assembly.prescribed import COORDINATES, coordinate_of
+from beamfem.assembly.model_coordinates import COORDINATES, coordinate_of
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.model.beam import Point

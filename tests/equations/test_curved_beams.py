@@ -7,7 +7,7 @@ from test_kernels import dense
 
 import beamfem as bf
 from beamfem.assembly.equations import linearise, residual
-from beamfem.assembly.reference_state import coordinate_columns
+from beamfem.assembly.model_coordinates import coordinate_columns
 from beamfem.assembly.system import System
 from beamfem.mesh.reference import energy_points, reference_axis
 from beamfem.results.postprocess import axis, nodal_vectors, nodal_velocities, strain_energy

@@ -7,7 +7,7 @@ from scipy.linalg import solve_banded
 
 import beamfem as bf
 from beamfem.assembly.equations import linearise, predicted_stresses
-from beamfem.assembly.reference_state import coordinate_columns
+from beamfem.assembly.model_coordinates import coordinate_columns
 from beamfem.assembly.system import System
 from beamfem.linalg.tangent import BandTangent, _solve_pivoted
 from beamfem.mesh.reference import stations

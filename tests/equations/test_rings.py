@@ -8,7 +8,7 @@ from scipy.integrate import quad
 
 import beamfem as bf
 from beamfem.assembly.equations import residual
-from beamfem.assembly.reference_state import coordinate_columns
+from beamfem.assembly.model_coordinates import coordinate_columns
 from beamfem.assembly.system import System
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)

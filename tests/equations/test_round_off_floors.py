@@ -5,7 +5,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.assembly.equations import STATICS, linearise
-from beamfem.assembly.reference_state import coordinate_columns
+from beamfem.assembly.model_coordinates import coordinate_columns
 from beamfem.assembly.system import System
 from beamfem.precision.roundoff import _digits, remainder
 

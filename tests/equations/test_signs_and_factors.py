@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly.reference_state import coordinate_columns
+from beamfem.assembly.model_coordinates import coordinate_columns
 from beamfem.assembly.system import System
 from beamfem.mesh.reference import reference_axis
 from beamfem.results.postprocess import axis, green_strain, nodal_vectors

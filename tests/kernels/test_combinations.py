@@ -9,7 +9,7 @@ from integrated import Cantilever
 
 import beamfem as bf
 from beamfem.assembly.equations import residual
-from beamfem.assembly.reference_state import coordinate_columns
+from beamfem.assembly.model_coordinates import coordinate_columns
 from beamfem.assembly.system import System
 from beamfem.results.postprocess import nodal_vectors
 from beamfem.results.solution import Solution, Statistics

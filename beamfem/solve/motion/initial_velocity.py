@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from beamfem.assembly.prescribed import coordinate_of
+from beamfem.assembly.model_coordinates import coordinate_of
 from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.assembly.system import System
 from beamfem.element.axis import cross, dot

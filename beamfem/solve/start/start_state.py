@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.assembly.reference_state import coordinate_columns
+from beamfem.assembly.model_coordinates import coordinate_columns
 from beamfem.assembly.system import System, system_of
 from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import across

@@ -192,3 +192,14 @@ def test_a_circle_is_found(tmp_path, monkeypatch):
     monkeypatch.setattr("test_layers.ROOT", tmp_path)
     with pytest.raises(graphlib.CycleError):
         graphlib.TopologicalSorter({Path(n): imported_files(Path(n)) for n in ("first.py", "second.py")}).prepare()
+
+
+@pytest.mark.parametrize("folder", ["solvers", "physics", "parts"])
+def test_tests_of_what_users_see_use_the_public_interface_only(folder):
+    """Public are the names of `beamfem` and its modules for users' parts, tests and forms."""
+    public = {"beamfem", *(f"beamfem.{name}" for name in ("curves", "errors", "forms", "section", "testing"))}
+    for file in sorted((Path(__file__).parents[1] / folder).glob("test_*.py")):
+        nodes = ast.walk(ast.parse(file.read_text()))
+        names = {node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module}
+        inner = {name for name in names if name.split(".")[0] == "beamfem"} - public
+        assert not inner, f"{file.name} imports {inner}"

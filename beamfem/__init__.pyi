@@ -84,6 +84,11 @@ from .model.supports import Roller as Roller
 from .model.supports import Spring as Spring
 from .model.time_functions import Interpolated as Interpolated
 from .model.time_functions import Piecewise as Piecewise
+from .parts.link import Link as Link
+from .parts.point_mass import PointMass as PointMass
+from .parts.point_mass import RigidBody as RigidBody
+from .parts.spring_damper import SpringDamper as SpringDamper
+from .parts.torsion_spring import TorsionSpring as TorsionSpring
 from .results.beam_stress import BeamStress as BeamStress
 from .results.path import Bifurcation as Bifurcation
 from .results.path import Path as Path

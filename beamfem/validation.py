@@ -62,6 +62,14 @@ def positive(name: str, value: Any) -> float:
     return number
 
 
+def not_negative(name: str, value: Any) -> float:
+    """Return `value` as a float of at least zero, or raise InputError naming it."""
+    number = finite(name, value)
+    if number < 0.0:
+        raise InputError(f"{name} must not be negative, got {number}")
+    return number
+
+
 def count(name: str, value: Any) -> int:
     """Return `value` as an integer of at least one, or raise InputError naming it."""
     number = whole(name, value)

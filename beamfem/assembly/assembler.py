@@ -8,10 +8,12 @@ import numpy as np
 
 from beamfem.assembly.applied_loads import LoadsAt
 from beamfem.assembly.callbacks import Deferred
+from beamfem.assembly.connection_table import ConnectionTable
 from beamfem.assembly.element_group import ElementGroup
 from beamfem.assembly.scratch_memory import Arena, Scratch, new
 from beamfem.kernels import element_passes, model_passes, node_passes, record
 from beamfem.kernels.block import Springs
+from beamfem.kernels.connection_passes import add_connections
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.simd import WIDTH
 
@@ -42,12 +44,14 @@ class Work:
 
 
 class Equations:
-    """Groups of elements and springs in the form that compiled code expects, without workspace.
+    """Groups of elements, springs and parts at points in the form that compiled code expects, without workspace.
 
     table: see `kernels.record`; springs: the arrays that the table points to.
     """
 
-    def __init__(self, groups: Sequence[ElementGroup], springs: Springs, size: int) -> None:
+    def __init__(
+        self, groups: Sequence[ElementGroup], springs: Springs, size: int, connections: ConnectionTable | None = None
+    ) -> None:
         self.groups, self.size = tuple(groups), size
         kinds = (np.int64, float, float, np.int64)
         self.springs = tuple(
@@ -58,6 +62,11 @@ class Equations:
         self.table[record.SPRINGS] = len(self.springs[0])
         for number, values in enumerate(self.springs):
             self.table[record.SPRING_DOF + number] = address_of(values)
+        self.connections = connections
+        if connections is not None and len(connections.table):
+            self.table[record.CONNECTIONS] = len(connections.table)
+            self.table[record.CONNECTION_TABLES] = address_of(connections.table)
+            self.table[record.ADD_CONNECTIONS] = add_connections.address
 
 
 class Assembler:

@@ -50,7 +50,7 @@ class BandWorkspace:
         self.assembler.place_at(states, addresses.pop("residual"), addresses[record.ROWS], arrays[record.ROWS].size)
         routines = system.solver_table.routines(moving=False)
         self._connected = None
-        if system.connectors.items:
+        if system.called.items:
             own = self.p, self.residual, arrays[record.ROWS]
             self._connected = ConnectedBalance(system, self.assembler, *own)
             routines = routines.copy()

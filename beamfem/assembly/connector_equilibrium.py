@@ -46,7 +46,7 @@ class ConnectedBalance:
         """See `model_passes.balance`."""
         try:
             model_passes.balance.compiled(equations)
-            connectors, motion = self._system.connectors, (self._p, self._zeros, self._zeros)
+            connectors, motion = self._system.called, (self._p, self._zeros, self._zeros)
             connectors.add_forces(self._residual, motion, self.load_factor)
             if self._assembler.table[record.TANGENT]:
                 add_coupled(self._system, self._matrix, connectors.tangents(motion, self.load_factor, STATICS))

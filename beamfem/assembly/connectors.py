@@ -8,10 +8,13 @@ from scipy.linalg import LinAlgError
 
 from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
+from beamfem.kernels.connection_passes import GENERATED
 from beamfem.model.contribution import At, Contribution, Remembering, remembered, uses_rotations
 from beamfem.model.load_base import factor
 from beamfem.model.model import Model
-from beamfem.validation import called
+from beamfem.parts.at_points import AtPoints
+from beamfem.physics.connections import Connection
+from beamfem.validation import called, of_package
 
 COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted
 
@@ -55,6 +58,18 @@ class Connector:
     @property
     def name(self) -> str:
         return type(self.item).__name__
+
+    @cached_property
+    def compiled(self) -> Connection | None:
+        """The definition by which compiled code evaluates it, None for a user-defined contribution."""
+        item = self.item
+        return item.connection if isinstance(item, AtPoints) and of_package(type(item)) else None
+
+    @cached_property
+    def data(self) -> np.ndarray:
+        """Numbers of a compiled part, see `physics.connections`."""
+        assert isinstance(self.item, AtPoints)
+        return np.array(self.item.data(self.reference), dtype=float)
 
     @property
     def per_point(self) -> int:
@@ -153,6 +168,8 @@ class Connector:
 
         Raises LinAlgError if it is not finite.
         """
+        if self.compiled is not None:
+            return self._compiled_tangent(self.compiled, motion, gravity, weights)
         alone, columns = self.alone, []
         for number in range(len(self.dofs) + len(self.own)):
             moved = p, v, a = self.own_motion(motion)
@@ -163,6 +180,30 @@ class Connector:
         if not np.isfinite(result).all():
             raise LinAlgError(f"force of {self.name} is not finite")
         return result
+
+    def force_in(self, motion: Motion, time: float, gravity: np.ndarray) -> np.ndarray:
+        """Return the force (d + k,) in a real motion."""
+        if self.compiled is None:
+            return self.force(self.at(motion, time, gravity)).real
+        result = np.empty(len(self.all))
+        GENERATED[self.compiled.name].force(*self._numbers(motion, gravity), result)
+        return result
+
+    def _compiled_tangent(
+        self, connection: Connection, motion: Motion, gravity: np.ndarray, weights: Sequence[float]
+    ) -> np.ndarray:
+        result = np.empty((len(self.all), len(self.all)))
+        GENERATED[connection.name].tangent(*self._numbers(motion, gravity), *map(float, weights), result)
+        if not np.isfinite(result).all():
+            raise LinAlgError(f"force of {self.name} is not finite")
+        return result
+
+    def _numbers(self, motion: Motion, gravity: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Return the arguments of compiled forces and tangents."""
+        q, v, a = (values[self.dofs] for values in motion)
+        angles = q[2::3] if self.per_point == 3 else np.zeros(len(self.reference))
+        turned = np.column_stack([np.cos(angles), np.sin(angles)])
+        return q, v, a, motion[0][self.own], turned, self.data, gravity
 
 
 WIDTH = 1e-7  # of the central differences to which complex steps are compared, relative to the natural units
@@ -297,7 +338,7 @@ class Connectors:
         """Add the forces of all connectors to a residual (n,)."""
         gravity = self.gravity(time) if self.items else np.zeros(2)
         for item in self.items:
-            np.add.at(residual, item.all, item.force(item.at(motion, time, gravity)).real)
+            np.add.at(residual, item.all, item.force_in(motion, time, gravity))
 
     def tangents(self, motion: Motion, time: float, weights: Sequence[float]) -> list[np.ndarray]:
         """Return the tangent (d + k, d + k) of each connector for weights of p, p' and p''."""
@@ -376,7 +417,7 @@ class Connectors:
 
 def connectors_of(model: Model, static: bool) -> Connectors:
     """Return the connectors of a model with their coordinates. Raises InputError for wrong shapes."""
-    if not model.connectors:
+    if not model.at_points:
         return Connectors(model, static, ())
     if "connectors" not in model.tables:  # checked once for statics and motions
         model.tables["connectors"] = _checked_connectors(model)
@@ -386,8 +427,8 @@ def connectors_of(model: Model, static: bool) -> Connectors:
 def _checked_connectors(model: Model) -> tuple[Connector, ...]:
     """Return the connectors of a model, evaluated once to check shapes and finite values."""
     first, connectors = model.coordinates, []
-    behind = first + sum(item.unknowns for item in model.connectors)
-    for item in model.connectors:
+    behind = first + sum(item.unknowns for item in model.at_points)
+    for item in model.at_points:
         dofs, positions = [], []
         for point in item.points:
             mesh = model.mesh_of(point)
@@ -401,7 +442,8 @@ def _checked_connectors(model: Model) -> tuple[Connector, ...]:
         behind += len(memory)
         connectors.append(Connector(item, np.array(dofs, dtype=np.int64), multipliers, memory, np.array(positions)))
     for connector in connectors:
-        _require_finite(connector.alone)
+        if connector.compiled is None:
+            _require_finite(connector.alone)
     return tuple(connectors)
 
 

@@ -30,7 +30,7 @@ def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: 
     assembler.weigh((1.0, 1.0, 1.0), dt)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, _EMPTY, False)
     _return_assembler(system, assembler)
-    system.connectors.add_forces(result, (p, v, a), time)
+    system.called.add_forces(result, (p, v, a), time)
     return result
 
 
@@ -78,8 +78,8 @@ def linearise(
     assembler.balance(_plain(p), _plain(v), _plain(a), result, matrix, stresses is not None)
     if shared:
         _return_assembler(system, assembler)
-    system.connectors.add_forces(result, (p, v, a), time)
-    tangent = tangent_of(system, matrix, system.connectors.tangents((p, v, a), time, coefficients))
+    system.called.add_forces(result, (p, v, a), time)
+    tangent = tangent_of(system, matrix, system.called.tangents((p, v, a), time, coefficients))
     if Proven.LOSES_DIGITS in system.proven and coefficients[0] != 0.0 and equations is None:
         tangent = with_stresses(system, (p, v, a), time, coefficients, stresses, tangent)
     return result, tangent
@@ -96,7 +96,7 @@ def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float
     assembler.predict(p, step)
     assembler.balance(p, zeros, zeros, np.empty(len(p)), matrix, True)
     _return_assembler(system, assembler)
-    return tangent_of(system, matrix, system.connectors.tangents((p, zeros, zeros), time, STATICS))
+    return tangent_of(system, matrix, system.called.tangents((p, zeros, zeros), time, STATICS))
 
 
 def _entries(system: System) -> np.ndarray:
@@ -107,7 +107,7 @@ def _entries(system: System) -> np.ndarray:
 
 def add_coupled(system: System, matrix: np.ndarray, coupled: Sequence[np.ndarray]) -> None:
     """Add the tangents (k, k) of connectors to the entries of a matrix; those that border a band have none there."""
-    for positions, tangent in zip(system.unknowns.coupled, coupled, strict=True):
+    for positions, tangent in zip(system.called_places, coupled, strict=True):
         mask = positions >= 0
         np.add.at(matrix.reshape(-1), positions[mask], tangent[mask])
 
@@ -123,7 +123,7 @@ def tangent_of(system: System, matrix: np.ndarray, coupled: Sequence[np.ndarray]
     if pattern is None:
         rows = matrix.reshape(-1, 2 * system.layouts[0].half_width + 1)[: unknowns.banded]
         band = BandTangent(rows, unknowns.reach[0])
-        border = border_of(unknowns.banded, multipliers, unknowns.border, coupled)
+        border = border_of(unknowns.banded, multipliers, system.called_border, coupled)
         return BorderedTangent(band, border) if border.size else band
     whole = csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape)
     return SaddleTangent(SparseTangent(whole), multipliers) if multipliers else SparseTangent(whole)

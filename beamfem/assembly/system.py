@@ -18,6 +18,7 @@ from beamfem.assembly.applied_loads import (
 )
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.blocks import build_block
+from beamfem.assembly.connection_table import ConnectionTable
 from beamfem.assembly.connectors import Connectors, connectors_of
 from beamfem.assembly.element_group import make_group
 from beamfem.assembly.equation_numbering import Unknowns
@@ -147,7 +148,44 @@ class System:
     def equations_of(self, blocks: Sequence[Block]) -> Equations:
         """Return the equations with other blocks in place of those of the system."""
         groups = [make_group(*parts) for parts in zip(blocks, self.layouts, self.point_loads, strict=True)]
-        return Equations(groups, self.springs, self.model.size)
+        return Equations(groups, self.springs, self.model.size, self._connections)
+
+    @shared_table
+    def _connections(self) -> ConnectionTable:
+        """The parts at points that compiled code evaluates."""
+        places = zip(self.connectors.items, self.unknowns.coupled, self._inside, strict=True)
+        return ConnectionTable((item, own) for item, own, inside in places if inside)
+
+    @shared_table
+    def _inside(self) -> tuple[bool, ...]:
+        """Which connectors compiled code evaluates: parts of the package whose tangents have places in the matrix."""
+        unknowns, items = self.unknowns, self.connectors.items
+        border = unknowns.border or ((),) * len(items)
+        banded = unknowns.pattern is None
+        return tuple(
+            item.compiled is not None and not (banded and len(numbers))
+            for item, numbers in zip(items, border, strict=True)
+        )
+
+    @shared_table
+    def called(self) -> Connectors:
+        """The connectors that Python evaluates."""
+        items = self._called(self.connectors.items)
+        return Connectors(self.model, self.static, items)
+
+    @shared_table
+    def called_places(self) -> tuple[np.ndarray, ...]:
+        """Positions (k, k) of the entries of the tangents of `called` in the matrix, -1 for those without one."""
+        return self._called(self.unknowns.coupled)
+
+    @shared_table
+    def called_border(self) -> tuple[np.ndarray, ...]:
+        """Equation numbers (k,) of each of `called` that reaches beyond a band, else none."""
+        return self._called(self.unknowns.border)
+
+    def _called(self, values: Sequence[Any]) -> tuple[Any, ...]:
+        """Return those of the values, one for each connector, that belong to connectors evaluated by Python."""
+        return tuple(value for value, inside in zip(values, self._inside, strict=True) if not inside) if values else ()
 
     def assembler(self, shared: bool = False) -> Assembler:
         """Return the equations with a new workspace; shared: see `Assembler`."""

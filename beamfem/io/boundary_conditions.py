@@ -158,7 +158,7 @@ def _of_load(
 
 
 def _connectors(model: Model) -> Iterator[Vertices]:
-    for connector in model.connectors:
+    for connector in model.at_points:
         for number, point in enumerate(connector.points):
             values = _of_connector(connector, number)
             yield Vertices(type(connector).__name__, _CONNECTOR, _ACTION, *_at(model, point), values)

@@ -53,6 +53,13 @@ def add_springs(s):
             matrix[place[i]] += factor * stiffness[i]
 
 
+@inlined
+def add_parts_at_points(s, system):
+    """Add the forces of masses, springs and the like, see `connection_passes`, and their tangents."""
+    if s[r.CONNECTIONS] > 0:
+        _three(s[r.ADD_CONNECTIONS], s[r.CONNECTIONS], s[r.CONNECTION_TABLES], system)
+
+
 @routine("i")
 def balance(system):
     """Fill the residual (n,) and, if the tangent is needed, the matrix of a model."""
@@ -62,6 +69,7 @@ def balance(system):
     for group in range(s[r.GROUPS]):
         add_group(s, system, group)
     add_springs(s)
+    add_parts_at_points(s, system)
 
 
 @routine("iiiiiinrrr", fastmath={"contract", "reassoc", "nsz"})

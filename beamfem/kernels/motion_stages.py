@@ -57,6 +57,7 @@ def assemble(system, solver, calls):
             _rotations(call[r.ROTATIONS_SINCE], groups[group], node, b[r.NODE_STRIDE], kept, rotations)
         node += wholes(groups[group])[r.NODES]
     model_passes.add_springs(s)
+    model_passes.add_parts_at_points(s, system)
     return 0.0
 
 

@@ -108,7 +108,10 @@ SPRING_STIFFNESS = 18
 SPRING_REST = 19
 SPRING_PLACE = 20
 RATED = 21  # whether strain rates matter
-SYSTEM_FIELDS = 22
+CONNECTIONS = 22  # number of kinds of parts at points, see `connection_passes`
+CONNECTION_TABLES = 23  # address (kinds, fields)
+ADD_CONNECTIONS = 24  # address of their routine
+SYSTEM_FIELDS = 25
 
 WEIGHT_P, WEIGHT_V, WEIGHT_A = range(3)  # ck, cv, ca: weights of p, p' and p'' in the tangent
 SINCE_COMMITTED = 3  # [s] from the committed history

@@ -104,7 +104,7 @@ def required_nodes(model: "Model") -> list[list[tuple[float, str]]]:
     points: list[tuple[object, Point]] = [(support, support.point) for support in model.point_supports]
     points += [(joint, point) for joint in model.joints for point in (joint.a, joint.b)]
     points += [(load, load.point) for load in model.point_loads]
-    points += [(connector, point) for connector in model.connectors for point in connector.points]
+    points += [(connector, point) for connector in model.at_points for point in connector.points]
     for part, point in points:
         result[model.number_of(point.beam)].append((point.fraction, type(part).__name__))
     for beam, nodes in zip(model.beams, result, strict=True):
@@ -255,9 +255,9 @@ def nodes_needed(model: "Model") -> NodesNeeded:
     asked = zip(model.beams, required_nodes(model), strict=True)
     fractions = [_inside(beam, {fraction for fraction, _ in requested}) for beam, requested in asked]
     points = [support.point for support in model.point_supports if _turns(support)]
-    points += [point for connector in model.connectors if uses_rotations(connector) for point in connector.points]
+    points += [point for connector in model.at_points if uses_rotations(connector) for point in connector.points]
     angled = sorted({(model.number_of(point.beam), point.fraction) for point in points})
-    further = sum(connector.unknowns + len(remembered(connector)) for connector in model.connectors)
+    further = sum(connector.unknowns + len(remembered(connector)) for connector in model.at_points)
     return NodesNeeded(fractions, angled, further)
 
 

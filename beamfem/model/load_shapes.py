@@ -88,9 +88,41 @@ class Ring:
     point: Point
 
 
+@dataclass(frozen=True, eq=False)
+class Disc:
+    """A concentrated mass at a point, with its centre at an offset (2,) [m] that turns with the section."""
+
+    point: Point
+    offset: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Coil:
+    """A straight spring from a point to another one, or to a place (2,) [m] on the ground."""
+
+    a: Point
+    b: Point | tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Bar:
+    """A rigid bar between two points."""
+
+    a: Point
+    b: Point
+
+
+@dataclass(frozen=True, eq=False)
+class Spiral:
+    """A torsion spring at a point."""
+
+    point: Point
+
+
 LoadShape = Force | Moment | ForcesAlong | Acceleration | Strains
 SupportShape = Constraint | Springs | SpringsAlong
 JointShape = Ring
+ConnectorShape = Disc | Coil | Bar | Spiral
 
 
 def drawn(part: Any, shapes: Iterable[_Shape], known: Any) -> tuple[_Shape, ...]:

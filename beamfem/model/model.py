@@ -47,7 +47,7 @@ def refused(name: str, item: object, kinds: Kinds) -> str:
     if right:
         return f"{said}; it belongs in {right[0]}"
     lacking = [member for member in members(Contribution) if not hasattr(item, member)]
-    if name == "connectors" and 0 < len(lacking) < len(members(Contribution)):
+    if Contribution in kinds[name] and 0 < len(lacking) < len(members(Contribution)):
         return f"{said}, which has no {' and no '.join(lacking)}, but a Contribution"
     return f"{said}, but {_named(kinds[name])}"
 
@@ -84,7 +84,9 @@ _KINDS: dict[str, tuple[type, ...]] = {
     "loads": (BodyLoad, LineLoad, PointLoad, ImposedStrain),
     "joints": (Joint,),
     "connectors": (Contribution,),
+    "masses": (Contribution,),
 }
+_ONE = {"masses": "mass"}  # the names of one, where it is not the plural without its last letter
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,9 +107,11 @@ class Model:
         Joints between beams. The distance of joined points may be up to 1e-5 of the longer beam: the second is moved to
         the first without stress.
     connectors : sequence of Contribution, optional
-        User-defined forces between points, see `Contribution`.
+        Forces between points, such as `SpringDamper` and `Link`, or user-defined ones, see `Contribution`.
     units : str, default "N, m, s"
         Consistent units of the numbers, such as "N, mm", for labels of pictures and tables.
+    masses : sequence of Contribution, optional
+        Concentrated masses, `PointMass` and `RigidBody`.
 
     Raises
     ------
@@ -134,6 +138,7 @@ class Model:
     joints: Sequence[Joint] = ()
     connectors: Sequence[Contribution] = ()
     units: str = _UNNAMED
+    masses: Sequence[Contribution] = ()
 
     def with_loads(self, loads: Sequence[Load]) -> "Model":
         """Return the model with other loads, which shares with it all that does not depend on them.
@@ -171,12 +176,13 @@ class Model:
         supports: Sequence[Support] | None = None,
         loads: Sequence[Load] | None = None,
         connectors: Sequence[Contribution] | None = None,
+        masses: Sequence[Contribution] | None = None,
     ) -> "Model":
-        """Return the model with other supports, loads or connectors; it shares the mesh where the nodes are the same.
+        """Return the model with other supports, loads, connectors or masses; the mesh is shared if nodes are the same.
 
         Parameters
         ----------
-        supports, loads, connectors : sequence, optional
+        supports, loads, connectors, masses : sequence, optional
             All of them in the new model; what is not given is unchanged.
 
         Returns
@@ -193,11 +199,11 @@ class Model:
         --------
         >>> propped = model.with_(supports=[*model.supports, bf.Roller(beam.end)])
         """
-        given = {"supports": supports, "loads": loads, "connectors": connectors}
+        given = {"supports": supports, "loads": loads, "connectors": connectors, "masses": masses}
         changes = {name: parts for name, parts in given.items() if parts is not None}
         if not changes:
             raise InputError(
-                "with_ takes the supports, loads or connectors of the new model, such as with_(loads=[...])"
+                "with_ takes the supports, loads, connectors or masses of the new model, such as with_(loads=[...])"
             )
         return self._with(**changes)
 
@@ -213,8 +219,9 @@ class Model:
         return {name: getattr(self, name) for name in self.__dataclass_fields__}
 
     def __repr__(self) -> str:
-        parts = [(name[:-1], getattr(self, name)) for name in _KINDS]
-        counted = [f"{len(members)} {name}{'' if len(members) == 1 else 's'}" for name, members in parts if members]
+        parts = [(name, getattr(self, name)) for name in _KINDS]
+        named = [(name if len(own) > 1 else _ONE.get(name, name[:-1]), own) for name, own in parts]
+        counted = [f"{len(members)} {name}" for name, members in named if members]
         return f"Model({', '.join(counted)})"
 
     def __post_init__(self) -> None:
@@ -227,7 +234,7 @@ class Model:
                 if not isinstance(item, kinds):
                     raise InputError(refused(name, item, _KINDS))
                 kind: Any = type(item)
-                if name != "connectors" and not (is_dataclass(item) and kind.__dataclass_params__.frozen):
+                if Contribution not in kinds and not (is_dataclass(item) and kind.__dataclass_params__.frozen):
                     raise InputError(f"{kind.__name__}, one of the {name} of a Model, must be a frozen dataclass")
         if not self.beams:
             raise InputError("a Model needs at least one beam")
@@ -243,7 +250,7 @@ class Model:
         for joint in self.joints:
             self._require(joint, joint.a)
             self._require(joint, joint.b)
-        for connector in self.connectors:
+        for connector in self.at_points:
             require_connector(connector)
             for point in connector.points:
                 self._require(connector, point)
@@ -375,6 +382,11 @@ class Model:
         if id(point.beam) not in self._numbers:
             raise self._unknown(f"the point {point} is on a beam that is not in this model", point.beam)
         return self.meshes[self._numbers[id(point.beam)]]
+
+    @property
+    def at_points(self) -> tuple[Contribution, ...]:
+        """Connectors and masses, which act on points."""
+        return (*self.connectors, *self.masses)
 
     @cached_property
     def imposing(self) -> tuple[tuple[int, ImposedStrain], ...]:

@@ -12,6 +12,11 @@ from beamfem.model.supports import Spring as Spring
 from beamfem.model.supports import Foundation as Foundation
 from beamfem.model.joints import Rigid as Rigid
 from beamfem.model.joints import Hinge as Hinge
+from beamfem.parts.link import Link as Link
+from beamfem.parts.spring_damper import SpringDamper as SpringDamper
+from beamfem.parts.torsion_spring import TorsionSpring as TorsionSpring
+from beamfem.parts.point_mass import PointMass as PointMass
+from beamfem.parts.point_mass import RigidBody as RigidBody
 from beamfem.model.loads import Gravity as Gravity
 from beamfem.model.loads import PointForce as PointForce
 from beamfem.model.loads import PointMoment as PointMoment

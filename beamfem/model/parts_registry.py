@@ -6,8 +6,10 @@ from beamfem.model import parts
 from beamfem.model.joints import Joint
 from beamfem.model.load_base import Load
 from beamfem.model.supports import Support
+from beamfem.parts.point_mass import PointMass, RigidBody
 
-BASES: dict[str, Any] = {"supports": Support, "loads": Load, "joints": Joint}
+BASES: dict[str, Any] = {"supports": Support, "loads": Load, "joints": Joint, "masses": (PointMass, RigidBody)}
+_ALL = (Support, Load, Joint, PointMass, RigidBody)
 
 
 def listed_parts() -> tuple[Any, ...]:
@@ -19,4 +21,4 @@ def parts_in(name: str) -> tuple[Any, ...]:
     """Return the classes whose objects a list of a `Model` takes; connectors derive from none of the base classes."""
     if name in BASES:
         return tuple(kind for kind in listed_parts() if issubclass(kind, BASES[name]))
-    return tuple(kind for kind in listed_parts() if not issubclass(kind, tuple(BASES.values())))
+    return tuple(kind for kind in listed_parts() if not issubclass(kind, _ALL))

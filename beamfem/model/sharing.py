@@ -12,11 +12,11 @@ def share(old: "Model", new: "Model") -> None:
 
     Both have the same beams and joints.
     """
-    same = all(map(_same, (old.supports, old.connectors, _layouts(old)), (new.supports, new.connectors, _layouts(new))))
+    same = all(map(_same, (old.supports, old.at_points, _layouts(old)), (new.supports, new.at_points, _layouts(new))))
     if same or old.nodes_needed == new.nodes_needed:
         vars(new)["numbered"] = old.numbered
     # the stiffness of a connector may depend on gravity
-    if same and (not new.connectors or _same(old.gravity, new.gravity)):
+    if same and (not new.at_points or _same(old.gravity, new.gravity)):
         vars(new)["tables"] = old.tables
 
 

@@ -184,7 +184,7 @@ def _distributed(system: System, p: np.ndarray, unbalanced: np.ndarray, load_fac
     assembler.take(LoadsAt(np.zeros_like(loads.body), loads.points, loads.imposing))
     assembler.weigh((1.0, 1.0, 1.0))
     assembler.balance(p, zeros, zeros, without, np.empty(0), False)
-    system.connectors.add_forces(without, (p, zeros, zeros), load_factor)
+    system.called.add_forces(without, (p, zeros, zeros), load_factor)
     forces = without - unbalanced
     totals = [abs(float(rigid_rates(system, RigidVelocity(way), p) @ forces)) for way in ((1.0, 0.0), (0.0, 1.0))]
     return max(float(np.max(np.abs(forces) * system.scale, initial=0.0)), system.extent * max(totals))

@@ -327,7 +327,7 @@ def _forces(solution: "Solution", system: System) -> _Forces:
             left = np.empty(size)
             calm.take(system.loads_at(at))
             calm.balance(p, v, a, left, np.empty(0), False)
-            system.connectors.add_forces(left, (p, v, a), at)
+            system.called.add_forces(left, (p, v, a), at)
             damping[row] = v @ (acting - left)
         work[row, moving] += acting[moving]
         if not conserved:

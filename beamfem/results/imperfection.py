@@ -63,8 +63,8 @@ def with_imperfection(model: Model, modes: Any, size: float, mode: int = 0) -> M
     """Return the model with the axes of its beams displaced by a mode, `size` [m] at most, stress-free in that shape.
 
     modes: result of `solve_buckling` or `solve_modes`, or a change (n,) of all coordinates; mode: index of the one to
-    use. Axes become cubic splines; elements, sections, supports, joints, loads and connectors stay attached to the same
-    points (other data of a connector, such as a free length, are unchanged). Elements defined by knot spans become
+    use. Axes become cubic splines; elements, sections, supports, joints, loads, connectors and masses stay attached to
+    the same points (other data of a connector, such as a free length, are unchanged). Elements defined by knot spans become
     elements defined by arc length.
     Raises InputError if the modes belong to a model of another size, if the mode moves no axis, or if the points of a
     connector are not fields of a dataclass.
@@ -79,16 +79,16 @@ def with_imperfection(model: Model, modes: Any, size: float, mode: int = 0) -> M
         for mesh, rates in zip(model.meshes, moved, strict=True)
     }
     beams = [crooked[id(beam)].beam for beam in model.beams]
-    parts = (model.supports, model.joints, model.connectors)
-    supports, joints, connectors = ([_placed(item, crooked) for item in part] for part in parts)
+    parts = (model.supports, model.joints, model.connectors, model.masses)
+    supports, joints, connectors, masses = ([_placed(item, crooked) for item in part] for part in parts)
     loads = [_placed_load(load, crooked) for load in model.loads]
-    for connector in connectors:
+    for connector in (*connectors, *masses):
         if any(id(point.beam) in crooked for point in connector.points):
             raise InputError(
                 f"the points of {type(connector).__name__} cannot be moved to the imperfect model: make it a dataclass "
                 "with points, or tuples of points, as its fields"
             )
-    return Model(beams, supports, loads, joints, connectors, model.units)
+    return Model(beams, supports, loads, joints, connectors, model.units, masses)
 
 
 def _shape(model: Model, modes: Any, mode: int) -> tuple[np.ndarray, np.ndarray]:

@@ -59,7 +59,7 @@ def unjoined_warnings(solution: "Solution") -> tuple[str, ...]:
     straight = len(model.beams) == 1 and type(model.beams[0].curve) is Line
     if straight or not len(solution):
         return ()
-    tied = [Counter(id(point.beam) for point in connector.points) for connector in model.connectors]
+    tied = [Counter(id(point.beam) for point in connector.points) for connector in model.at_points]
     for pair in unjoined_ends(model):
         if any(Counter(id(point.beam) for point in pair) <= beams for beams in tied):
             continue

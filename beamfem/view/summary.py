@@ -34,7 +34,7 @@ def model_rows(model: Model) -> list[tuple[str, str]]:
         ("supports", _kinds(model.supports)),
         ("loads", _kinds(model.loads)),
     ]
-    further = (("joints", model.joints), ("connectors", model.connectors))
+    further = (("joints", model.joints), ("connectors", model.connectors), ("masses", model.masses))
     return rows + [(name, _kinds(items)) for name, items in further if items]
 
 

@@ -5,7 +5,21 @@ from typing import TYPE_CHECKING, Any, assert_never
 
 import numpy as np
 
-from beamfem.model.load_shapes import Constraint, JointShape, Springs, SpringsAlong, SupportShape, drawn
+from beamfem.model.beam import Point
+from beamfem.model.load_shapes import (
+    Bar,
+    Coil,
+    ConnectorShape,
+    Constraint,
+    Disc,
+    JointShape,
+    Spiral,
+    Springs,
+    SpringsAlong,
+    SupportShape,
+    drawn,
+)
+from beamfem.parts.at_points import AtPoints
 from beamfem.view import symbols
 from beamfem.view.frames import one_row
 
@@ -98,14 +112,43 @@ def draw_joints(axes: Any, solution: "Solution", row: int) -> list[Any]:
 
 
 def _draw_connectors(axes: Any, solution: "Solution", row: int) -> list[Any]:
-    """Draw each connector as a dashed line through its points, which are dots."""
-    connectors = solution.model.connectors
+    """Draw connectors and masses; a user-defined one is a dashed line through its points, which are dots."""
+    connectors = solution.model.at_points
     only = one_row(solution, row) if connectors else solution
-    drawn = []
+    artists, stamps, line = [], Stamps(), {"color": INK, "zorder": 6.0}
     for connector in connectors:
-        x, y = np.array([only.position(point)[0] for point in connector.points]).T
-        drawn += axes.plot(x, y, color=INK, linestyle="--", linewidth=1.0, marker="o", markersize=5.0, zorder=6.0)
-    return drawn
+        if not isinstance(connector, AtPoints):
+            x, y = np.array([only.position(point)[0] for point in connector.points]).T
+            artists += axes.plot(x, y, linestyle="--", linewidth=1.0, marker="o", markersize=5.0, **line)
+            continue
+        for shape in drawn(connector, connector.shapes(), ConnectorShape):
+            match shape:
+                case Disc():
+                    centre = _centre(only, shape)
+                    x, y = np.array([only.position(shape.point)[0], centre]).T
+                    artists += axes.plot(x, y, linewidth=2.5, **line)
+                    artists += axes.plot(*centre, marker="o", markersize=9.0, **line)
+                case Coil():
+                    end = only.position(shape.b)[0] if isinstance(shape.b, Point) else np.asarray(shape.b)
+                    artists += axes.plot(*symbols.coil(only.position(shape.a)[0], end).T, linewidth=1.0, **line)
+                case Bar():
+                    x, y = np.array([only.position(point)[0] for point in (shape.a, shape.b)]).T
+                    artists += axes.plot(x, y, linewidth=2.5, marker="o", markersize=5.0, **line)
+                case Spiral():
+                    _stamp(stamps, symbols.ROTATIONAL_SPRING, only.position(shape.point)[0], np.array([0.0, -1.0]))
+                case _:
+                    assert_never(shape)
+    return artists + stamps.draw(axes, layer=6.0)
+
+
+def _centre(only: "Solution", disc: Disc) -> np.ndarray:
+    """Return the centre (2,) of a mass in the only row of a solution."""
+    (x, y), at = disc.offset, only.position(disc.point)[0]
+    if x == 0.0 == y:
+        return np.asarray(at)
+    angle = float(only.rotation(disc.point)[0])
+    c, s = np.cos(angle), np.sin(angle)
+    return np.asarray(at + np.array([c * x - s * y, s * x + c * y]))
 
 
 def joints_of(solution: "Solution", row: int) -> Stamps:

@@ -63,3 +63,11 @@ def turned(outline: np.ndarray, down: np.ndarray) -> np.ndarray:
     size = np.hypot(*down)
     x, y = down / size
     return np.asarray(outline @ np.array([[-y, x], [-x, -y]]))
+
+
+def coil(start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """Return a zigzag (n, 2) from one point (2,) [m] to another."""
+    along = np.array([0.0, *np.linspace(0.2, 0.8, 18), 1.0])
+    aside = np.array([0.0, 0.0, *(0.03 * (-1.0) ** np.arange(16)), 0.0, 0.0])
+    x, y = np.asarray(end) - start
+    return np.asarray(start + np.outer(along, (x, y)) + np.outer(aside, (-y, x)))

@@ -34,7 +34,7 @@ class CompiledSteps:
 
     def __init__(self, system: System, space: MotionWorkspace, rule: np.ndarray, statistics: np.ndarray) -> None:
         self._system, self._space, self._statistics, self._step = system, space, statistics, float(rule[TIME_STEP])
-        sparse, connected = system.unknowns.pattern is not None, bool(system.connectors.items)
+        sparse, connected = system.unknowns.pattern is not None, bool(system.called.items)
         self._limits = SPARSE if sparse else BORDERED if connected else BAND
         h, alpha_m, alpha_f, gamma, beta = rule
         space.arrays[record.RULE][: len(rule)], space.arrays[record.LIMITS][:] = rule, self._limits

@@ -76,9 +76,9 @@ class BandFactorisation:
 
         Raises LinAlgError.
         """
-        size, unknowns, multipliers = self._size, self._system.unknowns, len(self._system.connectors.multipliers)
+        size, multipliers = self._size, len(self._system.connectors.multipliers)
         tangent = tangent_of(self._system, self._matrix, coupled)
-        border = border_of(size, multipliers, unknowns.border, coupled)
+        border = border_of(size, multipliers, self._system.called_border, coupled)
         self._kept[:] = self._matrix
         ratio = self._routines.factor.compiled(size, self._half, self._reach, self._rows, space)
         if ratio > _WEAK or not border.size:
@@ -151,7 +151,7 @@ class CoupledStages:
     def _assemble(self, system: int, solver: int, calls: int) -> float:
         """See `motion_stages.assemble`."""
         motion_stages.assemble.compiled(system, solver, calls)
-        connectors, (p, v, a, _) = self.system.connectors, self._state
+        connectors, (p, v, a, _) = self.system.called, self._state
         if connectors.items:
             time = float(self._times[self._solver[record.NOW]])
             connectors.add_forces(self._residual, (p, v, a), time)

@@ -94,7 +94,7 @@ def march(
     # see initial_acceleration; laws with history know rates by differences only
     relaxed = is_scheme(integrator) and (bool(system.history.laws) or (damped and not _keeps_rates(integrator)))
     # a user-defined integrator may raise any exception; the states reached before are kept
-    calls_python = bool(system.connectors.items) or any(block.law is not None for block in system.blocks)
+    calls_python = bool(system.called.items) or any(block.law is not None for block in system.blocks)
     first_chunk = _FIRST_CHUNK // 50 if calls_python else _FIRST_CHUNK
     size = max(first_chunk // system.model.size, 1) if is_scheme(integrator) else 1
     rotations = record.rotations[0].copy()

@@ -1,0 +1,1 @@
+"""Masses, springs, dampers and links at points, one file each."""

@@ -1,0 +1,75 @@
+"""What parts at points have in common: force and energy from the definition of their connection."""
+
+from typing import ClassVar
+
+import numpy as np
+
+from beamfem.kernels.connection_passes import in_python
+from beamfem.model.beam import Point
+from beamfem.model.contribution import At
+from beamfem.model.load_shapes import ConnectorShape
+from beamfem.physics.connections import Connection, Trigonometry
+
+_ANALYTIC = Trigonometry(np.sqrt, np.cos, np.sin)  # of complex numbers as well
+
+
+class AtPoints:
+    """A `Contribution` whose forces derive from energies and conditions, compiled from `physics.connections`.
+
+    Attributes
+    ----------
+    points : tuple of Point, (m,)
+        Its points.
+    connection : Connection
+        Its definition.
+    """
+
+    __slots__ = ()
+    conservative: ClassVar[bool] = True  # a damper exerts no force at rest
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """Points (m,) on which it acts."""
+        raise NotImplementedError
+
+    @property
+    def connection(self) -> Connection:
+        """The definition of its energies and conditions."""
+        raise NotImplementedError
+
+    def data(self, reference: np.ndarray) -> tuple[float, ...]:
+        """Return its numbers, in the order of `Connection.data`; reference (m, 3): q of its points in the reference."""
+        raise NotImplementedError
+
+    @property
+    def rotations(self) -> bool:
+        """Whether it depends on the rotations of its points."""
+        return self.connection.coordinates == 3
+
+    @property
+    def unknowns(self) -> int:
+        """Number of its multipliers."""
+        return self.connection.multipliers
+
+    def shapes(self) -> tuple[ConnectorShape, ...]:
+        """Return the shapes to draw."""
+        raise NotImplementedError
+
+    def force(self, at: At) -> np.ndarray:
+        """Return the resisting forces fx, fy, moment at each point, then the conditions (3 m + k,)."""
+        size, count = self.connection.coordinates, len(at.q)
+        q, v, a = (np.asarray(x)[:, :size].ravel() for x in (at.q, at.v, at.a))
+        turned = np.array([(np.cos(angle), np.sin(angle)) for angle in at.q[:, 2]]).ravel()
+        result = np.zeros(size * count + self.unknowns, dtype=np.result_type(q, v, a, at.own, float))
+        in_python(self.connection.name)(q, v, a, at.own, turned, self.data(at.reference), at.gravity, result)
+        forces = np.zeros((count, 3), dtype=result.dtype)
+        forces[:, :size] = result[: size * count].reshape(count, size)
+        return np.concatenate([forces.ravel(), result[size * count :]])
+
+    def energy(self, at: At) -> tuple[float, float]:
+        """Return the kinetic and the potential energy [J]."""
+        connection, data = self.connection, self.data(at.reference)
+        q, v = (list(map(tuple, x[:, : connection.coordinates])) for x in (at.q, at.v))
+        kinetic = connection.kinetic(q, v, data, _ANALYTIC) if connection.kinetic else 0.0
+        potential = connection.potential(q, data, at.gravity, _ANALYTIC) if connection.potential else 0.0
+        return kinetic, potential

@@ -1,0 +1,77 @@
+"""A spring with a damper, straight between two points or from a point to the ground."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.model.beam import Point, require_point_of
+from beamfem.model.load_shapes import Coil
+from beamfem.parts.at_points import AtPoints
+from beamfem.parts.distance import reference_distance
+from beamfem.physics.connections import GROUNDED_SPRING, SPRING, Connection
+from beamfem.validation import convert, not_negative, optional, vector
+
+
+@dataclass(frozen=True, slots=True)
+class SpringDamper(AtPoints):
+    """A straight spring and damper between two points: its force is k (l - l0) + c dl/dt along the line between them.
+
+    Parameters
+    ----------
+    a : Point
+        Point of a beam.
+    b : Point or (float, float), [m]
+        Point of a beam, or a place on the ground.
+    stiffness : float, [N/m]
+        Stiffness k >= 0.
+    damping : float, [N s/m], default 0
+        Damping c >= 0.
+    length : float, [m], optional
+        Length l0 free of force, by default the distance in the reference.
+
+    Raises
+    ------
+    InputError
+        For an invalid value, and if the points coincide in the reference.
+
+    Examples
+    --------
+    >>> stay = bf.SpringDamper(beam.end, (2.0, 1.0), stiffness=1e5, damping=10.0)
+    >>> stayed = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0, -1e4))], connectors=[stay])
+    """
+
+    a: Point
+    b: Point | tuple[float, float]
+    stiffness: float
+    damping: float = 0.0
+    length: float | None = None
+
+    def __post_init__(self) -> None:
+        require_point_of(self, "a")
+        if not isinstance(self.b, Point):
+            convert(self, vector, "b")
+        convert(self, not_negative, "stiffness", "damping")
+        convert(self, optional(not_negative), "length")
+        if reference_distance(self.a, self.b) == 0.0:
+            raise InputError(f"SpringDamper needs two places that are apart, but a and b are both at {self.a}")
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """Its points on beams."""
+        return (self.a, self.b) if isinstance(self.b, Point) else (self.a,)
+
+    @property
+    def connection(self) -> Connection:
+        """A spring between points, or to the ground."""
+        return SPRING if isinstance(self.b, Point) else GROUNDED_SPRING
+
+    def data(self, reference: np.ndarray) -> tuple[float, ...]:
+        """Return stiffness, damping and free length, and the place on the ground if it ends there."""
+        length = reference_distance(self.a, self.b) if self.length is None else self.length
+        own = self.stiffness, self.damping, length
+        return own if isinstance(self.b, Point) else (*own, *map(float, self.b))
+
+    def shapes(self) -> tuple[Coil, ...]:
+        """Return the shape to draw."""
+        return (Coil(self.a, self.b),)

@@ -1,0 +1,68 @@
+"""A torsion spring with a damper between two sections."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.model.beam import Point, require_point_of
+from beamfem.model.load_shapes import Spiral
+from beamfem.parts.at_points import AtPoints
+from beamfem.physics.connections import TORSION_SPRING, Connection
+from beamfem.validation import convert, not_negative
+
+
+@dataclass(frozen=True, slots=True)
+class TorsionSpring(AtPoints):
+    """A torsion spring and damper between two sections, such as those of a `Hinge`.
+
+    Its moment is k (tb - ta) + c d(tb - ta)/dt, with the rotations ta and tb from the reference.
+
+    Parameters
+    ----------
+    a, b : Point
+        Points of beams.
+    stiffness : float, [N m/rad]
+        Stiffness k >= 0.
+    damping : float, [N m s/rad], default 0
+        Damping c >= 0.
+
+    Raises
+    ------
+    InputError
+        For an invalid value.
+
+    Examples
+    --------
+    >>> post = bf.Beam(bf.Line((2, 0), (2, -1)), 2, bf.CRBF(order=3), bf.Rectangle(0.05, 0.1), steel)
+    >>> stiff = bf.TorsionSpring(beam.end, post.start, stiffness=1e4)
+    >>> supports, hinge = [bf.Clamp(beam.start), bf.Pin(post.end)], bf.Hinge(beam.end, post.start)
+    >>> corner = bf.Model([beam, post], supports, joints=[hinge], connectors=[stiff])
+    """
+
+    a: Point
+    b: Point
+    stiffness: float
+    damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_point_of(self, "a")
+        require_point_of(self, "b")
+        convert(self, not_negative, "stiffness", "damping")
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """Both points."""
+        return self.a, self.b
+
+    @property
+    def connection(self) -> Connection:
+        """A torsion spring."""
+        return TORSION_SPRING
+
+    def data(self, reference: np.ndarray) -> tuple[float, ...]:
+        """Return stiffness and damping."""
+        return self.stiffness, self.damping
+
+    def shapes(self) -> tuple[Spiral, ...]:
+        """Return the shape to draw."""
+        return (Spiral(self.a),)

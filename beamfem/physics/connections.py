@@ -1,0 +1,131 @@
+"""Energies and conditions of parts at points, each written once: forces and tangents are derived from them.
+
+A connection has m points with coordinates q: x, y and, if it depends on rotations, the angle from the reference. Its forces, with the sign of internal forces, are those of Lagrange's equations,
+d/dt dT/dv - dT/dq + dV/dq + dR/dv + (dg/dq)' l, with its kinetic energy T(q, v), potential V(q), dissipation function
+R(q, v), and conditions g(q) = 0 with their multipliers l; `generate` derives them with sympy.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+Number = Any  # a float, a complex number or a symbol
+Vector = tuple[Number, ...]  # coordinates of a point
+Function = Callable[..., Number]
+
+
+class Trigonometry(NamedTuple):
+    """Square root, cosine and sine, for numbers or symbols."""
+
+    sqrt: Function
+    cos: Function
+    sin: Function
+
+
+class Connection(NamedTuple):
+    """Definition of a part at points.
+
+    coordinates: number of those of a point, 2 (x, y) or 3 (with the rotation); data: names of its numbers; kinetic
+    T(q, v, data, f), potential V(q, data, gravity, f), dissipation R(q, v, data, f), conditions g(q, data, f): with q
+    and v by point and f the functions of `Trigonometry`.
+    """
+
+    name: str
+    points: int
+    coordinates: int
+    data: tuple[str, ...]
+    kinetic: Function | None = None
+    potential: Function | None = None
+    dissipation: Function | None = None
+    conditions: Callable[..., tuple[Number, ...]] | None = None
+    multipliers: int = 0
+
+
+def _mass_kinetic(q: list[Vector], v: list[Vector], data: Vector, f: Trigonometry) -> Number:
+    ((x, y),) = v
+    return data[0] * (x * x + y * y) / 2
+
+
+def _mass_potential(q: list[Vector], data: Vector, gravity: Vector, f: Trigonometry) -> Number:
+    """Return - m g . (r - r0)."""
+    mass, x, y = data
+    return -mass * (gravity[0] * (q[0][0] - x) + gravity[1] * (q[0][1] - y))
+
+
+def _arm(angle: Number, offset: Vector, f: Trigonometry) -> Vector:
+    """Return the offset of a centre of mass, which turns with its section."""
+    c, s = f.cos(angle), f.sin(angle)
+    return c * offset[0] - s * offset[1], s * offset[0] + c * offset[1]
+
+
+def _body_kinetic(q: list[Vector], v: list[Vector], data: Vector, f: Trigonometry) -> Number:
+    """Return m |r' + w x c|^2 / 2 + J w^2 / 2, with c the offset of the centre of mass."""
+    (vx, vy, rate), (cx, cy) = v[0], _arm(q[0][2], data[2:4], f)
+    x, y = vx - rate * cy, vy + rate * cx
+    return data[0] * (x * x + y * y) / 2 + data[1] * rate * rate / 2
+
+
+def _body_potential(q: list[Vector], data: Vector, gravity: Vector, f: Trigonometry) -> Number:
+    mass, _, along, across, x, y = data
+    cx, cy = _arm(q[0][2], (along, across), f)
+    return -mass * (gravity[0] * (q[0][0] - x + cx - along) + gravity[1] * (q[0][1] - y + cy - across))
+
+
+def _length(q: list[Vector], f: Trigonometry) -> Number:
+    x, y = q[1][0] - q[0][0], q[1][1] - q[0][1]
+    return f.sqrt(x * x + y * y)
+
+
+def _spring_potential(q: list[Vector], data: Vector, gravity: Vector, f: Trigonometry) -> Number:
+    """Return k (l - l0)^2 / 2."""
+    elongation = _length(q, f) - data[2]
+    return data[0] * elongation * elongation / 2
+
+
+def _spring_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Trigonometry) -> Number:
+    """Return c (dl/dt)^2 / 2."""
+    x, y = q[1][0] - q[0][0], q[1][1] - q[0][1]
+    rate = (x * (v[1][0] - v[0][0]) + y * (v[1][1] - v[0][1])) / _length(q, f)
+    return data[1] * rate * rate / 2
+
+
+def _to_ground(q: list[Vector], data: Vector) -> list[Vector]:
+    return [q[0], data[3:5]]
+
+
+def _grounded_potential(q: list[Vector], data: Vector, gravity: Vector, f: Trigonometry) -> Number:
+    return _spring_potential(_to_ground(q, data), data, gravity, f)
+
+
+def _grounded_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Trigonometry) -> Number:
+    return _spring_dissipation(_to_ground(q, data), [v[0], (0, 0)], data, f)
+
+
+def _torsion_potential(q: list[Vector], data: Vector, gravity: Vector, f: Trigonometry) -> Number:
+    """Return k (tb - ta)^2 / 2."""
+    turn = q[1][2] - q[0][2]
+    return data[0] * turn * turn / 2
+
+
+def _torsion_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Trigonometry) -> Number:
+    rate = v[1][2] - v[0][2]
+    return data[1] * rate * rate / 2
+
+
+def _link_conditions(q: list[Vector], data: Vector, f: Trigonometry) -> tuple[Number, ...]:
+    """Return (l^2 - l0^2) / (2 l0): the multiplier is the tension, and no square root is needed."""
+    x, y = q[1][0] - q[0][0], q[1][1] - q[0][1]
+    return ((x * x + y * y - data[0] * data[0]) / (2 * data[0]),)
+
+
+MASS = Connection("mass", 1, 2, ("mass", "x", "y"), _mass_kinetic, _mass_potential)
+BODY = Connection("body", 1, 3, ("mass", "inertia", "along", "across", "x", "y"), _body_kinetic, _body_potential)
+_SPRING = ("stiffness", "damping", "length")
+SPRING = Connection("spring", 2, 2, _SPRING, None, _spring_potential, _spring_dissipation)
+GROUNDED_SPRING = Connection(
+    "grounded_spring", 1, 2, (*_SPRING, "x", "y"), None, _grounded_potential, _grounded_dissipation
+)
+TORSION_SPRING = Connection(
+    "torsion_spring", 2, 3, ("stiffness", "damping"), None, _torsion_potential, _torsion_dissipation
+)
+LINK = Connection("link", 2, 2, ("length",), None, None, None, _link_conditions, 1)
+CONNECTIONS = (MASS, BODY, SPRING, GROUNDED_SPRING, TORSION_SPRING, LINK)

@@ -1,0 +1,274 @@
+"""Masses, springs, dampers and links of the package: compiled, consistent, and right by closed forms."""
+
+import numpy as np
+import pytest
+from connectors import PointMass, RigidLink, SpringDamper
+from eccentric import Eccentric
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+import beamfem as bf
+from beamfem.testing import check_connector
+
+SQUARE, STEEL = bf.Rectangle(0.01, 0.01), bf.Material(2.1e11, 0.3, 7850.0)
+GRAVITY = bf.Gravity((0.3, -9.81))
+ELEMENTS = [
+    bf.CRBF(2),
+    bf.ANCF(),
+    bf.ANCFCRBF(),
+    bf.BilinearANCF(),
+    bf.BilinearCRBF(bf.Structural(), "reduced"),
+    bf.ShearRigid(),
+    bf.ANCF(bf.ElasticLine()),
+]
+
+
+class MassInPython(PointMass):
+    rotations = False
+
+
+class SpringInPython(SpringDamper):
+    rotations = False
+
+
+class LinkInPython(RigidLink):
+    rotations = False
+
+
+def rods(element=ELEMENTS[0], elements=4):
+    """Two rods that hang beside each other."""
+    ends = [((0.0, 0.0), (0.0, -1.0)), ((0.5, 0.0), (0.6, -0.9))]
+    return [bf.Beam(bf.Line(*pair), elements, element, SQUARE, STEEL) for pair in ends]
+
+
+def parts(one, two):
+    """One of each part, with the same part written in Python where there is one."""
+    return {
+        "mass": (bf.PointMass(one.end, 2.0), MassInPython(one.end, 2.0)),
+        "flywheel": (bf.PointMass(one.end, 2.0, 0.3), None),
+        "body": (bf.RigidBody(one.end, 2.0, 0.0, (0.05, 0.0)), Eccentric(one.end, 2.0, 0.05)),
+        "spring": (bf.SpringDamper(one.end, two.end, 150.0, 3.0), SpringInPython(one.end, two.end, 150.0, 3.0)),
+        "preloaded": (bf.SpringDamper(one.end, two.at(0.5), 150.0, 3.0, 0.3), None),
+        "grounded": (bf.SpringDamper(one.end, (1.0, 0.3), 150.0, 3.0), None),
+        "torsion": (bf.TorsionSpring(one.end, two.end, 5.0, 0.2), None),
+        "link": (bf.Link(one.end, two.end), LinkInPython(one.end, two.end)),
+    }
+
+
+NAMES = list(parts(*rods()))
+IN_PYTHON = [name for name, (_, other) in parts(*rods()).items() if other is not None]
+
+
+def hanging(one, two, part):
+    return bf.Model([one, two], [bf.Pin(one.start), bf.Pin(two.start)], [GRAVITY], connectors=[part])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_each_part_is_consistent(name):
+    """Analytic, with energies that match its forces, and constraint forces that do no work."""
+    check_connector(parts(*rods())[name][0])
+
+
+@pytest.mark.parametrize("element", ELEMENTS, ids=lambda element: element.name)
+@pytest.mark.parametrize("name", IN_PYTHON)
+def test_each_part_moves_as_if_it_were_written_in_python(name, element):
+    one, two = rods(element)
+    ends = []
+    for part in parts(one, two)[name]:
+        motion = bf.simulate(hanging(one, two, part), 0.05, 1e-3, velocity=bf.RigidVelocity((0.0, 0.0)))
+        ends.append([motion.displacement(beam.end)[-1] for beam in (one, two)])
+    np.testing.assert_allclose(ends[0], ends[1], rtol=1e-6, atol=1e-10)
+
+
+@pytest.mark.parametrize("element", ELEMENTS, ids=lambda element: element.name)
+def test_all_parts_together_keep_the_energy(element):
+    """Swinging rods with masses, a body and undamped springs, statically at rest where they start."""
+    one, two = rods(element)
+    springs = [bf.SpringDamper(one.end, two.end, 50.0), bf.SpringDamper(two.at(0.5), (1.0, -0.5), 20.0)]
+    springs.append(bf.TorsionSpring(one.at(0.5), two.end, 0.5))
+    masses = [bf.PointMass(one.end, 0.5), bf.RigidBody(two.end, 0.3, 1e-3, (0.0, -0.05))]
+    model = bf.Model([one, two], [bf.Pin(one.start), bf.Pin(two.start)], [GRAVITY], connectors=springs, masses=masses)
+    motion = bf.simulate(model, 0.2, 1e-3)
+    total, kinetic = motion.energy().total, motion.energy().kinetic
+    assert kinetic.max() > 1e-3
+    assert np.ptp(total) < 2e-3 * kinetic.max()
+
+
+def test_a_mass_weighs_m_g():
+    """The reaction of a clamp is the weight of all that hangs on it, to round-off."""
+    rod = rods()[0]
+    masses = [
+        bf.PointMass(rod.end, 2.0),
+        bf.PointMass(rod.at(0.5), 1.0, 0.1),
+        bf.RigidBody(rod.end, 0.5, 0.1, (0, -0.1)),
+    ]
+    model = bf.Model([rod], [bf.Clamp(rod.start)], [bf.Gravity((0.0, -9.81))], masses=masses)
+    reaction = bf.solve_static(model).reaction(rod.start)[-1]
+    assert reaction[1] == pytest.approx(9.81 * (3.5 + 7850.0 * 1e-4), rel=1e-10)
+
+
+def test_an_eccentric_body_bends_its_beam_by_its_weight_times_the_offset():
+    rod = rods()[0]
+    body = bf.RigidBody(rod.end, 0.02, 0.0, (0.1, 0.0))
+    light = bf.Beam(rod.curve, 4, rod.element, SQUARE, bf.Material(2.1e11, 0.3, 1e-6))
+    body = bf.RigidBody(light.end, 0.02, 0.0, (0.1, 0.0))
+    model = bf.Model([light], [bf.Clamp(light.start)], [bf.Gravity((0.0, -9.81))], masses=[body])
+    moment = bf.solve_static(model).reaction(light.start)[-1, 2]
+    assert moment == pytest.approx(0.02 * 9.81 * 0.1, rel=1e-3)  # and a little more as the tip moves aside
+
+
+@pytest.mark.parametrize("ratio", [0.1, 1.0, 100.0])
+def test_a_cantilever_with_a_tip_mass_has_the_frequency_of_the_closed_form(ratio):
+    """1 + cos cosh + ratio k (cos sinh - sin cosh) = 0 (Euler-Bernoulli); L/h = 1000, so shear counts for 1e-6."""
+    thin = bf.Rectangle(0.01, 0.001)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 8, bf.CRBF(4), thin, STEEL)
+    line_mass, bending = 7850.0 * 1e-5, 2.1e11 * 0.01 * 1e-9 / 12
+
+    def condition(k):
+        c, s, ch, sh = np.cos(k), np.sin(k), np.cosh(k), np.sinh(k)
+        return 1.0 + c * ch + ratio * k * (c * sh - s * ch)
+
+    k = brentq(condition, 0.05, 1.88)
+    model = bf.Model([beam], [bf.Clamp(beam.start)], masses=[bf.PointMass(beam.end, ratio * line_mass)])
+    frequency = bf.solve_modes(model, 1).frequencies[0]
+    assert frequency == pytest.approx(k**2 / (2 * np.pi) * np.sqrt(bending / line_mass), rel=1e-5)
+
+
+def test_an_eccentric_pendulum_moves_as_the_rigid_body_equation_says():
+    """(J_total) phi'' = -g S sin(phi - phi_c), integrated independently; the rod bends by 5e-6 rad."""
+    thick = bf.Rectangle(0.05, 0.05)
+    stiff = bf.Material(2.1e13, 0.3, 7850.0)
+    rod = bf.Beam(bf.Line((0, 0), (0, -1)), 2, bf.CRBF(3), thick, stiff)
+    mass, inertia, offset = 30.0, 0.5, np.array([0.2, -0.1])
+    model = bf.Model(
+        [rod], [bf.Pin(rod.start)], [bf.Gravity((0.0, -9.81))], masses=[bf.RigidBody(rod.end, mass, inertia, offset)]
+    )
+    motion = bf.simulate(model, 0.6, 5e-4)
+    rod_mass, centre = 7850.0 * 0.05**2, np.array([0.0, -1.0]) + offset
+    about_pin = rod_mass / 3 + 7850.0 * 0.05**4 / 12 + inertia + mass * centre @ centre
+    first = rod_mass * np.array([0.0, -0.5]) + mass * centre
+
+    def rate(_, state):
+        c, s = np.cos(state[0]), np.sin(state[0])
+        return [state[1], -9.81 * (c * first[0] - s * first[1]) / about_pin]
+
+    by_hand = solve_ivp(rate, (0.0, 0.6), [0.0, 0.0], rtol=1e-10, atol=1e-12).y[0, -1]
+    assert abs(by_hand) > 0.1
+    assert motion.rotation(rod.start)[-1] == pytest.approx(by_hand, rel=1e-4)
+
+
+@pytest.mark.parametrize("damping", [0.0, 4.0])
+def test_a_mass_on_a_spring_swings_as_its_closed_form(damping):
+    """A mass at the free end of a rod that can only stretch: m x'' + c x' + k x = 0 with a rod of 1e-9 of its mass."""
+    rod = bf.Beam(bf.Line((0, 0), (1, 0)), 1, bf.CRBF(1), SQUARE, bf.Material(1e4, 0.0, 1e-5))
+    rod_stiffness, mass, stiffness = 1e4 * 1e-4, 2.0, 50.0
+    spring = bf.SpringDamper(rod.end, (2.0, 0.0), stiffness, damping)
+    guides = [bf.Clamp(rod.start), bf.Prescribed(rod.end, uy=0.0, rotation=0.0)]
+    model = bf.Model([rod], guides, connectors=[spring], masses=[bf.PointMass(rod.end, mass)])
+    errors = []
+    for step in (4e-3, 2e-3, 1e-3):
+        motion = bf.simulate(model, 1.0, step, velocity=lambda r: np.stack([0.1 * r[..., 0], 0.0 * r[..., 0]], axis=-1))
+        rate = damping / (2.0 * mass)
+        swing = np.sqrt((stiffness + rod_stiffness) / mass - rate**2)
+        expected = 0.1 / swing * np.exp(-rate * motion.at) * np.sin(swing * motion.at)
+        errors.append(np.abs(motion.displacement(rod.end)[:, 0] - expected).max())
+    assert errors[2] < 2e-6
+    assert 3.5 < errors[0] / errors[1] < 4.5
+    assert 3.5 < errors[1] / errors[2] < 4.5
+
+
+def test_a_torsion_spring_in_a_hinge_turns_by_the_moment_over_its_stiffness():
+    stiff = bf.Rectangle(0.2, 0.2)
+    one = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), stiff, STEEL)
+    two = bf.Beam(bf.Line((1, 0), (2, 0)), 2, bf.CRBF(2), stiff, STEEL)
+    spring = bf.TorsionSpring(one.end, two.start, 40.0)
+    model = bf.Model(
+        [one, two],
+        [bf.Clamp(one.start)],
+        [bf.PointMoment(two.end, 30.0)],
+        [bf.Hinge(one.end, two.start)],
+        [spring],
+    )
+    solution = bf.solve_static(model)
+    turn = solution.rotation(two.start)[-1] - solution.rotation(one.end)[-1]
+    assert turn == pytest.approx(30.0 / 40.0, rel=1e-9)
+    assert solution.connector_force(spring)[-1, :, 2] == pytest.approx([30.0, -30.0], rel=1e-9)
+
+
+def test_a_link_carries_the_tension_that_a_very_stiff_spring_has():
+    one, two = rods()
+    supports, loads = [bf.Clamp(one.start), bf.Clamp(two.start)], [bf.PointForce(one.end, (-20.0, 0.0))]
+    link, spring = bf.Link(one.end, two.end), bf.SpringDamper(one.end, two.end, 1e9)
+    rigid = bf.solve_static(bf.Model([one, two], supports, loads, connectors=[link]))
+    stiff = bf.solve_static(bf.Model([one, two], supports, loads, connectors=[spring]))
+    np.testing.assert_allclose(rigid.displacement(two.end)[-1], stiff.displacement(two.end)[-1], rtol=1e-6)
+    pull = stiff.connector_force(spring)[-1, 0, :2]
+    assert rigid.multipliers(link)[-1, 0] == pytest.approx(np.hypot(*pull), rel=1e-6)
+
+
+def test_a_preloaded_stay_pulls_before_anything_acts():
+    """A stay shorter than its distance lifts the tip of a cantilever: the force is k (l - l0) along it."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(3), SQUARE, STEEL)
+    stay = bf.SpringDamper(beam.end, (1.0, 1.0), 200.0, length=0.9)
+    solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], connectors=[stay]))
+    x, y = solution.position(beam.end)[-1]
+    along = np.array([1.0 - x, 1.0 - y])
+    length = np.hypot(*along)
+    pull = solution.connector_force(stay)[-1, 0, :2]
+    np.testing.assert_allclose(pull, 200.0 * (length - 0.9) * along / length, rtol=1e-9)
+    np.testing.assert_allclose(solution.reaction(beam.start)[-1, :2], -pull, rtol=1e-6, atol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda p, q: bf.PointMass(p, -1.0), "mass of PointMass must be greater than zero"),
+        (lambda p, q: bf.PointMass(p, 1.0, -1.0), "inertia of PointMass must not be negative"),
+        (lambda p, q: bf.RigidBody(p, 1.0, 1.0, (1.0,)), "offset of RigidBody must be two finite numbers"),
+        (lambda p, q: bf.SpringDamper(p, q, -1.0), "stiffness of SpringDamper must not be negative"),
+        (lambda p, q: bf.SpringDamper(p, p, 1.0), "needs two places that are apart"),
+        (lambda p, q: bf.SpringDamper(p, q, 1.0, length=-1.0), "length of SpringDamper must not be negative"),
+        (lambda p, q: bf.SpringDamper(p, "wall", 1.0), "b of SpringDamper must be two"),
+        (lambda p, q: bf.TorsionSpring(p, q, float("nan")), "stiffness of TorsionSpring must be finite"),
+        (lambda p, q: bf.Link(p, p), "a Hinge joins them"),
+        (lambda p, q: bf.Link(p, (1.0, 0.0)), "b of Link"),
+    ],
+)
+def test_bad_parts_are_refused_where_they_are_made(make, message):
+    one, two = rods()
+    with pytest.raises(bf.InputError, match=message):
+        make(one.end, two.end)
+
+
+def test_models_with_parts_are_saved_and_loaded(tmp_path):
+    one, two = rods()
+    own = parts(one, two)
+    masses = [own[name][0] for name in ("mass", "body")]
+    connectors = [own[name][0] for name in ("spring", "grounded", "torsion")]
+    supports = [bf.Clamp(one.start), bf.Clamp(two.start)]
+    model = bf.Model([one, two], supports, [GRAVITY], connectors=connectors, masses=masses)
+    solution = bf.solve_static(model)
+    solution.save(tmp_path / "parts.h5")
+    loaded = bf.load(tmp_path / "parts.h5")
+    assert repr(loaded.model) == "Model(2 beams, 2 supports, 1 load, 3 connectors, 2 masses)"
+    again = bf.solve_static(loaded.model)
+    assert np.array_equal(again.p, solution.p)
+
+
+def test_a_model_with_parts_shares_its_tables_and_follows_another_gravity():
+    rod = rods()[0]
+    model = bf.Model([rod], [bf.Clamp(rod.start)], [bf.Gravity((0.0, -9.81))], masses=[bf.PointMass(rod.end, 2.0)])
+    bf.solve_static(model)
+    twice = bf.solve_static(model.with_loads([bf.Gravity((0.0, -19.62))]))
+    assert twice.reaction(rod.start)[-1, 1] == pytest.approx(19.62 * (2.0 + 0.785), rel=1e-10)
+
+
+def test_parts_are_drawn_where_they_are(tmp_path):
+    one, two = rods()
+    own = [part for part, _ in parts(one, two).values()]
+    supports = [bf.Clamp(one.start), bf.Clamp(two.start)]
+    model = bf.Model([one, two], supports, connectors=own[3:], masses=own[:3])
+    (axes,) = model.plot(tmp_path / "parts.png").axes
+    ends = np.concatenate([line.get_xydata()[[0, -1]] for line in axes.lines])
+    for place in ((0.0, -1.0), (0.05, -1.0), (0.6, -0.9), (1.0, 0.3)):
+        assert np.linalg.norm(ends - place, axis=1).min() < 1e-9

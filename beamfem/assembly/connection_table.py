@@ -1,4 +1,4 @@
-"""Parts at points in the form that compiled code expects: a table for each kind, and one row of numbers for each part."""
+"""Parts at points in the form that compiled code expects: a table for each kind, a row of numbers for each part."""
 
 from collections import defaultdict
 from collections.abc import Iterable

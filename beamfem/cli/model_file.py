@@ -90,7 +90,9 @@ def _model(source: Source, beams: list[Beam], acting: dict[str, list[list[Any]]]
     """Return the model, or raise the error of the first part that it refuses."""
     items = {section: [item for found in parts for item in found] for section, parts in acting.items()}
     try:
-        model = Model(beams, items["supports"], items["loads"], items["joints"], items["connectors"])
+        model = Model(
+            beams, items["supports"], items["loads"], items["joints"], items["connectors"], masses=items["masses"]
+        )
         _require_compatible(model)
     except InputError:
         for section, parts in acting.items():

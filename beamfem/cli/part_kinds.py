@@ -18,8 +18,8 @@ from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
 from beamfem.model.grading import graded
-from beamfem.model.parts_registry import parts_in
 from beamfem.model.time_functions import Interpolated, kinks_of
+from beamfem.parts.parts_registry import parts_in
 from beamfem.section import Circle, Layered, Rectangle, Section, Tube
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import nearest, positive
@@ -111,7 +111,7 @@ def _kinds_of(name: str) -> Kinds:
     }
 
 
-ACTING: dict[str, Kinds] = {name: _kinds_of(name) for name in ("supports", "joints", "connectors", "loads")}
+ACTING: dict[str, Kinds] = {name: _kinds_of(name) for name in ("supports", "joints", "connectors", "masses", "loads")}
 
 
 def _curve(value: Any, names: Names) -> Any:

@@ -94,7 +94,7 @@ def _described(path: Path, solution: "Solution") -> dict[str, Any]:
     with h5py.File(path, "r") as file:
         version = read_label(file, "beamfem_version")
     model, statistics = solution.model, solution.statistics
-    parts = {name: getattr(model, name) for name in ("supports", "joints", "connectors", "loads")}
+    parts = {name: getattr(model, name) for name in ("supports", "joints", "connectors", "masses", "loads")}
     words = {name: [part_in_words(item, model) for item in items] for name, items in parts.items()}
     return {
         "file": str(path),

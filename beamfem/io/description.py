@@ -19,9 +19,9 @@ from beamfem.mesh.reference import energy_points, length_points, stations
 from beamfem.model.along_beam import AlongBeam, functions_along, jumps_along, kinks_along
 from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
-from beamfem.model.parts_registry import listed_parts
 from beamfem.model.sampled_functions import Sampled, SampledAlong, SampledSection
 from beamfem.model.time_functions import Interpolated
+from beamfem.parts.parts_registry import listed_parts
 from beamfem.section import Layer, Layered, Section, ShapedSection, StiffnessSection
 from beamfem.section.outline import RectangleOutline, TubeOutline
 from beamfem.section.protocol import CrossSection

@@ -1,8 +1,9 @@
 """Energies and conditions of parts at points, each written once: forces and tangents are derived from them.
 
-A connection has m points with coordinates q: x, y and, if it depends on rotations, the angle from the reference. Its forces, with the sign of internal forces, are those of Lagrange's equations,
-d/dt dT/dv - dT/dq + dV/dq + dR/dv + (dg/dq)' l, with its kinetic energy T(q, v), potential V(q), dissipation function
-R(q, v), and conditions g(q) = 0 with their multipliers l; `generate` derives them with sympy.
+A connection has m points with coordinates q: x, y and, if it depends on rotations, the angle from the reference. Its
+forces, with the sign of internal forces, are those of Lagrange's equations, d/dt dT/dv - dT/dq + dV/dq + dR/dv +
+(dg/dq)' l, with its kinetic energy T(q, v), potential V(q), dissipation function R(q, v), and conditions g(q) = 0 with
+their multipliers l; `generate` derives them with sympy.
 """
 
 from collections.abc import Callable

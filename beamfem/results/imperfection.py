@@ -64,8 +64,8 @@ def with_imperfection(model: Model, modes: Any, size: float, mode: int = 0) -> M
 
     modes: result of `solve_buckling` or `solve_modes`, or a change (n,) of all coordinates; mode: index of the one to
     use. Axes become cubic splines; elements, sections, supports, joints, loads, connectors and masses stay attached to
-    the same points (other data of a connector, such as a free length, are unchanged). Elements defined by knot spans become
-    elements defined by arc length.
+    the same points (other data of a connector, such as a free length, are unchanged). Elements defined by knot spans
+    become elements defined by arc length.
     Raises InputError if the modes belong to a model of another size, if the mode moves no axis, or if the points of a
     connector are not fields of a dataclass.
     """

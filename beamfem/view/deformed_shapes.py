@@ -13,6 +13,7 @@ from beamfem.results.batched_beams import LikeBeams, equal_beams, of_each
 from beamfem.results.beam_stress import HEIGHTS
 from beamfem.results.solution import Solution
 from beamfem.view.frames import axis_points
+from beamfem.view.support_symbols import grounds
 
 ORIGINAL = "original shape"  # what is dashed
 _SAME = 1e-3  # of the largest value: smaller differences are not worth all colours
@@ -134,8 +135,9 @@ class Shapes:
 
     @cached_property
     def box(self) -> np.ndarray:
-        """Lower left and upper right corner of all shapes and the undeformed axes (2, 2) [m]."""
+        """Lower left and upper right corner (2, 2) [m] of all shapes, the undeformed axes and ends of springs."""
         parts = [body.reshape(-1, 2) for body in self.body] + [points.reference for points in self.points]
+        parts += [place[None] for place in grounds(self.solution.model)]
         return np.stack(
             [np.min([f.min(axis=0) for f in parts], axis=0), np.max([f.max(axis=0) for f in parts], axis=0)]
         )

@@ -19,6 +19,7 @@ from beamfem.model.load_shapes import (
     SupportShape,
     drawn,
 )
+from beamfem.model.model import Model
 from beamfem.parts.at_points import AtPoints
 from beamfem.view import symbols
 from beamfem.view.frames import one_row
@@ -130,6 +131,8 @@ def _draw_connectors(axes: Any, solution: "Solution", row: int) -> list[Any]:
                     artists += axes.plot(*centre, marker="o", markersize=9.0, **line)
                 case Coil():
                     end = only.position(shape.b)[0] if isinstance(shape.b, Point) else np.asarray(shape.b)
+                    if not isinstance(shape.b, Point):
+                        _stamp(stamps, symbols.GROUND, end, end - only.position(shape.a)[0])
                     artists += axes.plot(*symbols.coil(only.position(shape.a)[0], end).T, linewidth=1.0, **line)
                 case Bar():
                     x, y = np.array([only.position(point)[0] for point in (shape.a, shape.b)]).T
@@ -139,6 +142,12 @@ def _draw_connectors(axes: Any, solution: "Solution", row: int) -> list[Any]:
                 case _:
                     assert_never(shape)
     return artists + stamps.draw(axes, layer=6.0)
+
+
+def grounds(model: Model) -> list[np.ndarray]:
+    """Return the places (2,) [m] on the ground at which springs of a model end."""
+    coils = (shape for item in model.at_points if isinstance(item, AtPoints) for shape in item.shapes())
+    return [np.asarray(coil.b) for coil in coils if isinstance(coil, Coil) and not isinstance(coil.b, Point)]
 
 
 def _centre(only: "Solution", disc: Disc) -> np.ndarray:

@@ -36,6 +36,7 @@ def _spiral() -> np.ndarray:
 
 # the clamp's beam goes up from its wall
 CLAMP = _hatched(0.0, 0.62)
+GROUND = _hatched(0.0, 0.42)
 PIN = [_TRIANGLE, *_hatched(-0.75, 0.6)]
 ROLLER = [_TRIANGLE, circle(-0.22, -0.87, 0.12), circle(0.22, -0.87, 0.12), *_hatched(-0.99, 0.6)]
 SPRING = [_zigzag(), *_hatched(-1.1, 0.42)]

@@ -12,14 +12,14 @@ import pytest
 
 import beamfem as bf
 from beamfem.cli.part_kinds import ACTING
-from beamfem.model.parts_registry import listed_parts
+from beamfem.parts.parts_registry import listed_parts
 
 FILE = str(Path(__file__).parents[1] / "trial_parts.py")
 PARTS = ("SnowLoad", "Slide", "Weld", "Buffer")
 EXPORTED = f"""
 import importlib.util, json, sys
 import beamfem
-from beamfem.model import parts
+from beamfem.parts import listed_parts as parts
 
 spec = importlib.util.spec_from_file_location("beamfem.model.trial_parts", {FILE!r})
 module = importlib.util.module_from_spec(spec)

@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from beamfem.model import parts
 from beamfem.model.joints import Joint
 from beamfem.model.load_base import Load
 from beamfem.model.supports import Support
+from beamfem.parts import listed_parts as parts
 from beamfem.parts.point_mass import PointMass, RigidBody
 
 BASES: dict[str, Any] = {"supports": Support, "loads": Load, "joints": Joint, "masses": (PointMass, RigidBody)}
@@ -13,7 +13,7 @@ _ALL = (Support, Load, Joint, PointMass, RigidBody)
 
 
 def listed_parts() -> tuple[Any, ...]:
-    """Return all classes that are listed in `beamfem.model.parts`."""
+    """Return all classes that are listed in `beamfem.parts.listed_parts`."""
     return tuple(kind for kind in vars(parts).values() if isinstance(kind, type))
 
 

@@ -48,7 +48,7 @@ def nothing_known(n: int) -> Pairs:
 def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarray) -> Pairs:
     """Return the largest mu (m,), descending, and x (n, m) with K^-1 mass x = mu x and x^T mass x = 1.
 
-    mass: positive definite; factors: of K, symmetric and positive definite along the free directions; count: number of
+    mass: positive definite, without the rows of multipliers, which have none; factors: of K, symmetric and positive definite along the free directions; count: number of
     pairs to find besides the vectors x (n, k) that are `known`, with x^T mass x = 1. These are projected out of the
     inverse on both sides; subtracting their mu instead would leave round-off that may look like a mode. m < count if
     there are no more pairs. Raises ConvergenceError.
@@ -57,13 +57,18 @@ def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarra
     weighted = mass @ known
 
     def dense() -> Pairs:
-        root = cholesky(mass.toarray(), lower=True)
-        inverse = root.T @ np.column_stack([factors.solve(column) for column in root.T])
+        own = np.flatnonzero(mass.diagonal())
+        root = cholesky(mass[own][:, own].toarray(), lower=True)
+        right = np.zeros((n, len(own)))
+        right[own] = root
+        inverse = root.T @ np.column_stack([factors.solve(column) for column in right.T])[own]
         inverse = 0.5 * (inverse + inverse.T)
-        old = root.T @ known
-        projector = np.eye(n) - old @ old.T
+        old = root.T @ known[own]
+        projector = np.eye(len(own)) - old @ old.T
         values, y = eigh(projector @ inverse @ projector)
-        return values[::-1], solve_triangular(root.T, y[:, ::-1])
+        x = np.zeros((n, len(own)))
+        x[own] = solve_triangular(root.T, y[:, ::-1])
+        return values[::-1], x
 
     def few(vectors: int) -> Pairs:
         inverse = LinearOperator((n, n), matvec=projected, dtype=float)

@@ -22,7 +22,7 @@ from beamfem.solve.modes.lowest_modes import WRONG, lowest_pairs
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.modes.rigid_modes import unresisted
-from beamfem.solve.start.start_checks import left_over, refuse_dampers, refuse_multipliers, require_fits_memory
+from beamfem.solve.start.start_checks import left_over, refuse_dampers, require_fits_memory
 from beamfem.solve.start.start_state import resting_state
 from beamfem.tables import as_pandas
 from beamfem.validation import count as whole_number
@@ -241,7 +241,6 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     """
     whole_number("count", count)
     system = system_of(model, static=True)
-    refuse_multipliers(system, "solve_modes")
     refuse_dampers(system)
     p, load_factor = resting_state(system, about)
     unknown = len(system.free_dofs)

@@ -89,8 +89,9 @@ class Pencil:
 
     @cached_property
     def size(self) -> int:
-        """Number of modes; each inclined roller constrains one of two coordinates."""
-        return self.mass.shape[0] - len(self.system.rotated[0])
+        """Number of modes; each inclined roller and each multiplier constrains one coordinate, and has none itself."""
+        conditions = len(self.system.connectors.multipliers)
+        return self.mass.shape[0] - len(self.system.rotated[0]) - 2 * conditions
 
     def below(self, value: float) -> int:
         """Return how many eigenvalues of a symmetric pencil are below a value (Sylvester's law of inertia)."""
@@ -134,7 +135,8 @@ class Pencil:
         """
         if rigid == 0 and self.symmetric and self.below(0.0) == 0:
             return 0.0
-        high = np.log(4.0 * float(np.max(np.abs(self.stiffness.diagonal()) / self.mass.diagonal())))
+        stiffness, mass = np.abs(self.stiffness.diagonal()), self.mass.diagonal()
+        high = np.log(4.0 * float(np.max(stiffness[mass > 0.0] / mass[mass > 0.0])))  # multipliers have none
         low = high - _RANGE
         while high - low > np.log(4.0):
             middle = 0.5 * (low + high)

@@ -115,9 +115,10 @@ def _of_connectors(system: System, p: np.ndarray, load_factor: float, slope: np.
             return item.tangent((q, zeros, zeros), load_factor, gravity, STATICS)
 
         force = item.force(item.at((p, zeros, zeros), load_factor, gravity)).real
-        unstrained = _unstrained(item, stiffness(p), force)
-        rate = unstrained.T @ differentiated(system, stiffness, p, slope) @ unstrained
-        number = system.unknowns.free[item.all]
+        unstrained = _unstrained(item, stiffness(p), force[: len(item.dofs)])
+        moved = differentiated(system, stiffness, p, slope)[: len(item.dofs), : len(item.dofs)]
+        rate = unstrained.T @ moved @ unstrained
+        number = system.unknowns.free[item.dofs]
         row, column = (each.ravel() for each in np.meshgrid(number, number, indexing="ij"))
         known = (row >= 0) & (column >= 0)
         entries = rate.ravel()[known], (row[known], column[known])
@@ -128,10 +129,17 @@ def _of_connectors(system: System, p: np.ndarray, load_factor: float, slope: np.
 def _unstrained(item: Connector, stiffness: np.ndarray, force: np.ndarray) -> np.ndarray:
     """Return the projection (d, d) onto the motions that do not strain a connector, all of them if it has a force.
 
-    In these motions its tangent changes by its force alone. In others it may also change by its stiffness, which turns
+    stiffness (d + k, d + k), force (d,): of the connector. In these motions, which satisfy its conditions, its tangent
+    changes by its force alone. In others it may also change by its stiffness, which turns
     with it; its force is small beside that. Of a connector that already has a force the two cannot be told apart.
     """
-    units = item.units
+    units, count = item.units, len(item.dofs)
+    conditions, stiffness = stiffness[count:, :count], stiffness[:count, :count]
+    if len(conditions):
+        q, r = qr((conditions * units).T, mode="full")[:2]
+        rank = np.count_nonzero(np.abs(np.diagonal(r)) > _ROUND_OFF * np.abs(r).max())
+        basis = q[:, rank:]
+        return units[:, None] * (basis @ basis.T) / units
     if np.any(np.abs(force * units) > _ROUND_OFF * np.max(np.abs(units[:, None] * stiffness * units))):
         return np.eye(len(units))
     values, vectors = eigh(units[:, None] * (0.5 * (stiffness + stiffness.T)) * units)
@@ -164,7 +172,8 @@ def linearised_loads(
             "flutter before its tangent is singular",
             remedy="Look at the growth that solve_modes finds about a state",
         )
-    shapes = _softened(linear.geometric, linear.factors, count, _NONE * effect)
+    multipliers = len(system.connectors.multipliers)
+    shapes = _softened(linear.geometric, linear.factors, multipliers, count, _NONE * effect)
     modes = np.zeros((shapes.shape[1], len(p)))
     modes[:, system.free_dofs] = shapes.T
     correction = np.zeros_like(p)
@@ -211,16 +220,18 @@ def _effect(system: System, linear: LinearSolution) -> float:
     return sizes[1] / sizes[0] if sizes[0] > 0.0 else 0.0
 
 
-def _softened(geometric: csr_array, factors: Factorised, count: int, none: float) -> np.ndarray:
+def _softened(geometric: csr_array, factors: Factorised, multipliers: int, count: int, none: float) -> np.ndarray:
     """Return a basis (unknown, m) of the shapes that lose the largest fraction of their stiffness per unit load.
 
-    none: fraction that is round-off. The inverse of the tangent times -K_sigma is not symmetric, but it contains no
+    Multipliers, the last of the unknowns, are zero in it; none: fraction that is round-off. The inverse of the tangent times -K_sigma is not symmetric, but it contains no
     sums of large terms that cancel.
     """
     n = geometric.shape[0]
 
     def lost(x: np.ndarray) -> np.ndarray:
-        return -factors.solve(geometric @ x)
+        result = -factors.solve(geometric @ x)
+        result[n - multipliers :] = 0.0
+        return result
 
     def search(basis: np.ndarray, wanted: int) -> Pairs:
         def besides(x: np.ndarray) -> np.ndarray:

@@ -1,0 +1,143 @@
+"""Conditions with multipliers in every analysis: a hinge made of two conditions is the hinge of shared coordinates."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+import beamfem as bf
+
+STEEL = bf.Material(2.1e11, 0.3, 7850.0)
+
+
+@dataclass(frozen=True)
+class HingeOfConditions:
+    """Two points stay at one place; its multipliers are the force [N] between them."""
+
+    a: bf.Point
+    b: bf.Point
+    unknowns = 2
+    conservative = True
+    rotations = False
+
+    @property
+    def points(self):
+        return self.a, self.b
+
+    def force(self, at):
+        x, y = at.own
+        return np.array([x, y, 0.0 * x, -x, -y, 0.0 * x, *(at.q[0, :2] - at.q[1, :2])])
+
+    def energy(self, at):
+        return 0.0, 0.0
+
+
+def frame(seed, conditions):
+    """A random three-hinged frame of two or three beams on pins or clamps, hinged in one of its corners."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(2, 4))
+    corners = np.column_stack([np.arange(count + 1.0), rng.uniform(-0.5, 0.8, count + 1)])
+    order = int(rng.integers(2, 5))
+    height = rng.uniform(0.01, 0.04)
+    beams = [
+        bf.Beam(bf.Line(tuple(one), tuple(two)), 4, bf.CRBF(order), bf.Rectangle(0.02, height), STEEL)
+        for one, two in zip(corners[:-1], corners[1:], strict=True)
+    ]
+    hinged = int(rng.integers(count - 1))
+    joints, connectors = [], []
+    for number, (one, two) in enumerate(zip(beams[:-1], beams[1:], strict=True)):
+        if number != hinged:
+            joints.append(bf.Rigid(one.end, two.start))
+        elif conditions:
+            connectors.append(HingeOfConditions(one.end, two.start))
+        else:
+            joints.append(bf.Hinge(one.end, two.start))
+    supports = [bf.Clamp(beams[0].start), bf.Clamp(beams[-1].end)]
+    size = 2.1e11 * 0.02 * height**3 / 12
+    loads = [
+        bf.PointForce(beams[hinged].at(0.5), tuple(size * rng.uniform(-1.0, 1.0, 2))),
+        bf.DistributedLoad(beams[-1], (0.0, -size * rng.uniform(0.5, 2.0))),
+    ]
+    return bf.Model(beams, supports, loads, joints, connectors), beams
+
+
+SEEDS = range(24)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_static_solutions_modes_and_paths_are_those_of_shared_coordinates(seed):
+    found = []
+    for conditions in (False, True):
+        model, beams = frame(seed, conditions)
+        solution = bf.solve_static(model)
+        path = bf.trace_equilibrium(model, until=1.0)
+        modes = bf.solve_modes(model, 4).frequencies
+        loaded = bf.solve_modes(model, 2, about=solution[-1]).frequencies
+        ends = [one.displacement(beam.at(0.5))[-1] for one in (solution, path) for beam in beams]
+        found.append([np.ravel(ends), modes, loaded, np.array([solution.stable[-1], path.stable[-1]])])
+    for plain, conditioned in zip(*found, strict=True):
+        np.testing.assert_allclose(conditioned, plain, rtol=2e-7, atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_buckling_loads_are_those_of_shared_coordinates(seed):
+    found = []
+    for conditions in (False, True):
+        model, beams = frame(seed, conditions)
+        thrust = [bf.PointForce(beam.end, tuple(-20.0 * model.loads[0].vector[0] * np.ones(2))) for beam in beams[:-1]]
+        try:
+            result = bf.solve_buckling(model.with_loads(thrust), 2)
+        except bf.InputError as error:  # loads that stiffen
+            found.append([str(error).partition(":")[0], ()])
+            continue
+        found.append([result.load_factors, result.linearised])
+    plain, conditioned = found
+    if isinstance(plain[0], str):
+        assert plain[0] == conditioned[0]
+        return
+    for one, other in zip(plain, conditioned, strict=True):
+        np.testing.assert_allclose(other, one, rtol=1e-6)
+
+
+def test_links_hold_a_portal_as_a_bar_of_ten_thousand_times_its_stiffness_does():
+    """Modes, buckling loads and path of two columns whose heads a link holds; shortening of the bar is 1e-8."""
+    found = []
+    for linked in (True, False):
+        square = bf.Rectangle(0.01, 0.01)
+        left, right = (bf.Beam(bf.Line((x, 0), (x, 1)), 4, bf.CRBF(3), square, STEEL) for x in (0.0, 1.0))
+        stiff = bf.Material(2.1e15, 0.3, 1e-3)
+        bar = bf.Beam(bf.Line((0, 1), (1, 1)), 1, bf.CRBF(1), square, stiff)
+        supports, loads = [bf.Clamp(left.start), bf.Clamp(right.start)], [bf.PointForce(left.end, (1.0, -300.0))]
+        if linked:
+            model = bf.Model([left, right], supports, loads, connectors=[bf.Link(left.end, right.end)])
+        else:
+            hinges = [bf.Hinge(left.end, bar.start), bf.Hinge(right.end, bar.end)]
+            model = bf.Model([left, right, bar], supports, loads, hinges)
+        buckling = bf.solve_buckling(model, 2)
+        path = bf.trace_equilibrium(model, until=2.0)
+        found.append([*bf.solve_modes(model, 4).frequencies, *buckling.load_factors, *buckling.linearised])
+        found[-1] += [*path.displacement(left.end)[-1], *path.displacement(right.end)[-1]]
+    np.testing.assert_allclose(found[0], found[1], rtol=1e-6)
+
+
+def test_two_free_beams_on_a_link_have_five_rigid_modes_and_those_of_a_stiff_spring():
+    square = bf.Rectangle(0.01, 0.01)
+    one, two = (
+        bf.Beam(bf.Line(*ends), 2, bf.CRBF(3), square, STEEL) for ends in (((0, 0), (1, 0)), ((1.3, 0.4), (2, 1)))
+    )
+    linked = bf.solve_modes(bf.Model([one, two], connectors=[bf.Link(one.end, two.start)]), 8).frequencies
+    spring = bf.SpringDamper(one.end, two.start, 1e9)
+    sprung = bf.solve_modes(bf.Model([one, two], connectors=[spring]), 8).frequencies
+    assert (linked[:5] == 0.0).all()
+    np.testing.assert_allclose(linked[5:], sprung[5:], rtol=2e-5)  # the spring gives way by k_beam / 1e9
+
+
+def test_a_model_has_as_many_modes_as_coordinates_less_one_for_each_condition():
+    square = bf.Rectangle(0.01, 0.01)
+    one, two = (
+        bf.Beam(bf.Line(*ends), 1, bf.CRBF(1), square, STEEL) for ends in (((0, 0), (1, 0)), ((1.3, 0.4), (2, 1)))
+    )
+    model = bf.Model([one, two], [bf.Clamp(one.start), bf.Clamp(two.end)], connectors=[bf.Link(one.end, two.start)])
+    assert len(bf.solve_modes(model, 5).frequencies) == 5
+    with pytest.raises(bf.InputError, match="only 5 modes"):
+        bf.solve_modes(model, 6)

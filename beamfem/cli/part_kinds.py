@@ -147,6 +147,9 @@ _material, _section, _element = named("materials", MATERIALS), named("sections",
 Elements = reader(_elements)
 TYPES: dict[Any, Any] = {
     Point: reader(lambda value, names: names.point(value)),
+    Point | tuple[float, float]: reader(
+        lambda value, names: tuple(value) if type(value) is list else names.point(value)
+    ),
     Sequence[Point]: reader(lambda value, names: names.points(value)),
     Beam: reader(lambda value, names: names.beam(value)),
     Material: reader(_material),

@@ -131,6 +131,8 @@ def _type(hint: Any, types: Mapping[Any, Any]) -> Any:
         return hint
     if hint is inspect.Parameter.empty:
         return Any
+    if hint in types:
+        return types[hint]
     union = get_args(hint) if get_origin(hint) in (Union, UnionType) else (hint,)
     options = [option for option in union if option not in (NoneType, np.ndarray)]
     for option in reversed(options):

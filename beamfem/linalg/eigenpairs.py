@@ -48,10 +48,10 @@ def nothing_known(n: int) -> Pairs:
 def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarray) -> Pairs:
     """Return the largest mu (m,), descending, and x (n, m) with K^-1 mass x = mu x and x^T mass x = 1.
 
-    mass: positive definite, without the rows of multipliers, which have none; factors: of K, symmetric and positive definite along the free directions; count: number of
-    pairs to find besides the vectors x (n, k) that are `known`, with x^T mass x = 1. These are projected out of the
-    inverse on both sides; subtracting their mu instead would leave round-off that may look like a mode. m < count if
-    there are no more pairs. Raises ConvergenceError.
+    mass: positive definite, without the rows of multipliers, which have none; factors: of K, symmetric and positive
+    definite along the free directions; count: number of pairs to find besides the vectors x (n, k) that are `known`,
+    with x^T mass x = 1. These are projected out of the inverse on both sides; subtracting their mu instead would leave
+    round-off that may look like a mode. m < count if there are no more pairs. Raises ConvergenceError.
     """
     n = mass.shape[0]
     weighted = mass @ known

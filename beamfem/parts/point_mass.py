@@ -1,11 +1,12 @@
 """Concentrated masses and rigid bodies that move with a section."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from beamfem.model.beam import Point, require_point_of
 from beamfem.model.load_shapes import Disc
+from beamfem.model.part_units import UNIT
 from beamfem.parts.at_points import AtPoints
 from beamfem.physics.connections import BODY, MASS, Connection
 from beamfem.validation import convert, not_negative, positive, vector
@@ -38,8 +39,8 @@ class PointMass(AtPoints):
     """
 
     point: Point
-    mass: float
-    inertia: float = 0.0
+    mass: float = field(metadata={UNIT: "kg"})
+    inertia: float = field(default=0.0, metadata={UNIT: "kg m^2"})
 
     def __post_init__(self) -> None:
         require_point_of(self, "point")
@@ -95,9 +96,9 @@ class RigidBody(AtPoints):
     """
 
     point: Point
-    mass: float
-    inertia: float
-    offset: tuple[float, float] = (0.0, 0.0)
+    mass: float = field(metadata={UNIT: "kg"})
+    inertia: float = field(metadata={UNIT: "kg m^2"})
+    offset: tuple[float, float] = field(default=(0.0, 0.0), metadata={UNIT: "m"})
 
     def __post_init__(self) -> None:
         require_point_of(self, "point")

@@ -1,12 +1,13 @@
 """A spring with a damper, straight between two points or from a point to the ground."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Point, require_point_of
 from beamfem.model.load_shapes import Coil
+from beamfem.model.part_units import UNIT
 from beamfem.parts.at_points import AtPoints
 from beamfem.parts.distance import reference_distance
 from beamfem.physics.connections import GROUNDED_SPRING, SPRING, Connection
@@ -43,9 +44,9 @@ class SpringDamper(AtPoints):
 
     a: Point
     b: Point | tuple[float, float]
-    stiffness: float
-    damping: float = 0.0
-    length: float | None = None
+    stiffness: float = field(metadata={UNIT: "N/m"})
+    damping: float = field(default=0.0, metadata={UNIT: "N s/m"})
+    length: float | None = field(default=None, metadata={UNIT: "m"})
 
     def __post_init__(self) -> None:
         require_point_of(self, "a")

@@ -1,11 +1,12 @@
 """A torsion spring with a damper between two sections."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from beamfem.model.beam import Point, require_point_of
 from beamfem.model.load_shapes import Spiral
+from beamfem.model.part_units import UNIT
 from beamfem.parts.at_points import AtPoints
 from beamfem.physics.connections import TORSION_SPRING, Connection
 from beamfem.validation import convert, not_negative
@@ -41,8 +42,8 @@ class TorsionSpring(AtPoints):
 
     a: Point
     b: Point
-    stiffness: float
-    damping: float = 0.0
+    stiffness: float = field(metadata={UNIT: "N m/rad"})
+    damping: float = field(default=0.0, metadata={UNIT: "N m s/rad"})
 
     def __post_init__(self) -> None:
         require_point_of(self, "a")

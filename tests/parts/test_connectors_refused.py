@@ -222,12 +222,6 @@ def test_what_is_no_connector_is_refused():
         cantilever(own, [], [SpringDamper(own.end, own.end)])
     with pytest.raises(bf.InputError, match="has no points"):
         cantilever(own, [], [Nowhere(own.end, stiffness)])
-    _, _, model = portal()
-    for solve in (bf.solve_modes, bf.solve_buckling, bf.trace_equilibrium):
-        with pytest.raises(
-            bf.InputError, match="does not support connectors with unknowns of their own, such as RigidLink"
-        ):
-            solve(model)
 
 
 def test_starts_that_break_a_condition_are_refused():

@@ -1,6 +1,7 @@
 """Conditions with multipliers in every analysis: a hinge made of two conditions is the hinge of shared coordinates."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -41,11 +42,11 @@ def frame(seed, conditions):
     height = rng.uniform(0.01, 0.04)
     beams = [
         bf.Beam(bf.Line(tuple(one), tuple(two)), 4, bf.CRBF(order), bf.Rectangle(0.02, height), STEEL)
-        for one, two in zip(corners[:-1], corners[1:], strict=True)
+        for one, two in pairwise(corners)
     ]
     hinged = int(rng.integers(count - 1))
     joints, connectors = [], []
-    for number, (one, two) in enumerate(zip(beams[:-1], beams[1:], strict=True)):
+    for number, (one, two) in enumerate(pairwise(beams)):
         if number != hinged:
             joints.append(bf.Rigid(one.end, two.start))
         elif conditions:

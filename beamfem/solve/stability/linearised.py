@@ -223,8 +223,8 @@ def _effect(system: System, linear: LinearSolution) -> float:
 def _softened(geometric: csr_array, factors: Factorised, multipliers: int, count: int, none: float) -> np.ndarray:
     """Return a basis (unknown, m) of the shapes that lose the largest fraction of their stiffness per unit load.
 
-    Multipliers, the last of the unknowns, are zero in it; none: fraction that is round-off. The inverse of the tangent times -K_sigma is not symmetric, but it contains no
-    sums of large terms that cancel.
+    Multipliers, the last of the unknowns, are zero in it; none: fraction that is round-off. The inverse of the tangent
+    times -K_sigma is not symmetric, but it contains no sums of large terms that cancel.
     """
     n = geometric.shape[0]
 

@@ -14,16 +14,6 @@ from beamfem.precision.roundoff import digits_of, load_size, remainder, row_floo
 _DEPENDENT = 1e-10  # of a condition of unit size: its part that is independent of all others
 
 
-def refuse_multipliers(system: System, analysis: str) -> None:
-    """Raise InputError if a connector has unknowns of its own."""
-    for item in system.connectors.items:
-        if len(item.own):
-            raise InputError(
-                f"{analysis} does not support connectors with unknowns of their own, such as {item.name}; solve_static "
-                "and simulate do. A stiff spring in its place has none"
-            )
-
-
 def refuse_memory(system: System, analysis: str) -> None:
     """Raise InputError if a connector or a section law has history, so that states do not depend on the load alone."""
     for kind, name in system.history.holders:

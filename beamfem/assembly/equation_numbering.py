@@ -150,8 +150,8 @@ class Unknowns:
     free (n,): equation number of each coordinate, -1 if it is prescribed; dofs (unknown,): the coordinates in the
     order of the equations; layouts: one per block; pattern: the sparse matrix with room for its data, None for a band;
     coupled: positions of the entries (k, k) of each coupling that is not an element, -1 for entries without one;
-    border: equation numbers (k,) of each of them that reaches beyond a band, which has no positions then, else none;
-    reach (2, banded): see `reaches`, empty for a sparse matrix.
+    border: equation numbers (t,) of those that couplings reach beyond a band, whose entries (t + k, t + k), with k
+    multipliers, follow those of the band; reach (2, banded): see `reaches`, empty for a sparse matrix.
     """
 
     free: np.ndarray
@@ -159,13 +159,25 @@ class Unknowns:
     layouts: tuple[Layout, ...]
     pattern: csc_array | None
     coupled: tuple[np.ndarray, ...] = ()
-    border: tuple[np.ndarray, ...] = ()
+    border: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
     reach: np.ndarray = field(default_factory=lambda: np.empty((2, 0), dtype=np.int32))
 
     @property
     def banded(self) -> int:
         """Number of the equations of a band; those of multipliers follow."""
         return self.reach.shape[1]
+
+    @property
+    def border_size(self) -> int:
+        """Number t + k of the equations of a border: those coupled beyond the band, and multipliers."""
+        return len(self.border) + len(self.dofs) - self.banded if self.pattern is None else 0
+
+    @property
+    def entries(self) -> int:
+        """Number of the entries of a matrix: of a sparse one, or of a band and its border."""
+        if self.pattern is not None:
+            return len(self.pattern.data)
+        return len(self.dofs) * (2 * self.layouts[0].half_width + 1) + self.border_size**2
 
     @cached_property
     def first(self) -> int:
@@ -272,16 +284,23 @@ def _banded(
     """Return the unknowns of a band in the order of `dofs`, None if too many are coupled beyond it."""
     free, rows = _numbers(dofs, size), len(dofs) - len(couplings.multipliers)
     coupled = [free[coordinates] for coordinates in couplings.coordinates]
-    beyond = tuple(_beyond(numbers, half_width, rows) for numbers in coupled)
     if coupled and couplings.border is None:
         return None
-    if len(np.unique(np.concatenate([_NONE, *beyond]))) > (couplings.border or 0):
+    fits = [_fits(numbers, half_width, rows) for numbers in coupled]
+    inside = [own for own, fit in zip(coupled, fits, strict=True) if fit]
+    beyond = np.unique(np.concatenate([_NONE, *(own for own, fit in zip(coupled, fits, strict=True) if not fit)]))
+    if len(beyond) > (couplings.border or 0):
         return None
     none = np.empty((0, 0, 0), dtype=np.int32)
-    inside = [own for own, numbers in zip(coupled, beyond, strict=True) if not len(numbers)]
-    places = (_places(own, half_width, not len(numbers)) for own, numbers in zip(coupled, beyond, strict=True))
+    edge = beyond[(beyond >= 0) & (beyond < rows)]
+    bordering = np.concatenate([edge, np.arange(rows, len(dofs))])
+    behind = len(dofs) * (2 * half_width + 1)
+    places = (
+        _places(own, half_width) if fit else _places_in_border(own, bordering, behind)
+        for own, fit in zip(coupled, fits, strict=True)
+    )
     layouts = tuple(Layout(free, half_width, none) for _ in blocks)
-    return Unknowns(free, dofs, layouts, None, tuple(places), beyond, reaches(blocks, free, rows, inside))
+    return Unknowns(free, dofs, layouts, None, tuple(places), edge, reaches(blocks, free, rows, inside))
 
 
 def _sparse(blocks: Sequence[Mesh], size: int, unknown: np.ndarray, couplings: Couplings) -> Unknowns:
@@ -323,18 +342,24 @@ def _half_width(blocks: Sequence[Mesh], free: np.ndarray) -> int:
     return widest
 
 
-def _beyond(numbers: np.ndarray, half_width: int, rows: int) -> np.ndarray:
-    """Return the equation numbers (k,) of a coupling if they reach beyond a band of `rows` equations, else none."""
+def _fits(numbers: np.ndarray, half_width: int, rows: int) -> bool:
+    """Return whether a coupling of equations (k,) fits into a band of `rows` equations."""
     unknown = numbers[numbers >= 0]
-    fits = not len(unknown) or (int(np.ptp(unknown)) <= half_width and int(unknown.max()) < rows)
-    return _NONE if fits else numbers
+    return not len(unknown) or (int(np.ptp(unknown)) <= half_width and int(unknown.max()) < rows)
 
 
-def _places(numbers: np.ndarray, half_width: int, inside: bool) -> np.ndarray:
+def _places(numbers: np.ndarray, half_width: int) -> np.ndarray:
     """Return the positions (k, k) of the entries of a coupling in a band, -1 where it has none."""
     row, column = numbers[:, None], numbers[None, :]
     places = row * (2 * half_width + 1) + half_width + column - row
-    return np.where((row >= 0) & (column >= 0) & inside, places, -1)
+    return np.where((row >= 0) & (column >= 0), places, -1)
+
+
+def _places_in_border(numbers: np.ndarray, border: np.ndarray, first: int) -> np.ndarray:
+    """Return the positions (k, k) of the entries of a coupling in a border (m, m) that begins at position `first`."""
+    place = np.where(numbers >= 0, np.searchsorted(border, numbers), -1)
+    row, column = place[:, None], place[None, :]
+    return np.where((row >= 0) & (column >= 0), first + row * len(border) + column, -1)
 
 
 def reaches(blocks: Sequence[Mesh], free: np.ndarray, unknown: int, coupled: Sequence[np.ndarray] = ()) -> np.ndarray:

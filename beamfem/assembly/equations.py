@@ -8,7 +8,7 @@ from scipy.sparse import csc_array
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.differences import differentiated
 from beamfem.assembly.system import Proven, System
-from beamfem.linalg.bordered import BorderedTangent, border_of
+from beamfem.linalg.bordered import Border, BorderedTangent
 from beamfem.linalg.tangent import BandTangent, SparseTangent, Tangent
 from beamfem.precision.mixed_tangent import MixedTangent, mixed
 from beamfem.precision.saddle import SaddleTangent
@@ -101,12 +101,11 @@ def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float
 
 def _entries(system: System) -> np.ndarray:
     """Return an empty array for the entries of a tangent."""
-    unknown, pattern = len(system.unknowns.dofs), system.unknowns.pattern
-    return np.empty(unknown * (2 * system.layouts[0].half_width + 1) if pattern is None else len(pattern.data))
+    return np.empty(system.unknowns.entries)
 
 
 def add_coupled(system: System, matrix: np.ndarray, coupled: Sequence[np.ndarray]) -> None:
-    """Add the tangents (k, k) of connectors to the entries of a matrix; those that border a band have none there."""
+    """Add the tangents (k, k) of connectors that Python evaluates to the entries of a matrix."""
     for positions, tangent in zip(system.called_places, coupled, strict=True):
         mask = positions >= 0
         np.add.at(matrix.reshape(-1), positions[mask], tangent[mask])
@@ -115,16 +114,19 @@ def add_coupled(system: System, matrix: np.ndarray, coupled: Sequence[np.ndarray
 def tangent_of(system: System, matrix: np.ndarray, coupled: Sequence[np.ndarray]) -> Tangent:
     """Return the tangent with the entries of a matrix, flat as compiled code fills them.
 
-    coupled: tangent (k, k) of each connector; those that border no band are added to the matrix in place.
+    coupled: tangent (k, k) of each connector that Python evaluates, which is added to the matrix in place.
     """
     unknowns, multipliers = system.unknowns, len(system.connectors.multipliers)
     pattern = unknowns.pattern
     add_coupled(system, matrix, coupled)
     if pattern is None:
-        rows = matrix.reshape(-1, 2 * system.layouts[0].half_width + 1)[: unknowns.banded]
-        band = BandTangent(rows, unknowns.reach[0])
-        border = border_of(unknowns.banded, multipliers, system.called_border, coupled)
-        return BorderedTangent(band, border) if border.size else band
+        width, size = 2 * system.layouts[0].half_width + 1, unknowns.border_size
+        band = BandTangent(matrix[: unknowns.banded * width].reshape(-1, width), unknowns.reach[0])
+        if size == 0:
+            return band
+        behind = len(unknowns.dofs) * width
+        entries = matrix[behind : behind + size**2].reshape(size, size)
+        return BorderedTangent(band, Border(unknowns.border, multipliers, entries))
     whole = csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape)
     return SaddleTangent(SparseTangent(whole), multipliers) if multipliers else SparseTangent(whole)
 

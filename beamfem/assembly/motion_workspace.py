@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+import numpy as np
+
 from beamfem.assembly.rotating_vectors import runs_of
 from beamfem.assembly.scratch_memory import Arena
 from beamfem.assembly.system import System
@@ -20,16 +22,18 @@ class MotionWorkspace:
     """
 
     def __init__(self, system: System) -> None:
-        size, unknown, half = system.model.size, len(system.free_dofs), system.layouts[0].half_width
-        pattern, pairs = system.unknowns.pattern, runs_of(system.rotating)
+        size, unknown, unknowns = system.model.size, len(system.free_dofs), system.unknowns
+        pairs, multipliers = runs_of(system.rotating), system.connectors.multipliers
         self.assembler, self._pairs = system.assembler(), pairs
         nodes = sum(int(work.table[record.NODES]) for work in self.assembler.works)
-        first = system.unknowns.first
+        first = unknowns.first
         in_place = first >= 0
         room = Arena(
             {
                 "residual": (size,),
-                record.ROWS: (unknown, 2 * half + 1) if pattern is None else (len(pattern.data),),
+                record.ROWS: (unknowns.entries,),
+                record.EDGE_COLUMNS: (len(unknowns.border), unknown),
+                record.EDGE_FACTORS: (unknowns.border_size, unknowns.border_size + 1),
                 **({} if in_place else {record.RIGHT: (unknown,)}),
                 record.STEP: (max(size, unknown) + 2,),
                 record.CHANGE: (padded(size),),
@@ -54,6 +58,10 @@ class MotionWorkspace:
         self.solver[record.PRESCRIBED_DOFS] = address_of(self._prescribed)
         self.solver[record.RUNS_OF_PAIRS], self.solver[record.NODE_STRIDE] = len(pairs), nodes
         self.solver[record.PRESCRIBED] = len(self._prescribed)
+        self._border, self._multipliers = np.ascontiguousarray(unknowns.border), multipliers
+        self.solver[record.EDGE_NUMBERS] = address_of(self._border)
+        self.solver[record.MULTIPLIERS] = address_of(self._multipliers)
+        self.solver[record.BORDER] = self.rows + 8 * (unknowns.entries - unknowns.border_size**2)
 
 
 @contextmanager

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 
 from beamfem.assembly.equation_numbering import Unknowns
-from beamfem.kernels import model_passes, motion_stages, motion_steps, record, rollers
+from beamfem.kernels import bordered_band, model_passes, motion_stages, motion_steps, record, rollers
 from beamfem.kernels import newton_loop as newton
 from beamfem.kernels.band import Band, band
 from beamfem.kernels.bidirectional_lu import SHORT, BidirectionalLU, bidirectional_lu
@@ -93,4 +93,6 @@ def _of_motions(own: BidirectionalLU) -> dict[int, Routine]:
         record.FACTORISE: motion_stages.factorise,
         record.SOLVE: motion_stages.solve,
         record.CORRECT: motion_stages.correct,
+        record.FACTOR_BORDERED: bordered_band.factor_bordered,
+        record.SOLVE_BORDERED: bordered_band.solve_bordered,
     }

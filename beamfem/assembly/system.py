@@ -158,14 +158,8 @@ class System:
 
     @shared_table
     def _inside(self) -> tuple[bool, ...]:
-        """Which connectors compiled code evaluates: parts of the package whose tangents have places in the matrix."""
-        unknowns, items = self.unknowns, self.connectors.items
-        border = unknowns.border or ((),) * len(items)
-        banded = unknowns.pattern is None
-        return tuple(
-            item.compiled is not None and not (banded and len(numbers))
-            for item, numbers in zip(items, border, strict=True)
-        )
+        """Which connectors compiled code evaluates: the parts of the package."""
+        return tuple(item.compiled is not None for item in self.connectors.items)
 
     @shared_table
     def called(self) -> Connectors:
@@ -177,11 +171,6 @@ class System:
     def called_places(self) -> tuple[np.ndarray, ...]:
         """Positions (k, k) of the entries of the tangents of `called` in the matrix, -1 for those without one."""
         return self._called(self.unknowns.coupled)
-
-    @shared_table
-    def called_border(self) -> tuple[np.ndarray, ...]:
-        """Equation numbers (k,) of each of `called` that reaches beyond a band, else none."""
-        return self._called(self.unknowns.border)
 
     def _called(self, values: Sequence[Any]) -> tuple[Any, ...]:
         """Return those of the values, one for each connector, that belong to connectors evaluated by Python."""

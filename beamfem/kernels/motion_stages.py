@@ -10,6 +10,7 @@ from beamfem.kernels.predictor import FAST
 from beamfem.kernels.simd import WIDTH, as_rows
 
 _factor, _solve, _roll = caller("iisrr", "d"), caller("iirr"), caller("inrr")
+_factor_bordered, _solve_bordered = caller("ii", "d"), caller("ii")
 _rotate_pairs, _keep, _rotations = caller("idnirr"), caller("iiir"), caller("iiirr")
 _predict, _complete = inlined(extrapolation.predict), inlined(extrapolation.complete)
 _correct, _stay_on_planes = inlined(motion_steps.correct), inlined(rollers.stay_on_planes)
@@ -72,6 +73,8 @@ def factorise(system, solver, calls):
         reals(b[r.ROWS]),
         reals(b[r.STEP]),
     )
+    if b[r.EDGE] + b[r.CONDITIONS] > 0:
+        return _factor_bordered(call[r.FACTOR_BORDERED], solver, calls)
     return _factor(call[r.FACTOR_BOTH], unknown, half, reach, rows, space)
 
 
@@ -109,7 +112,10 @@ def solve(system, solver, calls):
     if rollers > 0:
         _roll(call[r.ROTATE_IN], rollers, first_of, normal, right)
     _rotate_vectors(b, call, -1.0)
-    _solve(call[r.SOLVE_BOTH], unknown, b[r.HALF], reals(b[r.ROWS]), right)
+    if b[r.EDGE] + b[r.CONDITIONS] > 0:
+        _solve_bordered(call[r.SOLVE_BORDERED], solver, calls)
+    else:
+        _solve(call[r.SOLVE_BOTH], unknown, b[r.HALF], reals(b[r.ROWS]), right)
     _rotate_vectors(b, call, 1.0)
     if rollers > 0:
         _roll(call[r.ROTATE_BACK], rollers, first_of, normal, right)
@@ -120,17 +126,22 @@ def solve(system, solver, calls):
 def correct(system, solver, calls):
     """Add corrections to the state; return the largest, relative to its scale."""
     s, b = wholes(system), wholes(solver)
-    return _correct(
-        s[r.SIZE],
+    n, state, multipliers = s[r.SIZE], reals(b[r.STATE]), wholes(b[r.MULTIPLIERS])
+    size = _correct(
+        n,
         b[r.UNKNOWN],
         b[r.FIRST_FREE],
-        reals(b[r.STATE]),
+        state,
         reals(b[r.RIGHT]),
         wholes(b[r.FREE_DOFS]),
         reals(b[r.INVERSE_SCALE]),
         reals(s[r.FACTORS]),
         reals(b[r.CHANGE]),
     )
+    for i in range(b[r.CONDITIONS]):
+        state[n + multipliers[i]] = 0.0  # multipliers have no rates
+        state[2 * n + multipliers[i]] = 0.0
+    return size
 
 
 @routine("iii", "d", fastmath=FAST)

@@ -211,7 +211,15 @@ ROTATIONS_WANTED = 45  # whether the stage computes how far sections have rotate
 REACH = 46  # address (2, unknown) of 32 bits: see `band.elimination`, downwards and backwards
 NODE_STRIDE = 47
 NOW = 48  # number of the step that is taken, of those of this call
-SOLVER_FIELDS = 49
+# a border of the band: unknowns that are coupled beyond it, and multipliers
+EDGE = 49  # number t of those unknowns
+EDGE_NUMBERS = 50  # address (t,)
+CONDITIONS = 51  # number k of multipliers, which follow the unknowns of the band
+MULTIPLIERS = 52  # address (k,): their coordinates
+BORDER = 53  # address (t + k, t + k)
+EDGE_COLUMNS = 54  # address (t, unknown): solutions of the band for the unit vectors of the edge
+EDGE_FACTORS = 55  # address (t + k, t + k + 1): factors of the coupled system, each row with its pivot row
+SOLVER_FIELDS = 56
 
 # ------------------------------------------------------------------ runs of vectors that rotate with their section
 PAIR_X, PAIR_Y = range(2)  # equation numbers of the first
@@ -243,5 +251,8 @@ PAIR_FIELDS = 5
     SOLVE,
     CORRECT,
     COMPLETE,
-) = range(21)
-SOLVER_ROUTINES = 21
+    # of a band with a border, see `bordered_band`
+    FACTOR_BORDERED,
+    SOLVE_BORDERED,
+) = range(23)
+SOLVER_ROUTINES = 23

@@ -1,6 +1,6 @@
 """Band matrices with a border: a few unknowns that are coupled beyond the band, and Lagrange multipliers."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -30,21 +30,7 @@ class Border(NamedTuple):
         return len(self.entries)
 
 
-def border_of(size: int, multipliers: int, coupled: Sequence[np.ndarray], matrices: Sequence[np.ndarray]) -> Border:
-    """Return the border of a band (size, size).
-
-    coupled: equation numbers (m,) of each matrix (m, m), -1 for what is no unknown, or none if it is not in the border.
-    """
-    everything = np.concatenate([*coupled, np.arange(size, size + multipliers)])
-    numbers = np.unique(everything[everything >= 0])
-    entries = np.zeros((len(numbers), len(numbers)))
-    for own, matrix in zip(coupled, matrices, strict=True):
-        if not len(own):
-            continue
-        mask = own >= 0
-        place = np.searchsorted(numbers, own[mask])
-        entries[np.ix_(place, place)] += matrix[np.ix_(mask, mask)]
-    return Border(numbers[numbers < size], multipliers, entries)
+NO_BORDER = Border(np.empty(0, dtype=np.int64), 0, np.empty((0, 0)))
 
 
 class BorderedFactors:

@@ -22,7 +22,7 @@ import beamfem as bf
 from beamfem.assembly import equation_numbering as layout
 from beamfem.assembly.equations import linearise
 from beamfem.assembly.system import System, system_of
-from beamfem.linalg.bordered import BorderedFactors, BorderedTangent, border_of
+from beamfem.linalg.bordered import Border, BorderedFactors, BorderedTangent
 from beamfem.linalg.lapack import LinAlgError
 from beamfem.linalg.tangent import UNROTATED, BandTangent
 
@@ -78,6 +78,18 @@ def test_its_tangent_is_that_of_the_sparse_matrix(number, monkeypatch, rng):
     assert one[0] == pytest.approx(other[0], rel=1e-13, abs=1e-13 * np.abs(other[0]).max())
     assert one[2] == pytest.approx(other[2], rel=1e-6, abs=1e-7 * np.abs(other[2]).max())
     assert one[3] == other[3]
+
+
+def border_of(size, multipliers, coupled, matrices):
+    """The border of a band (size, size) by matrices (m, m) of coupled equations (m,), -1 for what is no unknown."""
+    everything = np.concatenate([*coupled, np.arange(size, size + multipliers)])
+    numbers = np.unique(everything[everything >= 0])
+    entries = np.zeros((len(numbers), len(numbers)))
+    for own, matrix in zip(coupled, matrices, strict=True):
+        mask = own >= 0
+        place = np.searchsorted(numbers, own[mask])
+        entries[np.ix_(place, place)] += matrix[np.ix_(mask, mask)]
+    return Border(numbers[numbers < size], multipliers, entries)
 
 
 @pytest.mark.parametrize("multipliers", [0, 2])
@@ -150,7 +162,7 @@ def test_connectors_of_one_point_are_entries_of_the_band_however_many_there_are(
         model = cantilever(own, [bf.Gravity((0.0, -9.81))], parts)
         unknowns = system_of(model, static=False).unknowns
         assert (unknowns.pattern is None) == (widest > 0)
-        assert not any(len(numbers) for numbers in unknowns.border)
+        assert unknowns.border_size == 0
         tips.append(bf.simulate(model, 0.05, 1e-3).displacement(own.end))
     assert np.abs(tips[1]).max() > 1e-2
     assert tips[0] == pytest.approx(tips[1], abs=1e-8 * np.abs(tips[1]).max())

@@ -9,7 +9,7 @@ from beamfem.kernels import record
 from beamfem.kernels.motion_record import CORRECTION, TIME_STEP, MotionLimits
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.time_loop import march
-from beamfem.solve.motion.coupled_stages import CoupledStages
+from beamfem.solve.motion.coupled_stages import CoupledStages, is_weak
 from beamfem.solve.motion.stored_states import Saving
 
 BAND = MotionLimits()
@@ -35,7 +35,8 @@ class CompiledSteps:
     def __init__(self, system: System, space: MotionWorkspace, rule: np.ndarray, statistics: np.ndarray) -> None:
         self._system, self._space, self._statistics, self._step = system, space, statistics, float(rule[TIME_STEP])
         sparse, connected = system.unknowns.pattern is not None, bool(system.called.items)
-        self._limits = SPARSE if sparse else BORDERED if connected else BAND
+        bordered = system.unknowns.border_size > 0
+        self._limits = SPARSE if sparse else BORDERED if connected or bordered else BAND
         h, alpha_m, alpha_f, gamma, beta = rule
         space.arrays[record.RULE][: len(rule)], space.arrays[record.LIMITS][:] = rule, self._limits
         space.arrays[record.DIFFERENCES][:] = 0.0
@@ -43,6 +44,7 @@ class CompiledSteps:
         space.assembler.require("tangent", "prediction")
         space.solver[record.STATISTICS] = address_of(statistics)
         self._coupled = CoupledStages(system, space) if sparse or connected else None
+        self._untried = bordered and self._coupled is None
         self._deferred: Deferred | None = None
         self._error: BaseException | None = None
 
@@ -71,7 +73,12 @@ class CompiledSteps:
 
     def _advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """Do what `advance` does in one compiled call."""
-        space = self._space
+        space, unknowns = self._space, self._system.unknowns
+        if self._untried:
+            self._untried = False
+            p, v, a, _ = state
+            weak = is_weak(self._system, (p, v, a), float(times[0]), space.assembler.weights, self._step)
+            self._coupled = CoupledStages(self._system, space) if weak else None
         body, values, imposing = _sample_loads(self._system, times)
         varying = len(body) > 1
         assembler, solver = space.assembler, space.solver
@@ -102,6 +109,9 @@ class CompiledSteps:
             record.FIRST_STEP: saving.first,
             record.EVERY: saving.every,
             record.ROTATION_COUNT: len(saving.pairs),
+            # stages in Python factorise the border themselves
+            record.EDGE: len(unknowns.border) if self._coupled is None else 0,
+            record.CONDITIONS: unknowns.border_size - len(unknowns.border) if self._coupled is None else 0,
         }
         for field, value in (numbers | {field: address_of(array) for field, array in arrays.items()}).items():
             solver[field] = value

@@ -8,20 +8,37 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from beamfem.assembly.callbacks import Deferred, KeptErrors
-from beamfem.assembly.equations import tangent_of
+from beamfem.assembly.equations import linearise, tangent_of
 from beamfem.assembly.motion_workspace import MotionWorkspace
 from beamfem.assembly.system import System
 from beamfem.kernels import motion_stages, record, rollers
 from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.time_loop import march
-from beamfem.linalg.bordered import BorderedFactors, border_of
+from beamfem.linalg.bordered import NO_BORDER, BorderedFactors, BorderedTangent
 from beamfem.linalg.lapack import LinAlgError
 from beamfem.linalg.tangent import UNROTATED, Factorised, SparseTangent
 from beamfem.precision.saddle import SaddleTangent
 
 # smallest ratio of a pivot to the original diagonal entry with which a band alone has digits enough to be bordered
-_WEAK = 1e-10
+WEAK = 1e-10
+
+
+def is_weak(
+    system: System,
+    state: tuple[np.ndarray, np.ndarray, np.ndarray],
+    time: float,
+    weights: tuple[float, float, float],
+    step: float,
+) -> bool:
+    """Return whether the band of a bordered tangent has too few digits in p, p', p'' (n,) to be factorised alone."""
+    tangent = linearise(system, *state, time, weights, dt=step)[1]
+    if not isinstance(tangent, BorderedTangent):
+        return False
+    rows = np.ascontiguousarray(tangent.band.rows)
+    half = system.layouts[0].half_width
+    factor = bidirectional_lu(half, len(rows) < SHORT).factor
+    return not factor(len(rows), half, system.unknowns.reach, rows, np.empty(len(rows) + 2)) > WEAK
 
 
 class CoupledFactors(Protocol):
@@ -76,12 +93,12 @@ class BandFactorisation:
 
         Raises LinAlgError.
         """
-        size, multipliers = self._size, len(self._system.connectors.multipliers)
+        size = self._size
         tangent = tangent_of(self._system, self._matrix, coupled)
-        border = border_of(size, multipliers, self._system.called_border, coupled)
+        border = tangent.border if isinstance(tangent, BorderedTangent) else NO_BORDER
         self._kept[:] = self._matrix
         ratio = self._routines.factor.compiled(size, self._half, self._reach, self._rows, space)
-        if ratio > _WEAK or not border.size:
+        if ratio > WEAK or not border.size:
             return BorderedFactors(size, border, self._solve)
         self._matrix[:] = self._kept
         return SparseSolution(tangent.factorised(UNROTATED))

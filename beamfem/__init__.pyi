@@ -84,6 +84,7 @@ from .model.supports import Roller as Roller
 from .model.supports import Spring as Spring
 from .model.time_functions import Interpolated as Interpolated
 from .model.time_functions import Piecewise as Piecewise
+from .parts.drag import Drag as Drag
 from .parts.link import Link as Link
 from .parts.point_mass import PointMass as PointMass
 from .parts.point_mass import RigidBody as RigidBody

@@ -7,12 +7,14 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.cached_properties import cached_property
+from beamfem.element.fields import rule_of
 from beamfem.errors import InputError
 from beamfem.kernels.connection_passes import GENERATED
+from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.contribution import At, Contribution, Remembering, remembered, uses_rotations
 from beamfem.model.load_base import factor
 from beamfem.model.model import Model
-from beamfem.parts.at_points import AtPoints
+from beamfem.parts.at_points import AtNodes, AtPoints
 from beamfem.physics.connections import Connection
 from beamfem.validation import called, of_package
 
@@ -26,7 +28,8 @@ class Connector:
     """A contribution and the numbers of the coordinates that it acts on.
 
     dofs (d,): x, y and rotation of each of m points, x and y alone if it has no rotations; own (k,): its multipliers;
-    memory (h,): its history variables; reference (m, 3): q in the reference.
+    memory (h,): its history variables; reference (m, 3): q in the reference; given: the part of the model that it
+    belongs to, another one than `item` where a part along a beam acts at its nodes.
     """
 
     item: Contribution
@@ -34,6 +37,7 @@ class Connector:
     own: np.ndarray
     memory: np.ndarray
     reference: np.ndarray
+    given: Contribution
 
     @cached_property
     def all(self) -> np.ndarray:
@@ -44,7 +48,7 @@ class Connector:
     def alone(self) -> "Connector":
         """The same contribution with coordinates, multipliers and history variables numbered from 0, in this order."""
         dofs, own, memory = np.split(np.arange(self.variables), np.cumsum([len(self.dofs), len(self.own)]))
-        return Connector(self.item, dofs, own, memory, self.reference)
+        return Connector(self.item, dofs, own, memory, self.reference, self.given)
 
     @property
     def variables(self) -> int:
@@ -428,23 +432,38 @@ def _checked_connectors(model: Model) -> tuple[Connector, ...]:
     """Return the connectors of a model, evaluated once to check shapes and finite values."""
     first, connectors = model.coordinates, []
     behind = first + sum(item.unknowns for item in model.at_points)
-    for item in model.at_points:
-        dofs, positions = [], []
-        for point in item.points:
-            mesh = model.mesh_of(point)
-            node = mesh.node_at(point.fraction)
-            numbers = mesh.coordinates_of(node)
-            dofs += [numbers[name] for name in _COORDINATES[: 3 if uses_rotations(item) else 2]]
-            positions.append([*mesh.position[node].tolist(), 0.0])
-        multipliers = np.arange(first, first + item.unknowns)
-        first += item.unknowns
-        memory = np.arange(behind, behind + len(remembered(item)))
-        behind += len(memory)
-        connectors.append(Connector(item, np.array(dofs, dtype=np.int64), multipliers, memory, np.array(positions)))
+    for given in model.at_points:
+        for item, nodes in _with_nodes(given, model):
+            dofs, positions = [], []
+            for mesh, node in nodes:
+                numbers = mesh.coordinates_of(node)
+                dofs += [numbers[name] for name in _COORDINATES[: 3 if uses_rotations(item) else 2]]
+                positions.append([*mesh.position[node].tolist(), 0.0])
+            multipliers = np.arange(first, first + item.unknowns)
+            first += item.unknowns
+            memory = np.arange(behind, behind + len(remembered(item)))
+            behind += len(memory)
+            place = np.array(dofs, dtype=np.int64), multipliers, memory, np.array(positions)
+            connectors.append(Connector(item, *place, given))
     for connector in connectors:
         if connector.compiled is None:
             _require_finite(connector.alone)
     return tuple(connectors)
+
+
+def _with_nodes(given: Contribution, model: Model) -> list[tuple[Contribution, list[tuple[BeamMesh, int]]]]:
+    """Return a part with its nodes; of one along a beam, what acts at each node with its weight [m]."""
+    if not isinstance(given, AtNodes):
+        places = [(model.mesh_of(point), point.fraction) for point in given.points]
+        return [(given, [(mesh, mesh.node_at(fraction)) for mesh, fraction in places])]
+    mesh = model.mesh_of(given.beam.start)
+    xi, weights = rule_of(given.beam.element.field)
+    lengths, arcs = np.zeros(len(mesh.position)), np.zeros(len(mesh.position))
+    np.add.at(lengths, mesh.node, mesh.lengths[:, None] * weights)
+    elements = np.repeat(np.arange(mesh.elements), len(xi))
+    arcs[mesh.node.ravel()] = mesh.arc_length(elements, np.tile(xi, mesh.elements))
+    points = [given.beam.at(min(arc / given.beam.curve.length, 1.0)) for arc in arcs.tolist()]
+    return [(item, [(mesh, node)]) for node, item in enumerate(given.at_nodes(points, lengths))]
 
 
 def _require_finite(item: Connector) -> None:

@@ -11,6 +11,7 @@ from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.generated import (
     body_connection,
+    drag_connection,
     grounded_spring_connection,
     link_connection,
     mass_connection,
@@ -27,6 +28,7 @@ GENERATED: dict[str, ModuleType] = {
     "grounded_spring": grounded_spring_connection,
     "torsion_spring": torsion_spring_connection,
     "link": link_connection,
+    "drag": drag_connection,
 }
 
 # ------------------------------------------------------------------ table of the parts of one kind

@@ -1,11 +1,12 @@
 """What parts at points have in common: force and energy from the definition of their connection."""
 
+from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
 
 from beamfem.kernels.connection_passes import in_python
-from beamfem.model.beam import Point
+from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import At
 from beamfem.model.load_shapes import ConnectorShape
 from beamfem.physics.connections import Connection, Trigonometry
@@ -73,3 +74,37 @@ class AtPoints:
         kinetic = connection.kinetic(q, v, data, _ANALYTIC) if connection.kinetic else 0.0
         potential = connection.potential(q, data, at.gravity, _ANALYTIC) if connection.potential else 0.0
         return kinetic, potential
+
+
+class AtNodes:
+    """A part along a beam that acts at all of its nodes.
+
+    Attributes
+    ----------
+    beam : Beam
+        The beam.
+    """
+
+    __slots__ = ()
+    unknowns: ClassVar[int] = 0
+    conservative: ClassVar[bool] = True
+    rotations: ClassVar[bool] = False
+
+    beam: Beam
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """The ends of the beam."""
+        return self.beam.start, self.beam.end
+
+    def at_nodes(self, points: Sequence[Point], lengths: np.ndarray) -> tuple[AtPoints, ...]:
+        """Return what acts at the nodes of the beam; lengths (n,): that belong to each [m]."""
+        raise NotImplementedError
+
+    def force(self, at: At) -> np.ndarray:
+        """Return the forces at the ends: none, as those at the nodes are separate parts."""
+        return np.zeros(3 * len(at.q))
+
+    def energy(self, at: At) -> tuple[float, float]:
+        """Return the kinetic and the potential energy [J]: none."""
+        return 0.0, 0.0

@@ -13,6 +13,7 @@ from beamfem.model.supports import Foundation as Foundation
 from beamfem.model.joints import Rigid as Rigid
 from beamfem.model.joints import Hinge as Hinge
 from beamfem.parts.link import Link as Link
+from beamfem.parts.drag import Drag as Drag
 from beamfem.parts.spring_damper import SpringDamper as SpringDamper
 from beamfem.parts.torsion_spring import TorsionSpring as TorsionSpring
 from beamfem.parts.point_mass import PointMass as PointMass

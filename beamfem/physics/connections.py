@@ -118,6 +118,16 @@ def _link_conditions(q: list[Vector], data: Vector, f: Trigonometry) -> tuple[Nu
     return ((x * x + y * y - data[0] * data[0]) / (2 * data[0]),)
 
 
+_LEAST = 1e-300  # [m^2/s^2], so that the derivative of |v| v is zero at rest
+
+
+def _drag_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Trigonometry) -> Number:
+    """Return c |v|^3 / 3."""
+    ((x, y),) = v
+    square = x * x + y * y + _LEAST
+    return data[0] * square * f.sqrt(square) / 3
+
+
 MASS = Connection("mass", 1, 2, ("mass", "x", "y"), _mass_kinetic, _mass_potential)
 BODY = Connection("body", 1, 3, ("mass", "inertia", "along", "across", "x", "y"), _body_kinetic, _body_potential)
 _SPRING = ("stiffness", "damping", "length")
@@ -129,4 +139,5 @@ TORSION_SPRING = Connection(
     "torsion_spring", 2, 3, ("stiffness", "damping"), None, _torsion_potential, _torsion_dissipation
 )
 LINK = Connection("link", 2, 2, ("length",), None, None, None, _link_conditions, 1)
-CONNECTIONS = (MASS, BODY, SPRING, GROUNDED_SPRING, TORSION_SPRING, LINK)
+DRAG = Connection("drag", 1, 2, ("coefficient",), None, None, _drag_dissipation)
+CONNECTIONS = (MASS, BODY, SPRING, GROUNDED_SPRING, TORSION_SPRING, LINK, DRAG)

@@ -32,25 +32,28 @@ def momenta_of_connectors(solution: "Solution") -> np.ndarray:
 
 
 def connector_force(solution: "Solution", connector: Contribution) -> np.ndarray:
-    """Return the forces of a connector on its points (steps, m, 3): fx, fy [N], moment [N m]. Raises InputError."""
+    """Return the forces of a connector on its points (steps, m, 3): fx, fy [N], moment [N m]. Raises InputError.
+
+    Of a part along a beam, the points are the nodes of the beam.
+    """
     system, times = loading(solution)
-    item = _bound(solution, connector)
-    forces = [
-        item.by_point(-item.force(item.at(motion, at, system.connectors.gravity(at)))[: len(item.dofs)])
-        for motion, at in _states(solution, times)
-    ]
+    bound = _bound(solution, connector)
+    forces = []
+    for motion, at in _states(solution, times):
+        gravity = system.connectors.gravity(at)
+        forces.append([item.by_point(-item.force_in(motion, at, gravity)[: len(item.dofs)]) for item in bound])
     return np.array(forces).reshape(len(solution), -1, 3)
 
 
 def multipliers(solution: "Solution", connector: Contribution) -> np.ndarray:
     """Return the additional unknowns of a connector (steps, k), such as multipliers. Raises InputError."""
-    return solution.p[:, _bound(solution, connector).own]
+    return solution.p[:, np.concatenate([item.own for item in _bound(solution, connector)])]
 
 
-def _bound(solution: "Solution", connector: Contribution) -> Connector:
-    for item in loading(solution)[0].connectors.items:
-        if item.item is connector:
-            return item
+def _bound(solution: "Solution", connector: Contribution) -> list[Connector]:
+    bound = [item for item in loading(solution)[0].connectors.items if item.given is connector]
+    if bound:
+        return bound
     raise InputError(f"{shown(connector)} is not a connector of this model; use one of model.connectors")
 
 

@@ -20,7 +20,7 @@ from beamfem.model.load_shapes import (
     drawn,
 )
 from beamfem.model.model import Model
-from beamfem.parts.at_points import AtPoints
+from beamfem.parts.at_points import AtNodes, AtPoints
 from beamfem.view import symbols
 from beamfem.view.frames import one_row
 
@@ -118,6 +118,8 @@ def _draw_connectors(axes: Any, solution: "Solution", row: int) -> list[Any]:
     only = one_row(solution, row) if connectors else solution
     artists, stamps, line = [], Stamps(), {"color": INK, "zorder": 6.0}
     for connector in connectors:
+        if isinstance(connector, AtNodes):
+            continue  # of the velocity
         if not isinstance(connector, AtPoints):
             x, y = np.array([only.position(point)[0] for point in connector.points]).T
             artists += axes.plot(x, y, linestyle="--", linewidth=1.0, marker="o", markersize=5.0, **line)

@@ -272,3 +272,31 @@ def test_parts_are_drawn_where_they_are(tmp_path):
     ends = np.concatenate([line.get_xydata()[[0, -1]] for line in axes.lines])
     for place in ((0.0, -1.0), (0.05, -1.0), (0.6, -0.9), (1.0, 0.3)):
         assert np.linalg.norm(ends - place, axis=1).min() < 1e-9
+
+
+@pytest.mark.parametrize("element", ELEMENTS, ids=lambda element: element.name)
+def test_a_falling_beam_reaches_the_speed_of_its_drag(element):
+    """A free beam that falls across itself: v = v_end tanh(g t / v_end) with v_end^2 = (m / L) g / c."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 3, element, SQUARE, STEEL)
+    coefficient = 0.6
+    fluid = bf.Drag(beam, coefficient)
+    motion = bf.simulate(bf.Model([beam], loads=[bf.Gravity((0.0, -9.81))], connectors=[fluid]), 0.5, 1e-3)
+    last = np.sqrt(0.785 * 9.81 / coefficient)
+    speed = motion.velocity(beam.at(1 / 3))[-1]
+    np.testing.assert_allclose(speed, [0.0, -last * np.tanh(9.81 * 0.5 / last)], rtol=1e-5, atol=1e-6)
+    force = motion.connector_force(fluid)[-1, :, :2].sum(axis=0)
+    np.testing.assert_allclose(force, [0.0, coefficient * speed[1] ** 2], rtol=1e-4, atol=1e-6)
+
+
+@pytest.mark.parametrize(("order", "elements"), [(2, 1), (3, 1), (4, 2)])
+def test_drag_of_a_spinning_beam_is_integrated_exactly(order, elements):
+    """The torque about a pin of w^2 c s^2 s is c w^2 L^4 / 4, of degree 3 in s: exact from order 2 on."""
+    beam = bf.Beam(bf.Line((0, 0), (2, 0)), elements, bf.CRBF(order), SQUARE, STEEL)
+    fluid = bf.Drag(beam, 0.7)
+    model = bf.Model([beam], [bf.Pin(beam.start)], connectors=[fluid])
+    start = bf.simulate(model, 1e-6, 1e-6, velocity=bf.RigidVelocity(angular=3.0))
+    forces = start.connector_force(fluid)[0]
+    places = np.sort(beam.element.field.nodes)
+    fractions = np.unique([(i + place) / elements for i in range(elements) for place in places])
+    torque = (2.0 * fractions * forces[:, 1]).sum()
+    assert torque == pytest.approx(-0.7 * 9.0 * 2.0**4 / 4, rel=1e-12)

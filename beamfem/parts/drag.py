@@ -1,0 +1,70 @@
+"""Drag of a fluid along a beam."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from beamfem.model.beam import Beam, Point, require_beam
+from beamfem.model.part_units import UNIT
+from beamfem.parts.at_points import AtNodes, AtPoints
+from beamfem.physics.connections import DRAG, Connection
+from beamfem.validation import convert, not_negative
+
+
+@dataclass(frozen=True, slots=True)
+class DragAtNode(AtPoints):
+    """The drag - coefficient |v| v of a node; coefficient [kg/m], with the length that belongs to the node."""
+
+    point: Point
+    coefficient: float
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """The node."""
+        return (self.point,)
+
+    @property
+    def connection(self) -> Connection:
+        """Drag."""
+        return DRAG
+
+    def data(self, reference: np.ndarray) -> tuple[float, ...]:
+        """Return the coefficient."""
+        return (self.coefficient,)
+
+
+@dataclass(frozen=True, slots=True)
+class Drag(AtNodes):
+    """Drag along a beam, - c |v| v per unit length [N/m] at the velocity v, as of a fluid at rest.
+
+    It acts at the nodes, each with its weight of the quadrature: exact to degree 2 k - 1 on elements of order k.
+
+    Parameters
+    ----------
+    beam : Beam
+        The beam.
+    coefficient : float, [kg/m^2]
+        Coefficient c >= 0: for a fluid of density rho and drag coefficient C_D of a section of height h, rho C_D h / 2.
+
+    Raises
+    ------
+    InputError
+        For an invalid value.
+
+    Examples
+    --------
+    >>> water = bf.Drag(beam, coefficient=0.5 * 1000.0 * 1.2 * 0.1)
+    >>> falling = bf.Model([beam], loads=[bf.Gravity((0.0, -9.81))], connectors=[water])
+    """
+
+    beam: Beam
+    coefficient: float = field(metadata={UNIT: "kg/m^2"})
+
+    def __post_init__(self) -> None:
+        require_beam("Drag", self.beam)
+        convert(self, not_negative, "coefficient")
+
+    def at_nodes(self, points: Sequence[Point], lengths: np.ndarray) -> tuple[AtPoints, ...]:
+        """Return what acts at the nodes of the beam; lengths (n,): that belong to each [m]."""
+        return tuple(map(DragAtNode, points, (self.coefficient * lengths).tolist()))

@@ -11,7 +11,9 @@ from beamfem.curves import BSpline, Chain, Curve, Line, Polyline
 from beamfem.errors import InputError
 from beamfem.io.mesh_chains import Piece, chains
 from beamfem.model.beam import Beam, Point
-from beamfem.model.joints import Hinge, Joint, Rigid
+from beamfem.model.joints import Joint
+from beamfem.parts.hinge import Hinge
+from beamfem.parts.rigid import Rigid
 from beamfem.reprs import brief
 from beamfem.validation import count, items, one_of, require_known, shown, vector
 

@@ -8,7 +8,7 @@ import numpy as np
 from beamfem.errors import InputError, UnitsWarning, warn
 from beamfem.material import Material
 from beamfem.model.beam import Beam
-from beamfem.model.loads import Gravity
+from beamfem.model.load_base import BodyLoad
 from beamfem.units import Units
 
 
@@ -49,7 +49,7 @@ def _implausible(beams: Sequence[Beam], loads: Iterable[Any], units: Units) -> I
         yield from _of_value("youngs_modulus", material.youngs_modulus, _MODULUS, units)
         yield from _of_value("density", material.density, _DENSITY, units)
     for load in loads:
-        if isinstance(load, Gravity):
+        if isinstance(load, BodyLoad):
             yield from _of_value("gravity", float(np.hypot(*load.vector)), _GRAVITY, units)
 
 

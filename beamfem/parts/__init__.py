@@ -1,1 +1,1 @@
-"""Masses, springs, dampers and links at points, one file each."""
+"""What acts on beams, one file each: supports, joints, loads, masses, springs, links, drag."""

@@ -6,7 +6,8 @@ from beamfem.model.joints import Joint
 from beamfem.model.load_base import Load
 from beamfem.model.supports import Support
 from beamfem.parts import listed_parts as parts
-from beamfem.parts.point_mass import PointMass, RigidBody
+from beamfem.parts.point_mass import PointMass
+from beamfem.parts.rigid_body import RigidBody
 
 BASES: dict[str, Any] = {"supports": Support, "loads": Load, "joints": Joint, "masses": (PointMass, RigidBody)}
 _ALL = (Support, Load, Joint, PointMass, RigidBody)

@@ -7,7 +7,10 @@ from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, LimitPointError
 from beamfem.model.load_base import Load, factor
 from beamfem.model.model import Model
-from beamfem.model.supports import DIRECTIONS, PointSupport, Prescribed, Roller, Spring, Value
+from beamfem.model.supports import DIRECTIONS, PointSupport, Value
+from beamfem.parts.prescribed import Prescribed
+from beamfem.parts.roller import Roller
+from beamfem.parts.spring import Spring
 from beamfem.solve.newton.iteration import Newton, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
 from beamfem.solve.statics.load_steps import Snap, reach, require_no_jump_of_rotations

@@ -63,7 +63,7 @@ class Equations:
         for number, values in enumerate(self.springs):
             self.table[record.SPRING_DOF + number] = address_of(values)
         self.connections = connections
-        if connections is not None and len(connections.table):
+        if connections is not None:
             self.table[record.CONNECTIONS] = len(connections.table)
             self.table[record.CONNECTION_TABLES] = address_of(connections.table)
             self.table[record.ADD_CONNECTIONS] = add_connections.address

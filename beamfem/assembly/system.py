@@ -151,8 +151,10 @@ class System:
         return Equations(groups, self.springs, self.model.size, self._connections)
 
     @shared_table
-    def _connections(self) -> ConnectionTable:
-        """The parts at points that compiled code evaluates."""
+    def _connections(self) -> ConnectionTable | None:
+        """The parts at points that compiled code evaluates, None if there are none."""
+        if not any(self._inside):
+            return None
         places = zip(self.connectors.items, self.unknowns.coupled, self._inside, strict=True)
         return ConnectionTable((item, own) for item, own, inside in places if inside)
 

@@ -16,7 +16,7 @@ from beamfem.element.fields import Cubic
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.model.jumps import find_jumps
-from beamfem.section.law import ConstitutiveLaw, law_of
+from beamfem.section.law import ConstitutiveLaw, SectionLaw
 from beamfem.section.protocol import CrossSection
 from beamfem.section.thermal import expansion
 from beamfem.validation import called, count, finite, fulfils, function_of_one, shown, text
@@ -193,7 +193,10 @@ class Beam:
     @cached_property
     def law(self) -> ConstitutiveLaw | None:
         """Nonlinear law of the section, None for linear sections and for sections that vary along the beam."""
-        return law_of(self.section, self.material) if self.prismatic else None
+        section = self.section
+        if not self.prismatic or not fulfils(section, SectionLaw):
+            return None
+        return ConstitutiveLaw(cast(SectionLaw, section), self.material)
 
     def at(self, fraction: float) -> "Point":
         """Return the point at a fraction of the arc length.

@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Protocol, cast, runtime_checkable
 
 import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Point, require_point
 from beamfem.reprs import brief
-from beamfem.validation import count, finite, flag, items, shown
+from beamfem.validation import count, finite, flag, fulfils, items, shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,7 +183,8 @@ def uses_rotations(connector: Contribution) -> bool:
 
 def remembered(connector: Contribution) -> np.ndarray:
     """Return the initial history variables of a connector (h,). Raises InputError."""
-    if not isinstance(connector, Remembering):
+    if not fulfils(connector, Remembering):
         return np.empty(0)
     name = f"memory of {type(connector).__name__}"
-    return np.array([finite(name, value) for value in items(name, connector.memory)], dtype=float)
+    memory = items(name, cast(Remembering, connector).memory)
+    return np.array([finite(name, value) for value in memory], dtype=float)

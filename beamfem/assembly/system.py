@@ -163,7 +163,7 @@ class System:
         """Which connectors compiled code evaluates: the parts of the package."""
         return tuple(item.compiled is not None for item in self.connectors.items)
 
-    @shared_table
+    @cached_property
     def called(self) -> Connectors:
         """The connectors that Python evaluates."""
         items = self._called(self.connectors.items)

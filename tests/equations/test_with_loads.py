@@ -285,7 +285,7 @@ def test_copies_in_other_processes_are_models_by_themselves():
         (lambda model: model.with_(loads=7.0), "loads of Model"),
         (lambda model: model.with_(supports=[force(model.beams[1])]), "it belongs in loads"),
         (lambda model: model.with_(connectors=[1.0]), "connectors of a Model cannot hold"),
-        (lambda model: model.with_(), "with_ takes the supports, loads or connectors"),
+        (lambda model: model.with_(), "with_ takes the supports, loads, connectors or masses"),
         (
             lambda model: model.with_loads([force(frame().beams[1])]),
             r"not in this model; add it to beams, or use model\.beams\[1\]",

@@ -38,7 +38,8 @@ Contents; see help(bf.Beam), for example, for details.
     Along beams       SectionForces BeamStress Fields FieldOnBasis field_on_basis
     Studies           sweep converge
     User-defined      PointLoad LineLoad BodyLoad ImposedStrain PointSupport LineSupport Joint
-                      Contribution At Remembering RememberingLaw Scheme Integrator EquationsOfMotion
+                      Contribution At PartAtPoints Connection Remembering RememberingLaw
+                      Scheme Integrator EquationsOfMotion
     Errors            BeamfemError InputError UnknownPointError FreeMotionError ConvergenceError
                       LimitPointError FileError MissingPackageError
     Warnings          UnstableWarning RoundOffWarning LockingWarning LargeStrainWarning EnergyWarning TimeStepWarning

@@ -70,6 +70,7 @@ from .model.supports import PointSupport as PointSupport
 from .model.time_functions import Interpolated as Interpolated
 from .model.time_functions import Piecewise as Piecewise
 from .parts.actuation import Actuation as Actuation
+from .parts.at_points import PartAtPoints as PartAtPoints
 from .parts.clamp import Clamp as Clamp
 from .parts.distributed_load import DistributedLoad as DistributedLoad
 from .parts.drag import Drag as Drag
@@ -90,6 +91,7 @@ from .parts.spring import Spring as Spring
 from .parts.spring_damper import SpringDamper as SpringDamper
 from .parts.temperature import Temperature as Temperature
 from .parts.torsion_spring import TorsionSpring as TorsionSpring
+from .physics.connections import Connection as Connection
 from .results.beam_stress import BeamStress as BeamStress
 from .results.path import Bifurcation as Bifurcation
 from .results.path import Path as Path

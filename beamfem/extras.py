@@ -15,6 +15,7 @@ _EXTRAS = {
     "meshio": "mesh",
     "pillow": "plot",
     "pyvista": "vtk",
+    "sympy": "test",
     "vtk": "vtk",
     "xarray": "xarray",
 }

@@ -8,6 +8,8 @@ import numpy as np
 from beamfem.assembly.connectors import Connector
 from beamfem.kernels import connection_passes as passes
 from beamfem.kernels.pointers import address_of
+from beamfem.physics.compiled_connections import passes_of
+from beamfem.physics.connections import Connection
 
 
 class ConnectionTable:
@@ -17,14 +19,14 @@ class ConnectionTable:
     """
 
     def __init__(self, parts: Iterable[tuple[Connector, np.ndarray]]) -> None:
-        kinds: defaultdict[str, list[tuple[Connector, np.ndarray]]] = defaultdict(list)
+        kinds: defaultdict[Connection, list[tuple[Connector, np.ndarray]]] = defaultdict(list)
         for item, places in parts:
             assert item.compiled is not None
-            kinds[item.compiled.name].append((item, places))
+            kinds[item.compiled].append((item, places))
         self.table = np.zeros((len(kinds), passes.FIELDS), dtype=np.int64)
         self._kept: list[np.ndarray] = []
-        for row, (name, alike) in zip(self.table, kinds.items(), strict=True):
-            first, generated = alike[0][0], passes.GENERATED[name]
+        for row, (connection, alike) in zip(self.table, kinds.items(), strict=True):
+            first, compiled = alike[0][0], passes_of(connection)
             arrays = (
                 np.array([item.all for item, _ in alike], dtype=np.int64),
                 np.array([item.data for item, _ in alike], dtype=float),
@@ -35,4 +37,4 @@ class ConnectionTable:
             row[[passes.COUNT, passes.DATA_SIZE]] = arrays[1].shape
             row[passes.COORDINATES], row[passes.MULTIPLIERS] = len(first.dofs), len(first.own)
             row[passes.PER_POINT] = first.per_point
-            row[[passes.FORCE, passes.TANGENT_PASS]] = generated.force.address, generated.tangent.address
+            row[[passes.FORCE, passes.TANGENT_PASS]] = compiled.force.address, compiled.tangent.address

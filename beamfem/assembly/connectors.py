@@ -9,14 +9,14 @@ from scipy.linalg import LinAlgError
 from beamfem.cached_properties import cached_property
 from beamfem.element.fields import rule_of
 from beamfem.errors import InputError
-from beamfem.kernels.connection_passes import GENERATED
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.contribution import At, Contribution, Remembering, remembered, uses_rotations
 from beamfem.model.load_base import factor
 from beamfem.model.model import Model
-from beamfem.parts.at_points import AtNodes, AtPoints
+from beamfem.parts.at_points import PartAlongBeam, PartAtPoints
+from beamfem.physics.compiled_connections import passes_of
 from beamfem.physics.connections import Connection
-from beamfem.validation import called, of_package
+from beamfem.validation import called, finite
 
 COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted
 
@@ -66,14 +66,24 @@ class Connector:
     @cached_property
     def compiled(self) -> Connection | None:
         """The definition by which compiled code evaluates it, None for a user-defined contribution."""
-        item = self.item
-        return item.connection if isinstance(item, AtPoints) and of_package(type(item)) else None
+        return self.item.connection if isinstance(self.item, PartAtPoints) else None
 
     @cached_property
     def data(self) -> np.ndarray:
         """Numbers of a compiled part, see `physics.connections`."""
-        assert isinstance(self.item, AtPoints)
-        return np.array(self.item.data(self.reference), dtype=float)
+        assert isinstance(self.item, PartAtPoints)
+        connection = self.item.connection
+        if connection.points != len(self.reference):
+            raise InputError(
+                f"{connection.name} is defined for {connection.points} point{'s' * (connection.points > 1)}, but "
+                f"{self.name} has {len(self.reference)}"
+            )
+        numbers, names = self.item.data(self.reference), connection.data
+        if len(numbers) != len(names):
+            raise InputError(
+                f"data of {self.name} must return {len(names)} numbers ({', '.join(names)}), got {len(numbers)}"
+            )
+        return np.array([finite(f"{name} of {self.name}", x) for name, x in zip(names, numbers, strict=True)])
 
     @property
     def per_point(self) -> int:
@@ -190,14 +200,14 @@ class Connector:
         if self.compiled is None:
             return self.force(self.at(motion, time, gravity)).real
         result = np.empty(len(self.all))
-        GENERATED[self.compiled.name].force(*self._numbers(motion, gravity), result)
+        passes_of(self.compiled).force(*self._numbers(motion, gravity), result)
         return result
 
     def _compiled_tangent(
         self, connection: Connection, motion: Motion, gravity: np.ndarray, weights: Sequence[float]
     ) -> np.ndarray:
         result = np.empty((len(self.all), len(self.all)))
-        GENERATED[connection.name].tangent(*self._numbers(motion, gravity), *map(float, weights), result)
+        passes_of(connection).tangent(*self._numbers(motion, gravity), *map(float, weights), result)
         if not np.isfinite(result).all():
             raise LinAlgError(f"force of {self.name} is not finite")
         return result
@@ -453,7 +463,7 @@ def _checked_connectors(model: Model) -> tuple[Connector, ...]:
 
 def _with_nodes(given: Contribution, model: Model) -> list[tuple[Contribution, list[tuple[BeamMesh, int]]]]:
     """Return a part with its nodes; of one along a beam, what acts at each node with its weight [m]."""
-    if not isinstance(given, AtNodes):
+    if not isinstance(given, PartAlongBeam):
         places = [(model.mesh_of(point), point.fraction) for point in given.points]
         return [(given, [(mesh, mesh.node_at(fraction)) for mesh, fraction in places])]
     mesh = model.mesh_of(given.beam.start)

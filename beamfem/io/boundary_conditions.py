@@ -14,7 +14,7 @@ from beamfem.model.load_base import Load, factor
 from beamfem.model.model import Model
 from beamfem.model.state_protocols import in_plane
 from beamfem.model.supports import DIRECTIONS, LineSupport, PointSupport
-from beamfem.parts.at_points import AtNodes
+from beamfem.parts.at_points import PartAlongBeam
 from beamfem.results import postprocess
 from beamfem.results.reactions import reaction_of
 from beamfem.results.solution_system import loading
@@ -160,7 +160,7 @@ def _of_load(
 
 def _connectors(model: Model) -> Iterator[Vertices]:
     for connector in model.at_points:
-        if isinstance(connector, AtNodes):
+        if isinstance(connector, PartAlongBeam):
             continue  # acts along a beam
         for number, point in enumerate(connector.points):
             values = _of_connector(connector, number)

@@ -1,11 +1,6 @@
 """Forces and tangents of parts at points, added to the residual and the matrix of a model."""
 
-from collections.abc import Callable
-from functools import cache
-from types import FunctionType, ModuleType
-from typing import Any
-
-import numpy as np
+from types import ModuleType
 
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
@@ -104,10 +99,3 @@ def add_connections(kinds, tables, system):
                 for i in range(whole * whole):
                     if places[i] >= 0:
                         matrix[places[i]] += out[i]
-
-
-@cache
-def in_python(name: str) -> Callable[..., Any]:
-    """Return the force of a connection as a function of Python, for complex numbers as well."""
-    function = GENERATED[name].force.function
-    return FunctionType(function.__code__, {**function.__globals__, "math": np})

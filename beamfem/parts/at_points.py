@@ -1,42 +1,44 @@
 """What parts at points have in common: force and energy from the definition of their connection."""
 
 from collections.abc import Sequence
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from beamfem.kernels.connection_passes import in_python
 from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import At
 from beamfem.model.load_shapes import ConnectorShape
-from beamfem.physics.connections import Connection, Trigonometry
+from beamfem.physics.compiled_connections import in_python
+from beamfem.physics.connections import Connection, Functions
 
-_ANALYTIC = Trigonometry(np.sqrt, np.cos, np.sin)  # of complex numbers as well
+_ANALYTIC = Functions(np.sqrt, np.cos, np.sin)  # of complex numbers as well
 
 
-class AtPoints:
-    """A `Contribution` whose forces derive from energies and conditions, compiled from `physics.connections`.
+class PartAtPoints:
+    """A `Contribution` whose forces are derived from energies and conditions, and compiled; see `Connection`.
 
     Attributes
     ----------
     points : tuple of Point, (m,)
         Its points.
     connection : Connection
-        Its definition.
+        Its definition. Other definitions than those of the package need sympy.
     """
 
     __slots__ = ()
     conservative: ClassVar[bool] = True  # a damper exerts no force at rest
 
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """Points (m,) on which it acts."""
-        raise NotImplementedError
+    if TYPE_CHECKING:  # fields or properties of derived dataclasses, for which those here would be defaults
 
-    @property
-    def connection(self) -> Connection:
-        """The definition of its energies and conditions."""
-        raise NotImplementedError
+        @property
+        def points(self) -> tuple[Point, ...]:
+            """Points (m,) on which it acts."""
+            ...
+
+        @property
+        def connection(self) -> Connection:
+            """The definition of its energies and conditions."""
+            ...
 
     def data(self, reference: np.ndarray) -> tuple[float, ...]:
         """Return its numbers, in the order of `Connection.data`; reference (m, 3): q of its points in the reference."""
@@ -53,8 +55,8 @@ class AtPoints:
         return self.connection.multipliers
 
     def shapes(self) -> tuple[ConnectorShape, ...]:
-        """Return the shapes to draw."""
-        raise NotImplementedError
+        """Return the shapes to draw; without any, a dashed line connects its points."""
+        return ()
 
     def force(self, at: At) -> np.ndarray:
         """Return the resisting forces fx, fy, moment at each point, then the conditions (3 m + k,)."""
@@ -62,7 +64,7 @@ class AtPoints:
         q, v, a = (np.asarray(x)[:, :size].ravel() for x in (at.q, at.v, at.a))
         turned = np.array([(np.cos(angle), np.sin(angle)) for angle in at.q[:, 2]]).ravel()
         result = np.zeros(size * count + self.unknowns, dtype=np.result_type(q, v, a, at.own, float))
-        in_python(self.connection.name)(q, v, a, at.own, turned, self.data(at.reference), at.gravity, result)
+        in_python(self.connection)(q, v, a, at.own, turned, self.data(at.reference), at.gravity, result)
         forces = np.zeros((count, 3), dtype=result.dtype)
         forces[:, :size] = result[: size * count].reshape(count, size)
         return np.concatenate([forces.ravel(), result[size * count :]])
@@ -76,7 +78,7 @@ class AtPoints:
         return kinetic, potential
 
 
-class AtNodes:
+class PartAlongBeam:
     """A part along a beam that acts at all of its nodes.
 
     Attributes
@@ -97,7 +99,7 @@ class AtNodes:
         """The ends of the beam."""
         return self.beam.start, self.beam.end
 
-    def at_nodes(self, points: Sequence[Point], lengths: np.ndarray) -> tuple[AtPoints, ...]:
+    def at_nodes(self, points: Sequence[Point], lengths: np.ndarray) -> tuple[PartAtPoints, ...]:
         """Return what acts at the nodes of the beam; lengths (n,): that belong to each [m]."""
         raise NotImplementedError
 

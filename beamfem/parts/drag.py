@@ -7,13 +7,13 @@ import numpy as np
 
 from beamfem.model.beam import Beam, Point, require_beam
 from beamfem.model.part_units import UNIT
-from beamfem.parts.at_points import AtNodes, AtPoints
+from beamfem.parts.at_points import PartAlongBeam, PartAtPoints
 from beamfem.physics.connections import DRAG, Connection
 from beamfem.validation import convert, not_negative
 
 
 @dataclass(frozen=True, slots=True)
-class DragAtNode(AtPoints):
+class DragAtNode(PartAtPoints):
     """The drag - coefficient |v| v of a node; coefficient [kg/m], with the length that belongs to the node."""
 
     point: Point
@@ -35,7 +35,7 @@ class DragAtNode(AtPoints):
 
 
 @dataclass(frozen=True, slots=True)
-class Drag(AtNodes):
+class Drag(PartAlongBeam):
     """Drag along a beam, - c |v| v per unit length [N/m] at the velocity v, as of a fluid at rest.
 
     It acts at the nodes, each with its weight of the quadrature: exact to degree 2 k - 1 on elements of order k.
@@ -65,6 +65,6 @@ class Drag(AtNodes):
         require_beam("Drag", self.beam)
         convert(self, not_negative, "coefficient")
 
-    def at_nodes(self, points: Sequence[Point], lengths: np.ndarray) -> tuple[AtPoints, ...]:
+    def at_nodes(self, points: Sequence[Point], lengths: np.ndarray) -> tuple[PartAtPoints, ...]:
         """Return what acts at the nodes of the beam; lengths (n,): that belong to each [m]."""
         return tuple(map(DragAtNode, points, (self.coefficient * lengths).tolist()))

@@ -7,13 +7,13 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.model.beam import Point, require_point_of
 from beamfem.model.load_shapes import Bar
-from beamfem.parts.at_points import AtPoints
+from beamfem.parts.at_points import PartAtPoints
 from beamfem.parts.distance import reference_distance
 from beamfem.physics.connections import LINK, Connection
 
 
 @dataclass(frozen=True, slots=True)
-class Link(AtPoints):
+class Link(PartAtPoints):
     """A rigid, massless link hinged at two points, which keep the distance l0 that they have in the reference.
 
     Its condition is (l^2 - l0^2) / (2 l0) = 0, its multiplier the tension [N].

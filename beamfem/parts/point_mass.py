@@ -7,13 +7,13 @@ import numpy as np
 from beamfem.model.beam import Point, require_point_of
 from beamfem.model.load_shapes import Disc
 from beamfem.model.part_units import UNIT
-from beamfem.parts.at_points import AtPoints
+from beamfem.parts.at_points import PartAtPoints
 from beamfem.physics.connections import BODY, MASS, Connection
 from beamfem.validation import convert, not_negative, positive
 
 
 @dataclass(frozen=True, slots=True)
-class PointMass(AtPoints):
+class PointMass(PartAtPoints):
     """A mass at a point, with its weight under `Gravity`.
 
     Kinetic energy m |r'|^2 / 2 + J w^2 / 2.

@@ -7,13 +7,13 @@ import numpy as np
 from beamfem.model.beam import Point, require_point_of
 from beamfem.model.load_shapes import Disc
 from beamfem.model.part_units import UNIT
-from beamfem.parts.at_points import AtPoints
+from beamfem.parts.at_points import PartAtPoints
 from beamfem.physics.connections import BODY, Connection
 from beamfem.validation import convert, not_negative, positive, vector
 
 
 @dataclass(frozen=True, slots=True)
-class RigidBody(AtPoints):
+class RigidBody(PartAtPoints):
     """A rigid body fixed to a section, with its weight under `Gravity`.
 
     Its centre of mass is c = R(theta) offset from the point: kinetic energy m |r' + w x c|^2 / 2 + J w^2 / 2.

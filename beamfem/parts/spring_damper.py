@@ -8,14 +8,14 @@ from beamfem.errors import InputError
 from beamfem.model.beam import Point, require_point_of
 from beamfem.model.load_shapes import Coil
 from beamfem.model.part_units import UNIT
-from beamfem.parts.at_points import AtPoints
+from beamfem.parts.at_points import PartAtPoints
 from beamfem.parts.distance import reference_distance
 from beamfem.physics.connections import GROUNDED_SPRING, SPRING, Connection
 from beamfem.validation import convert, not_negative, optional, vector
 
 
 @dataclass(frozen=True, slots=True)
-class SpringDamper(AtPoints):
+class SpringDamper(PartAtPoints):
     """A straight spring and damper between two points: its force is k (l - l0) + c dl/dt along the line between them.
 
     Parameters

@@ -7,13 +7,13 @@ import numpy as np
 from beamfem.model.beam import Point, require_point_of
 from beamfem.model.load_shapes import Spiral
 from beamfem.model.part_units import UNIT
-from beamfem.parts.at_points import AtPoints
+from beamfem.parts.at_points import PartAtPoints
 from beamfem.physics.connections import TORSION_SPRING, Connection
 from beamfem.validation import convert, not_negative
 
 
 @dataclass(frozen=True, slots=True)
-class TorsionSpring(AtPoints):
+class TorsionSpring(PartAtPoints):
     """A torsion spring and damper between two sections, such as those of a `Hinge`.
 
     Its moment is k (tb - ta) + c d(tb - ta)/dt, with the rotations ta and tb from the reference.

@@ -14,7 +14,7 @@ Vector = tuple[Number, ...]  # coordinates of a point
 Function = Callable[..., Number]
 
 
-class Trigonometry(NamedTuple):
+class Functions(NamedTuple):
     """Square root, cosine and sine, for numbers or symbols."""
 
     sqrt: Function
@@ -27,7 +27,7 @@ class Connection(NamedTuple):
 
     coordinates: number of those of a point, 2 (x, y) or 3 (with the rotation); data: names of its numbers; kinetic
     T(q, v, data, f), potential V(q, data, gravity, f), dissipation R(q, v, data, f), conditions g(q, data, f): with q
-    and v by point and f the functions of `Trigonometry`.
+    and v by point and f the functions of `Functions`.
     """
 
     name: str
@@ -41,48 +41,48 @@ class Connection(NamedTuple):
     multipliers: int = 0
 
 
-def _mass_kinetic(q: list[Vector], v: list[Vector], data: Vector, f: Trigonometry) -> Number:
+def _mass_kinetic(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
     ((x, y),) = v
     return data[0] * (x * x + y * y) / 2
 
 
-def _mass_potential(q: list[Vector], data: Vector, gravity: Vector, f: Trigonometry) -> Number:
+def _mass_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
     """Return - m g . (r - r0)."""
     mass, x, y = data
     return -mass * (gravity[0] * (q[0][0] - x) + gravity[1] * (q[0][1] - y))
 
 
-def _arm(angle: Number, offset: Vector, f: Trigonometry) -> Vector:
+def _arm(angle: Number, offset: Vector, f: Functions) -> Vector:
     """Return the offset of a centre of mass, which turns with its section."""
     c, s = f.cos(angle), f.sin(angle)
     return c * offset[0] - s * offset[1], s * offset[0] + c * offset[1]
 
 
-def _body_kinetic(q: list[Vector], v: list[Vector], data: Vector, f: Trigonometry) -> Number:
+def _body_kinetic(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
     """Return m |r' + w x c|^2 / 2 + J w^2 / 2, with c the offset of the centre of mass."""
     (vx, vy, rate), (cx, cy) = v[0], _arm(q[0][2], data[2:4], f)
     x, y = vx - rate * cy, vy + rate * cx
     return data[0] * (x * x + y * y) / 2 + data[1] * rate * rate / 2
 
 
-def _body_potential(q: list[Vector], data: Vector, gravity: Vector, f: Trigonometry) -> Number:
+def _body_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
     mass, _, along, across, x, y = data
     cx, cy = _arm(q[0][2], (along, across), f)
     return -mass * (gravity[0] * (q[0][0] - x + cx - along) + gravity[1] * (q[0][1] - y + cy - across))
 
 
-def _length(q: list[Vector], f: Trigonometry) -> Number:
+def _length(q: list[Vector], f: Functions) -> Number:
     x, y = q[1][0] - q[0][0], q[1][1] - q[0][1]
     return f.sqrt(x * x + y * y)
 
 
-def _spring_potential(q: list[Vector], data: Vector, gravity: Vector, f: Trigonometry) -> Number:
+def _spring_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
     """Return k (l - l0)^2 / 2."""
     elongation = _length(q, f) - data[2]
     return data[0] * elongation * elongation / 2
 
 
-def _spring_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Trigonometry) -> Number:
+def _spring_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
     """Return c (dl/dt)^2 / 2."""
     x, y = q[1][0] - q[0][0], q[1][1] - q[0][1]
     rate = (x * (v[1][0] - v[0][0]) + y * (v[1][1] - v[0][1])) / _length(q, f)
@@ -93,26 +93,26 @@ def _to_ground(q: list[Vector], data: Vector) -> list[Vector]:
     return [q[0], data[3:5]]
 
 
-def _grounded_potential(q: list[Vector], data: Vector, gravity: Vector, f: Trigonometry) -> Number:
+def _grounded_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
     return _spring_potential(_to_ground(q, data), data, gravity, f)
 
 
-def _grounded_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Trigonometry) -> Number:
+def _grounded_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
     return _spring_dissipation(_to_ground(q, data), [v[0], (0, 0)], data, f)
 
 
-def _torsion_potential(q: list[Vector], data: Vector, gravity: Vector, f: Trigonometry) -> Number:
+def _torsion_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
     """Return k (tb - ta)^2 / 2."""
     turn = q[1][2] - q[0][2]
     return data[0] * turn * turn / 2
 
 
-def _torsion_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Trigonometry) -> Number:
+def _torsion_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
     rate = v[1][2] - v[0][2]
     return data[1] * rate * rate / 2
 
 
-def _link_conditions(q: list[Vector], data: Vector, f: Trigonometry) -> tuple[Number, ...]:
+def _link_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
     """Return (l^2 - l0^2) / (2 l0): the multiplier is the tension, and no square root is needed."""
     x, y = q[1][0] - q[0][0], q[1][1] - q[0][1]
     return ((x * x + y * y - data[0] * data[0]) / (2 * data[0]),)
@@ -121,7 +121,7 @@ def _link_conditions(q: list[Vector], data: Vector, f: Trigonometry) -> tuple[Nu
 _LEAST = 1e-300  # [m^2/s^2], so that the derivative of |v| v is zero at rest
 
 
-def _drag_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Trigonometry) -> Number:
+def _drag_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
     """Return c |v|^3 / 3."""
     ((x, y),) = v
     square = x * x + y * y + _LEAST

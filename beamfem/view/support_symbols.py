@@ -20,7 +20,7 @@ from beamfem.model.load_shapes import (
     drawn,
 )
 from beamfem.model.model import Model
-from beamfem.parts.at_points import AtNodes, AtPoints
+from beamfem.parts.at_points import PartAlongBeam, PartAtPoints
 from beamfem.view import symbols
 from beamfem.view.frames import one_row
 
@@ -118,13 +118,14 @@ def _draw_connectors(axes: Any, solution: "Solution", row: int) -> list[Any]:
     only = one_row(solution, row) if connectors else solution
     artists, stamps, line = [], Stamps(), {"color": INK, "zorder": 6.0}
     for connector in connectors:
-        if isinstance(connector, AtNodes):
+        if isinstance(connector, PartAlongBeam):
             continue  # of the velocity
-        if not isinstance(connector, AtPoints):
+        shapes = connector.shapes() if isinstance(connector, PartAtPoints) else ()
+        if not shapes:
             x, y = np.array([only.position(point)[0] for point in connector.points]).T
             artists += axes.plot(x, y, linestyle="--", linewidth=1.0, marker="o", markersize=5.0, **line)
             continue
-        for shape in drawn(connector, connector.shapes(), ConnectorShape):
+        for shape in drawn(connector, shapes, ConnectorShape):
             match shape:
                 case Disc():
                     centre = _centre(only, shape)
@@ -148,7 +149,7 @@ def _draw_connectors(axes: Any, solution: "Solution", row: int) -> list[Any]:
 
 def grounds(model: Model) -> list[np.ndarray]:
     """Return the places (2,) [m] on the ground at which springs of a model end."""
-    coils = (shape for item in model.at_points if isinstance(item, AtPoints) for shape in item.shapes())
+    coils = (shape for item in model.at_points if isinstance(item, PartAtPoints) for shape in item.shapes())
     return [np.asarray(coil.b) for coil in coils if isinstance(coil, Coil) and not isinstance(coil.b, Point)]
 
 

@@ -21,12 +21,13 @@ def force(q, v, a, own, turned, data, gravity, out):
     x = data[3]
     y = data[4]
     x0 = q0 - x
-    x1 = q1 - y
-    x2 = (x0 * x0) + (x1 * x1)
-    x3 = math.sqrt(x2)
-    x4 = (damping * x3 * (v0 * x0 + v1 * x1) - stiffness * x2 * (length - x3)) / (x2 * math.sqrt(x2))
-    out[0] = x0 * x4
-    out[1] = x1 * x4
+    x1 = -x0
+    x2 = q1 - y
+    x3 = -x2
+    x4 = (x0 * x0) + (x2 * x2)
+    x5 = damping * (v0 * x1 + v1 * x3) / x4 + stiffness * (length - math.sqrt((x1 * x1) + (x3 * x3))) / math.sqrt(x4)
+    out[0] = -x0 * x5
+    out[1] = -x2 * x5
 
 
 @routine("rrrrrrrdddr")
@@ -47,21 +48,18 @@ def tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
     x3 = x2 * x2
     x4 = x1 + x3
     x5 = 1.0 / x4
-    x6 = x1 * x5
-    x7 = cv * damping
-    x8 = math.sqrt(x4)
-    x9 = damping * x8
-    x10 = stiffness * x8
-    x11 = stiffness * (length - x8)
-    x12 = 2.0 * x11
-    x13 = v0 * x0 + v1 * x2
-    x14 = x13 / x8
-    x15 = damping * x0 * x14 + v0 * x9 + x0 * x10 - x0 * x12
-    x16 = -x11 * x4 + x13 * x9
-    x17 = 3.0 * x16
-    x18 = ck / (x4 * math.sqrt(x4))
-    x19 = damping * x14 * x2 + v1 * x9 + x10 * x2 - x12 * x2
-    out[0] = x18 * (x0 * x15 + x16 - x17 * x6) + x6 * x7
-    out[1] = x0 * (cv * damping * x2 * x5 - x18 * (3.0 * x16 * x2 * x5 - x19))
-    out[2] = x2 * (cv * damping * x0 * x5 - x18 * (3.0 * x0 * x16 * x5 - x15))
-    out[3] = x18 * (x16 - x17 * x3 * x5 + x19 * x2) + x3 * x5 * x7
+    x6 = damping * x5
+    x7 = cv * x6
+    x8 = stiffness * x5
+    x9 = v0 * x0
+    x10 = math.sqrt(x4)
+    x11 = stiffness * (length - x10)
+    x12 = x11 / (x4 * math.sqrt(x4))
+    x13 = v1 * x2
+    x14 = x13 + x9
+    x15 = 2.0 * damping * x14 / (x4 * x4)
+    x16 = x14 * x6 - x11 / x10
+    out[0] = ck * (x1 * x12 - x1 * x15 + x1 * x8 + x16 + x6 * x9) + x1 * x7
+    out[1] = x0 * (ck * (v1 * x6 + x12 * x2 - x15 * x2 + x2 * x8) + x2 * x7)
+    out[2] = x2 * (ck * (v0 * x6 + x0 * x12 - x0 * x15 + x0 * x8) + x0 * x7)
+    out[3] = ck * (x12 * x3 + x13 * x6 - x15 * x3 + x16 + x3 * x8) + x3 * x7

@@ -1,0 +1,99 @@
+"""Force and tangent of a part at points as source, derived from its energies and conditions by sympy."""
+
+from typing import Any
+
+import sympy
+from sympy.printing.pycode import PythonCodePrinter
+
+from beamfem.physics.connections import Connection, Functions
+
+
+class Printer(PythonCodePrinter):
+    """Print powers as products and square roots, which the compiler can vectorise."""
+
+    def _print_Pow(self, power: Any, **unused: Any) -> str:
+        base, exponent = power.as_base_exp()
+        halves = 2 * exponent
+        if not halves.is_Integer or abs(halves) > 8:
+            raise ValueError(f"no rule for {power}")
+        whole, factor = abs(int(halves)) // 2, self.parenthesize(base, 60)
+        factors = [factor] * whole + ([f"math.sqrt({self._print(base)})"] if halves % 2 else [])
+        product = " * ".join(factors)
+        if exponent < 0:
+            return f"(1.0 / ({product}))" if len(factors) > 1 else f"(1.0 / {product})"
+        return f"({product})" if len(factors) > 1 else product
+
+    def _print_Rational(self, number: Any) -> str:
+        return repr(float(number))
+
+    def _print_Integer(self, number: Any) -> str:
+        return f"{int(number)}.0"
+
+    _print_Half = _print_Rational
+
+    def _print_Function(self, function: Any) -> str:
+        if not function.is_number:
+            raise ValueError(f"no rule for {function}")
+        return repr(float(function))
+
+    _print_cos = _print_sin = _print_exp = _print_Function
+
+
+def connection_source(connection: Connection) -> str:
+    """Return the source of the module of a part at points: its force, and ck df/dq + cv df/dv + ca df/da."""
+    size, count, k = connection.coordinates, connection.points * connection.coordinates, connection.multipliers
+    q, v, a = (sympy.symbols([f"{letter}{i}" for i in range(count)], real=True) for letter in "qva")
+    own, data = sympy.symbols(f"own:{k}", real=True), sympy.symbols(connection.data, real=True)
+    gravity, zero = sympy.symbols("gx gy", real=True), sympy.Integer(0)
+    functions = Functions(sympy.sqrt, sympy.cos, sympy.sin)
+    at, rates = ([tuple(x[size * i : size * (i + 1)]) for i in range(connection.points)] for x in (q, v))
+    kinetic = connection.kinetic(at, rates, data, functions) if connection.kinetic else zero
+    potential = connection.potential(at, data, gravity, functions) if connection.potential else zero
+    lost = connection.dissipation(at, rates, data, functions) if connection.dissipation else zero
+    conditions = list(connection.conditions(at, data, functions)) if connection.conditions else []
+    momentum = sympy.Matrix([kinetic.diff(x) for x in v])
+    force = momentum.jacobian(v) * sympy.Matrix(a) + momentum.jacobian(q) * sympy.Matrix(v)
+    for i, (x, rate) in enumerate(zip(q, v, strict=True)):
+        force[i] += (potential - kinetic).diff(x) + lost.diff(rate)
+        force[i] += sum((symbol * g.diff(x) for symbol, g in zip(own, conditions, strict=True)), zero)
+    whole = sympy.Matrix([sympy.expand_trig(value) for value in [*force, *conditions]])
+    weights = sympy.symbols("ck cv ca", real=True)
+    tangent = sympy.zeros(count + k, count + k)
+    for weight, variables in zip(weights, ([*q, *own], v, a), strict=True):
+        tangent[:, : len(variables)] += weight * whole.jacobian(variables)
+    turned = {f(x): sympy.Symbol(f"{n}{i}") for i, x in enumerate(q) for f, n in ((sympy.cos, "c"), (sympy.sin, "s"))}
+    arrays = {"q": q, "v": v, "a": a, "own": own, "data": data, "gravity": gravity}
+    places = {symbol: f"{name}[{i}]" for name, symbols in arrays.items() for i, symbol in enumerate(symbols)}
+    for number in range(connection.points):
+        places |= {sympy.Symbol(f"{n}{size * number + 2}"): f"turned[{2 * number + i}]" for i, n in enumerate("cs")}
+    listed = "q, v, a, own, turned, data, gravity"
+    functions_of = [
+        _pointwise("force", "rrrrrrrr", f"{listed}, out", "the force", places, list(whole.subs(turned))),
+        _pointwise(
+            "tangent",
+            "rrrrrrrdddr",
+            f"{listed}, ck, cv, ca, out",
+            "ck df/dq + cv df/dv + ca df/da, row by row",
+            places,
+            list(tangent.subs(turned)),
+        ),
+    ]
+    needs = "import math\n\n" if any("math." in text for text in functions_of) else ""
+    return (
+        f'"""Force and tangent of the connection `beamfem.physics.connections.{connection.name.upper()}`.\n\n'
+        'Written by beamfem.physics.generate: do not edit.\n"""\n\n'
+        f"{needs}from beamfem.kernels.compiling import routine\n\n\n" + "\n\n".join(functions_of)
+    )
+
+
+def _pointwise(name: str, kinds: str, arguments: str, purpose: str, places: dict[Any, str], results: list[Any]) -> str:
+    """Return a function of the numbers of one part; without fast-math, so that it gives the same digits in Python."""
+    names = (symbol for symbol in sympy.numbered_symbols("x") if symbol not in places)
+    common, results = sympy.cse(results, names, optimizations="basic")
+    printer = Printer({"fully_qualified_modules": True, "strict": False})
+    used = set().union(*(value.free_symbols for value in [*results, *(value for _, value in common)]))
+    text = [f'@routine("{kinds}")', f"def {name}({arguments}):", f'    """Fill {purpose}."""']
+    text += [f"    {symbol} = {place}" for symbol, place in places.items() if symbol in used]
+    text += [f"    {symbol} = {printer.doprint(value)}" for symbol, value in common]
+    text += [f"    out[{number}] = {printer.doprint(value)}" for number, value in enumerate(results)]
+    return "\n".join(text) + "\n"

@@ -142,3 +142,15 @@ def test_a_model_has_as_many_modes_as_coordinates_less_one_for_each_condition():
     assert len(bf.solve_modes(model, 5).frequencies) == 5
     with pytest.raises(bf.InputError, match="only 5 modes"):
         bf.solve_modes(model, 6)
+
+
+def test_a_state_carried_to_another_model_keeps_its_tensions():
+    """Modes about a state of a model with the same link but other loads in its list: it is still an equilibrium."""
+    square = bf.Rectangle(0.01, 0.01)
+    one, two = (bf.Beam(bf.Line((x, 0), (x, 1)), 2, bf.CRBF(3), square, STEEL) for x in (0.0, 0.5))
+    link, load = bf.Link(one.end, two.end), bf.PointForce(one.end, (30.0, 0.0))
+    model = bf.Model([one, two], [bf.Clamp(one.start), bf.Clamp(two.start)], [load], connectors=[link])
+    rest = bf.solve_static(model)
+    copy = bf.Model(model.beams, model.supports, model.loads, connectors=[link])
+    here, there = (bf.solve_modes(each, 2, about=rest[-1]).frequencies for each in (model, copy))
+    np.testing.assert_allclose(there, here, rtol=1e-9)

@@ -29,8 +29,8 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
 
     Beams are matched by identity or, in a copy of their model, by position, in any order. Nodes are the same, but
     whether their coordinates are gradients or angles depends on supports and joints. Connectors that are in both models
-    keep their history, and so do beams with the same element and section law. Raises InputError if the beams do not
-    match.
+    keep their history and multipliers, and beams with the same element and section law their history. Raises InputError
+    if the beams do not match.
     """
     source, target = state.model, system.model
     if source is target:
@@ -47,7 +47,8 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
     source_items = {id(item.item): item for item in system_of(source, system.static).connectors.items}
     for item in system.connectors.items:
         if id(item.item) in source_items:
-            p[item.memory] = state.p[source_items[id(item.item)].memory]
+            found = source_items[id(item.item)]
+            p[item.memory], p[item.own] = state.p[found.memory], state.p[found.own]
     return p, v
 
 

@@ -1,0 +1,106 @@
+"""Random mechanisms with masses, springs, dampers and links: rotated, in other units, and in another order."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import beamfem as bf
+
+KINDS = [bf.CRBF(1), bf.CRBF(2), bf.CRBF(3), bf.ANCFCRBF(bf.Structural()), bf.ANCF(bf.Structural()), bf.ShearRigid()]
+SEEDS = [
+    *range(12),
+    *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(12, 300)),
+]
+
+
+class Units:
+    """Factors by which numbers in SI are multiplied."""
+
+    def __init__(self, length=1.0, force=1.0):
+        self.length, self.force = length, force
+
+    def of(self, force=0, length=0):
+        return self.force**force * self.length**length
+
+
+SI = Units()
+
+
+def mechanism(seed, angle=0.0, units=SI, backwards=False):
+    """A random chain or group of two to four beams with up to six parts between them."""
+    rng = np.random.default_rng(seed)
+    c, s, unit = np.cos(angle), np.sin(angle), units.of
+    m = unit(length=1)
+
+    def place(point):
+        x, y = point
+        return (float(m * (c * x - s * y)), float(m * (s * x + c * y)))
+
+    def turned(vector, factor):
+        return tuple(float(factor * x) for x in (c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]))
+
+    kind, count = KINDS[rng.integers(len(KINDS))], int(rng.integers(2, 5))
+    width, height = rng.uniform(0.01, 0.03, 2)
+    steel = bf.Material(2.1e11 * unit(1, -2), 0.3, 7850.0 * unit(1, -4))  # seconds stay seconds
+    section = bf.Rectangle(width * m, height * m)
+    feet = np.cumsum(rng.uniform(0.3, 0.8, count))
+    lines = [((x, rng.uniform(-0.1, 0.1)), (x + rng.uniform(-0.4, 0.4), rng.uniform(0.6, 1.2))) for x in feet]
+    beams = [bf.Beam(bf.Line(*map(place, line)), 3, kind, section, steel) for line in lines]
+    supports = [bf.Clamp(beam.start) for beam in beams]
+    bending = 2.1e11 * width * height**3 / 12
+    parts, masses = [], []
+    for _ in range(int(rng.integers(2, 7))):
+        one, two = rng.choice(count, 2, replace=False)
+        a, b = beams[one].end, beams[two].at(float(rng.choice([1 / 3, 1.0])))
+        match int(rng.integers(6)):
+            case 0:
+                masses.append(
+                    bf.PointMass(a, rng.uniform(0.1, 3.0) * unit(1, -1), rng.choice([0.0, 0.02]) * unit(1, 1))
+                )
+            case 1:
+                offset = turned(rng.uniform(-0.1, 0.1, 2), m)
+                masses.append(bf.RigidBody(a, rng.uniform(0.1, 3.0) * unit(1, -1), 0.01 * unit(1, 1), offset))
+            case 2:
+                stiffness, damping = bending * rng.uniform(0.1, 20.0), rng.choice([0.0, 5.0])
+                parts.append(bf.SpringDamper(a, b, stiffness * unit(1, -1), damping * unit(1, -1)))
+            case 3:
+                ground = place((feet[one] + 0.5, 1.5))
+                parts.append(bf.SpringDamper(a, ground, bending * unit(1, -1), 0.0, 0.9 * m))
+            case 4:
+                parts.append(bf.TorsionSpring(a, b, bending * rng.uniform(0.1, 1.0) * unit(1, 1)))
+            case _:
+                if not any(isinstance(part, bf.Link) for part in parts):
+                    parts.append(bf.Link(a, b))
+    loads = [bf.Gravity(turned((1.0, -9.81), m))]
+    loads.append(bf.PointForce(beams[0].end, turned(0.3 * bending * rng.uniform(-1, 1, 2), unit(1))))
+    listed = beams[::-1] if backwards else beams
+    return bf.Model(listed, supports, loads, connectors=parts[:: -1 if backwards else 1], masses=masses), beams
+
+
+def found(seed, angle=0.0, units=SI, backwards=False):
+    """Displacements at rest and in motion in the frame of the mechanism [m], frequencies [Hz], and energy put in."""
+    model, beams = mechanism(seed, angle, units, backwards)
+    c, s = np.cos(angle), np.sin(angle)
+    back = np.array([[c, s], [-s, c]]) / units.length
+    rest = bf.solve_static(model)
+    motion = bf.simulate(model, 0.02, 1e-3)
+    undamped = [replace(part, damping=0.0) if hasattr(part, "damping") else part for part in model.connectors]
+    free = model.with_(connectors=undamped)
+    moved = [[back @ solution.displacement(beam.end)[-1] for beam in beams] for solution in (rest, motion)]
+    kinetic = motion.energy().kinetic[-1] / units.of(1, 1)
+    return np.array(moved[0]), np.array(moved[1]), bf.solve_modes(free, 4, about=rest[-1]).frequencies, kinetic
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_mechanisms_are_the_same_rotated_in_other_units_and_in_another_order(seed):
+    plain = found(seed)
+    others = [
+        found(seed, angle=0.7),
+        found(seed, units=Units(1e3)),
+        found(seed, units=Units(39.37, 0.2248)),
+        found(seed, backwards=True),
+    ]
+    for other in others:
+        for one, two, accuracy in zip(plain, other, (1e-7, 1e-5, 1e-6, 1e-4), strict=True):
+            np.testing.assert_allclose(two, one, rtol=0.0, atol=accuracy * np.abs(one).max())

@@ -385,10 +385,12 @@ class Connectors:
     def conditions(self, p: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the residuals (k,) of all constraint conditions in a state p (n,), and their rates for p' (n,)."""
         zeros, gravity = np.zeros(len(p)), np.zeros(2)
-        moved = p + 1j * COMPLEX_STEP * rate
-        residuals = [item.force(item.at((moved, zeros, zeros), 0.0, gravity))[len(item.dofs) :] for item in self.items]
-        values = np.concatenate(residuals)
-        return values.real, values.imag / COMPLEX_STEP
+        values, rates = [_NOTHING], [_NOTHING]
+        for item in (each for each in self.items if len(each.own)):
+            d, motion = len(item.dofs), (p, zeros, zeros)
+            values.append(item.force_in(motion, 0.0, gravity)[d:])
+            rates.append(item.tangent(motion, 0.0, gravity, (1.0, 0.0, 0.0))[d:, :d] @ rate[item.dofs])
+        return np.concatenate(values), np.concatenate(rates)
 
     @cached_property
     def errors(self) -> np.ndarray:

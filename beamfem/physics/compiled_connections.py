@@ -2,6 +2,7 @@
 
 import linecache
 from collections.abc import Callable
+from ctypes import CFUNCTYPE, c_double, c_void_p
 from functools import cache
 from types import FunctionType
 from typing import Any, NamedTuple
@@ -12,14 +13,28 @@ from beamfem.errors import InputError
 from beamfem.extras import needed_for
 from beamfem.kernels.compiling import Routine
 from beamfem.kernels.connection_passes import GENERATED, MOST
+from beamfem.kernels.pointers import address_of
 from beamfem.physics.connections import CONNECTIONS, Connection
+
+
+class Foreign:
+    """A C function by its address, which is called as a `Routine` is: with arrays, and with numbers between them."""
+
+    def __init__(self, address: int, weights: int) -> None:
+        self.address = address
+        kinds = [c_void_p] * 7 + [c_double] * weights + [c_void_p]
+        self._function = CFUNCTYPE(None, *kinds)(address)
+
+    def __call__(self, *arguments: Any) -> None:
+        """Call it."""
+        self._function(*(address_of(each) if isinstance(each, np.ndarray) else each for each in arguments))
 
 
 class Passes(NamedTuple):
     """Compiled force and tangent."""
 
-    force: Routine
-    tangent: Routine
+    force: Routine | Foreign
+    tangent: Routine | Foreign
 
 
 @cache
@@ -30,6 +45,8 @@ def passes_of(connection: Connection) -> Passes:
         return Passes(module.force, module.tangent)
     if max(connection.points * connection.coordinates, connection.multipliers) > MOST:
         raise InputError(f"{connection.name} has more than {MOST} coordinates or conditions; split it into parts")
+    if connection.compiled is not None:
+        return Passes(Foreign(connection.compiled[0], 0), Foreign(connection.compiled[1], 3))
     with needed_for("a part defined by its energies"):
         from beamfem.physics.connection_source import connection_source
     try:
@@ -48,6 +65,11 @@ def passes_of(connection: Connection) -> Passes:
 
 @cache
 def in_python(connection: Connection) -> Callable[..., Any]:
-    """Return the force as a function of Python, for complex numbers as well."""
-    function = passes_of(connection).force.function
+    """Return the force as a function of Python, for complex numbers as well unless it is a C function."""
+    force = passes_of(connection).force
+    if isinstance(force, Foreign):
+        return lambda *arguments: force(
+            *(np.ascontiguousarray(each, dtype=float) for each in arguments[:-1]), arguments[-1]
+        )
+    function = force.function
     return FunctionType(function.__code__, {**function.__globals__, "math": np})

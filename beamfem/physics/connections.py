@@ -23,11 +23,34 @@ class Functions(NamedTuple):
 
 
 class Connection(NamedTuple):
-    """Definition of a part at points.
+    """Definition of a part at points by its energies, or by C functions.
 
-    coordinates: number of those of a point, 2 (x, y) or 3 (with the rotation); data: names of its numbers; kinetic
-    T(q, v, data, f), potential V(q, data, gravity, f), dissipation R(q, v, data, f), conditions g(q, data, f): with q
-    and v by point and f the functions of `Functions`.
+    Parameters
+    ----------
+    name : str
+        Name of the part in messages.
+    points : int
+        Number m of its points.
+    coordinates : int
+        Number of coordinates of a point: 2, x and y [m], or 3, with the rotation [rad].
+    data : tuple of str
+        Names of the numbers that a part has, see `PartAtPoints.data`.
+    kinetic : callable, optional
+        Kinetic energy T(q, v, data, f) [J]; q and v are lists with the coordinates of each point and their rates, and f
+        has sqrt, cos and sin.
+    potential : callable, optional
+        Potential V(q, data, gravity, f) [J].
+    dissipation : callable, optional
+        Dissipation function R(q, v, data, f) [W], half the power that is dissipated where it is quadratic in v.
+    conditions : callable, optional
+        Conditions g(q, data, f), a tuple of k numbers that are zero.
+    multipliers : int, default 0
+        Number k of conditions.
+    compiled : (int, int), optional
+        Addresses of C functions in place of what sympy derives: force(q, v, a, own, turned, data, gravity, out) and
+        tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out). All but the weights are pointers to doubles; own:
+        multipliers, turned: cosine and sine of each rotation; out: the resisting forces and the conditions, or
+        ck df/dq + cv df/dv + ca df/da row by row.
     """
 
     name: str
@@ -39,6 +62,7 @@ class Connection(NamedTuple):
     dissipation: Function | None = None
     conditions: Callable[..., tuple[Number, ...]] | None = None
     multipliers: int = 0
+    compiled: tuple[int, int] | None = None
 
 
 def _mass_kinetic(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:

@@ -1,5 +1,6 @@
 """Parts of a user's own that are given by their energies: derived, compiled, and refused where they cannot be."""
 
+import ctypes
 from dataclasses import dataclass
 
 import numpy as np
@@ -120,3 +121,45 @@ def test_a_users_mass_counts_as_one_of_the_package():
     ):
         found.append(bf.solve_modes(bf.Model([one], [bf.Clamp(one.start)], masses=masses), 3).frequencies)
     np.testing.assert_allclose(found[0], found[1], rtol=1e-10)
+
+
+_DOUBLES = ctypes.POINTER(ctypes.c_double)
+
+
+@ctypes.CFUNCTYPE(None, *([_DOUBLES] * 8))
+def _pull(q, v, a, own, turned, data, gravity, out):
+    out[0], out[1] = data[0] * (q[0] - data[1]) ** 3, data[0] * (q[1] - data[2]) ** 3
+
+
+@ctypes.CFUNCTYPE(None, *([_DOUBLES] * 7), *([ctypes.c_double] * 3), _DOUBLES)
+def _pull_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
+    out[0], out[1], out[2] = ck * 3.0 * data[0] * (q[0] - data[1]) ** 2, 0.0, 0.0
+    out[3] = ck * 3.0 * data[0] * (q[1] - data[2]) ** 2
+
+
+def _pull_potential(q, data, gravity, f):
+    return data[0] * ((q[0][0] - data[1]) ** 4 + (q[0][1] - data[2]) ** 4) / 4
+
+
+def test_a_part_of_c_functions_is_the_one_of_its_energies():
+    """Cubic springs to the ground, by the addresses of functions as C, Numba or ctypes make them."""
+    names, numbers = ("stiffness", "x", "y"), (4e4, 0.1, -0.95)
+    addresses = tuple(ctypes.cast(each, ctypes.c_void_p).value for each in (_pull, _pull_tangent))
+    derived = bf.Connection("cubic", 1, 2, names, potential=_pull_potential)
+    in_c = bf.Connection("cubic_in_c", 1, 2, names, potential=_pull_potential, compiled=addresses)
+    ends = []
+    for connection in (derived, in_c):
+        one, model = hanging(lambda one, two, connection=connection: Part((one.end,), connection, numbers))
+        check_connector(model.connectors[0])
+        ends.append(bf.simulate(model, 0.1, 1e-3).displacement(one.end)[-1])
+        clamped = model.with_(supports=[bf.Clamp(beam.start) for beam in model.beams])
+        ends[-1] = np.append(ends[-1], bf.solve_static(clamped).displacement(one.end)[-1])
+    np.testing.assert_allclose(ends[0], ends[1], rtol=1e-8)
+
+
+def test_parts_larger_than_the_room_of_compiled_code_are_refused():
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(2), SQUARE, STEEL)
+    points = tuple(beam.at(k / 4) for k in range(5))
+    large = bf.Connection("large", 5, 2, ("k",), compiled=(1, 1))
+    with pytest.raises(bf.InputError, match="large has more than 8 coordinates or conditions"):
+        bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], connectors=[Part(points, large, (1.0,))]))

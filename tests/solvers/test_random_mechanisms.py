@@ -79,11 +79,17 @@ def mechanism(seed, angle=0.0, units=SI, backwards=False):
 
 
 def found(seed, angle=0.0, units=SI, backwards=False):
-    """Displacements at rest and in motion in the frame of the mechanism [m], frequencies [Hz], and energy put in."""
+    """Displacements at rest and in motion in the frame of the mechanism [m], frequencies [Hz], and kinetic energy [J].
+
+    Empty arrays where loads are beyond a limit point, or a preload is beyond a buckling load.
+    """
     model, beams = mechanism(seed, angle, units, backwards)
     c, s = np.cos(angle), np.sin(angle)
     back = np.array([[c, s], [-s, c]]) / units.length
-    rest = bf.solve_static(model)
+    try:
+        rest = bf.solve_static(model)
+    except bf.ConvergenceError:
+        return (np.empty(0),) * 4
     motion = bf.simulate(model, 0.02, 1e-3)
     undamped = [replace(part, damping=0.0) if hasattr(part, "damping") else part for part in model.connectors]
     free = model.with_(connectors=undamped)
@@ -103,4 +109,4 @@ def test_mechanisms_are_the_same_rotated_in_other_units_and_in_another_order(see
     ]
     for other in others:
         for one, two, accuracy in zip(plain, other, (1e-7, 1e-5, 1e-6, 1e-4), strict=True):
-            np.testing.assert_allclose(two, one, rtol=0.0, atol=accuracy * np.abs(one).max())
+            np.testing.assert_allclose(two, one, rtol=0.0, atol=accuracy * np.abs(one).max(initial=0.0))

@@ -344,6 +344,20 @@ class Model:
         return self.numbered.size
 
     @property
+    def mass(self) -> float:
+        """Mass [kg] of the beams and of the concentrated masses.
+
+        Examples
+        --------
+        >>> round(bf.Model([beam], masses=[bf.PointMass(beam.end, mass=5.0)]).mass, 3)
+        83.5
+        """
+        from beamfem.mesh.reference import inertia_points
+
+        own = sum(float(inertia_points(mesh)[2][:, 0].sum()) for mesh in self.meshes)
+        return own + sum(float(getattr(part, "mass", 0.0)) for part in self.masses)
+
+    @property
     def groups(self) -> tuple[Element, ...]:
         """The element of each block of beams, in order of appearance; different section laws form separate blocks."""
         return self.numbered.groups

@@ -28,7 +28,8 @@ Contents; see help(bf.Beam), for example, for details.
                       ContinuumMechanics SplitContinuum ElasticLine Structural
     Supports          Clamp Pin Roller Spring Foundation Prescribed
     Joints            Rigid Hinge
-    Masses, springs   PointMass RigidBody SpringDamper TorsionSpring Link Drag
+    Masses, springs   PointMass RigidBody SpringDamper TorsionSpring Bushing
+                      Link Slider Gear Drag
     Loads             PointForce PointMoment DistributedLoad Pressure Gravity Actuation Temperature
     Time functions    Interpolated Piecewise
     From files        read_mesh LineMesh Frame read_dxf load

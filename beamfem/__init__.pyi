@@ -71,10 +71,12 @@ from .model.time_functions import Interpolated as Interpolated
 from .model.time_functions import Piecewise as Piecewise
 from .parts.actuation import Actuation as Actuation
 from .parts.at_points import PartAtPoints as PartAtPoints
+from .parts.bushing import Bushing as Bushing
 from .parts.clamp import Clamp as Clamp
 from .parts.distributed_load import DistributedLoad as DistributedLoad
 from .parts.drag import Drag as Drag
 from .parts.foundation import Foundation as Foundation
+from .parts.gear import Gear as Gear
 from .parts.gravity import Gravity as Gravity
 from .parts.hinge import Hinge as Hinge
 from .parts.link import Link as Link
@@ -87,6 +89,7 @@ from .parts.pressure import Pressure as Pressure
 from .parts.rigid import Rigid as Rigid
 from .parts.rigid_body import RigidBody as RigidBody
 from .parts.roller import Roller as Roller
+from .parts.slider import Slider as Slider
 from .parts.spring import Spring as Spring
 from .parts.spring_damper import SpringDamper as SpringDamper
 from .parts.temperature import Temperature as Temperature

@@ -1,30 +1,9 @@
 """Forces and tangents of parts at points, added to the residual and the matrix of a model."""
 
-from types import ModuleType
-
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.generated import (
-    body_connection,
-    drag_connection,
-    grounded_spring_connection,
-    link_connection,
-    mass_connection,
-    spring_connection,
-    torsion_spring_connection,
-)
 from beamfem.kernels.nodes import cosine_sine
 from beamfem.kernels.pointers import at, caller, reals, room, wholes
-
-GENERATED: dict[str, ModuleType] = {
-    "mass": mass_connection,
-    "body": body_connection,
-    "spring": spring_connection,
-    "grounded_spring": grounded_spring_connection,
-    "torsion_spring": torsion_spring_connection,
-    "link": link_connection,
-    "drag": drag_connection,
-}
 
 # ------------------------------------------------------------------ table of the parts of one kind
 COUNT = 0

@@ -13,6 +13,9 @@ from beamfem.parts.foundation import Foundation as Foundation
 from beamfem.parts.rigid import Rigid as Rigid
 from beamfem.parts.hinge import Hinge as Hinge
 from beamfem.parts.link import Link as Link
+from beamfem.parts.slider import Slider as Slider
+from beamfem.parts.gear import Gear as Gear
+from beamfem.parts.bushing import Bushing as Bushing
 from beamfem.parts.drag import Drag as Drag
 from beamfem.parts.spring_damper import SpringDamper as SpringDamper
 from beamfem.parts.torsion_spring import TorsionSpring as TorsionSpring

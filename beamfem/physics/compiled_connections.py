@@ -12,7 +12,8 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
 from beamfem.kernels.compiling import Routine
-from beamfem.kernels.connection_passes import GENERATED, MOST
+from beamfem.kernels.connection_passes import MOST
+from beamfem.kernels.generated import connection_forces
 from beamfem.kernels.pointers import address_of
 from beamfem.physics.connections import CONNECTIONS, Connection
 
@@ -41,16 +42,17 @@ class Passes(NamedTuple):
 def passes_of(connection: Connection) -> Passes:
     """Return the compiled force and tangent. Raises InputError for energies that cannot be derived."""
     if connection in CONNECTIONS:
-        module = GENERATED[connection.name]
-        return Passes(module.force, module.tangent)
+        return Passes(*(getattr(connection_forces, f"{connection.name}_{what}") for what in ("force", "tangent")))
+    if not connection.name.isidentifier():
+        raise InputError(f"the name of a Connection must be one word of letters, digits and _, got {connection.name!r}")
     if max(connection.points * connection.coordinates, connection.multipliers) > MOST:
         raise InputError(f"{connection.name} has more than {MOST} coordinates or conditions; split it into parts")
     if connection.compiled is not None:
         return Passes(Foreign(connection.compiled[0], 0), Foreign(connection.compiled[1], 3))
     with needed_for("a part defined by its energies"):
-        from beamfem.physics.connection_source import connection_source
+        from beamfem.physics.connection_source import HEADER, connection_source
     try:
-        source = connection_source(connection)
+        source = HEADER + connection_source(connection)
     except Exception as error:
         raise InputError(
             f"force and tangent of {connection.name} cannot be derived from its energies: {error}. Write them with "
@@ -60,7 +62,7 @@ def passes_of(connection: Connection) -> Passes:
     linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
     found: dict[str, Any] = {"__name__": f"connection_{connection.name}"}
     exec(compile(source, file, "exec"), found)
-    return Passes(found["force"], found["tangent"])
+    return Passes(*(found[f"{connection.name}_{what}"] for what in ("force", "tangent")))
 
 
 @cache

@@ -40,7 +40,7 @@ class Printer(PythonCodePrinter):
 
 
 def connection_source(connection: Connection) -> str:
-    """Return the source of the module of a part at points: its force, and ck df/dq + cv df/dv + ca df/da."""
+    """Return the source of two functions of a part at points: its force, and ck df/dq + cv df/dv + ca df/da."""
     size, count, k = connection.coordinates, connection.points * connection.coordinates, connection.multipliers
     q, v, a = (sympy.symbols([f"{letter}{i}" for i in range(count)], real=True) for letter in "qva")
     own, data = sympy.symbols(f"own:{k}", real=True), sympy.symbols(connection.data, real=True)
@@ -66,24 +66,17 @@ def connection_source(connection: Connection) -> str:
     places = {symbol: f"{name}[{i}]" for name, symbols in arrays.items() for i, symbol in enumerate(symbols)}
     for number in range(connection.points):
         places |= {sympy.Symbol(f"{n}{size * number + 2}"): f"turned[{2 * number + i}]" for i, n in enumerate("cs")}
-    listed = "q, v, a, own, turned, data, gravity"
-    functions_of = [
-        _pointwise("force", "rrrrrrrr", f"{listed}, out", "the force", places, list(whole.subs(turned))),
-        _pointwise(
-            "tangent",
-            "rrrrrrrdddr",
-            f"{listed}, ck, cv, ca, out",
-            "ck df/dq + cv df/dv + ca df/da, row by row",
-            places,
-            list(tangent.subs(turned)),
-        ),
-    ]
-    needs = "import math\n\n" if any("math." in text for text in functions_of) else ""
-    return (
-        f'"""Force and tangent of the connection `beamfem.physics.connections.{connection.name.upper()}`.\n\n'
-        'Written by beamfem.physics.generate: do not edit.\n"""\n\n'
-        f"{needs}from beamfem.kernels.compiling import routine\n\n\n" + "\n\n".join(functions_of)
+    name, what = connection.name, f"of `{connection.name.upper()}`"
+    force, weighed = list(whole.subs(turned)), list(tangent.subs(turned))
+    listed, purpose = "q, v, a, own, turned, data, gravity", f"ck df/dq + cv df/dv + ca df/da {what}, row by row"
+    functions_of = (
+        _pointwise(f"{name}_force", "rrrrrrrr", f"{listed}, out", f"the force {what}", places, force),
+        _pointwise(f"{name}_tangent", "rrrrrrrdddr", f"{listed}, ck, cv, ca, out", purpose, places, weighed),
     )
+    return "\n\n".join(functions_of)
+
+
+HEADER = "import math\n\nfrom beamfem.kernels.compiling import routine\n\n\n"
 
 
 def _pointwise(name: str, kinds: str, arguments: str, purpose: str, places: dict[Any, str], results: list[Any]) -> str:

@@ -142,6 +142,38 @@ def _link_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Numbe
     return ((x * x + y * y - data[0] * data[0]) / (2 * data[0]),)
 
 
+def _in_frame(q: list[Vector], f: Functions) -> Vector:
+    """Return r_b - r_a along and across axes that turn with a."""
+    c, s = f.cos(q[0][2]), f.sin(q[0][2])
+    x, y = q[1][0] - q[0][0], q[1][1] - q[0][1]
+    return c * x + s * y, c * y - s * x
+
+
+def _bushing_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
+    """Return (kx u^2 + ky v^2 + kt (tb - ta)^2) / 2, with the displacement (u, v) in axes that turn with a."""
+    (u, v), turn = _in_frame(q, f), q[1][2] - q[0][2]
+    u, v = u - data[6], v - data[7]
+    return (data[0] * u * u + data[1] * v * v + data[2] * turn * turn) / 2
+
+
+def _bushing_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
+    c, s = f.cos(q[0][2]), f.sin(q[0][2])
+    (along, across), turning = _in_frame(q, f), v[0][2]
+    x, y, rate = v[1][0] - v[0][0], v[1][1] - v[0][1], v[1][2] - turning
+    u, w = c * x + s * y + turning * across, c * y - s * x - turning * along
+    return (data[3] * u * u + data[4] * w * w + data[5] * rate * rate) / 2
+
+
+def _slider_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
+    """Return the displacement of b across an axis that turns with a, and its rotation relative to a."""
+    along, across = _in_frame(q, f)
+    return data[0] * along + data[1] * across - data[2], q[1][2] - q[0][2]
+
+
+def _gear_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
+    return (q[1][2] - data[0] * q[0][2],)
+
+
 _LEAST = 1e-300  # [m^2/s^2], so that the derivative of |v| v is zero at rest
 
 
@@ -164,4 +196,8 @@ TORSION_SPRING = Connection(
 )
 LINK = Connection("link", 2, 2, ("length",), None, None, None, _link_conditions, 1)
 DRAG = Connection("drag", 1, 2, ("coefficient",), None, None, _drag_dissipation)
-CONNECTIONS = (MASS, BODY, SPRING, GROUNDED_SPRING, TORSION_SPRING, LINK, DRAG)
+_BUSHING = ("kx", "ky", "kt", "cx", "cy", "ct", "x", "y")
+BUSHING = Connection("bushing", 2, 3, _BUSHING, None, _bushing_potential, _bushing_dissipation)
+SLIDER = Connection("slider", 2, 3, ("nx", "ny", "offset"), None, None, None, _slider_conditions, 2)
+GEAR = Connection("gear", 2, 3, ("ratio",), None, None, None, _gear_conditions, 1)
+CONNECTIONS = (MASS, BODY, SPRING, GROUNDED_SPRING, TORSION_SPRING, BUSHING, LINK, SLIDER, GEAR, DRAG)

@@ -15,7 +15,7 @@ import sympy
 
 from beamfem.kernels import point
 from beamfem.kernels.record import ROW
-from beamfem.physics.connection_source import Printer, connection_source
+from beamfem.physics.connection_source import HEADER, Printer, connection_source
 from beamfem.physics.connections import CONNECTIONS
 from beamfem.physics.kinematics import KINDS, Kinematics
 from beamfem.physics.measures import MEASURES, Measure
@@ -178,7 +178,10 @@ def sources() -> dict[str, str]:
     """Return the formatted source of all generated modules by file name."""
     measures = {f"{measure.__name__}_pass.py": measure_source(measure) for measure in MEASURES}
     modules = measures | {f"{kind.name}_node.py": kinematics_source(kind) for kind in KINDS}
-    modules |= {f"{each.name}_connection.py": connection_source(each) for each in CONNECTIONS}
+    title = "Forces and tangents of the parts at points in `beamfem.physics.connections`."
+    notice = "Written by beamfem.physics.generate: do not edit."
+    functions = "\n\n".join(map(connection_source, CONNECTIONS))
+    modules["connection_forces.py"] = f'"""{title}\n\n{notice}\n"""\n\n{HEADER}{functions}'
     return {name: _formatted(source) for name, source in modules.items()}
 
 

@@ -51,6 +51,9 @@ def parts(one, two):
         "preloaded": (bf.SpringDamper(one.end, two.at(0.5), 150.0, 3.0, 0.3), None),
         "grounded": (bf.SpringDamper(one.end, (1.0, 0.3), 150.0, 3.0), None),
         "torsion": (bf.TorsionSpring(one.end, two.end, 5.0, 0.2), None),
+        "bushing": (bf.Bushing(one.end, two.end, (90.0, 40.0, 3.0), (1.0, 2.0, 0.1)), None),
+        "slider": (bf.Slider(one.end, two.end, (1.0, 2.0)), None),
+        "gear": (bf.Gear(one.end, two.end, -1.5), None),
         "link": (bf.Link(one.end, two.end), LinkInPython(one.end, two.end)),
     }
 
@@ -267,7 +270,7 @@ def test_parts_are_drawn_where_they_are(tmp_path):
     one, two = rods()
     own = [part for part, _ in parts(one, two).values()]
     supports = [bf.Clamp(one.start), bf.Clamp(two.start)]
-    model = bf.Model([one, two], supports, connectors=own[3:], masses=own[:3])
+    model = bf.Model([one, two], supports, connectors=[part for part in own if part not in own[:3]], masses=own[:3])
     (axes,) = model.plot(tmp_path / "parts.png").axes
     ends = np.concatenate([line.get_xydata()[[0, -1]] for line in axes.lines])
     for place in ((0.0, -1.0), (0.05, -1.0), (0.6, -0.9), (1.0, 0.3)):
@@ -300,3 +303,71 @@ def test_drag_of_a_spinning_beam_is_integrated_exactly(order, elements):
     fractions = np.unique([(i + place) / elements for i in range(elements) for place in places])
     torque = (2.0 * fractions * forces[:, 1]).sum()
     assert torque == pytest.approx(-0.7 * 9.0 * 2.0**4 / 4, rel=1e-12)
+
+
+def arms(gap=0.0):
+    one = bf.Beam(bf.Line((0, 0), (1, 0)), 3, bf.CRBF(3), SQUARE, STEEL)
+    return one, bf.Beam(bf.Line((1 + gap, 0), (2 + gap, 0)), 3, bf.CRBF(3), SQUARE, STEEL)
+
+
+def test_a_slider_is_a_bushing_that_is_soft_along_its_axis():
+    """A telescope between a clamp and a roller, bent far: nothing but the slider lets it get longer. Also turned."""
+    ends = []
+    for sliding, angle in ((True, 0.0), (False, 0.0), (True, 0.6)):
+        c, s = np.cos(angle), np.sin(angle)
+        one, two = (
+            bf.Beam(bf.Line((x * c, x * s), (x * c + c, x * s + s)), 3, bf.CRBF(3), SQUARE, STEEL) for x in (0.0, 1.0)
+        )
+        soft = bf.Bushing(one.end, two.start, (1e-6, 1e9, 1e9))
+        joint = bf.Slider(one.end, two.start, (c, s)) if sliding else soft
+        supports = [bf.Clamp(one.start), bf.Roller(two.end, (c, s))]
+        model = bf.Model([one, two], supports, [bf.PointForce(two.end, (-30.0 * s, 30.0 * c))], connectors=[joint])
+        solution = bf.solve_static(model)
+        x, y = solution.displacement(two.end)[-1]
+        ends.append((c * x + s * y, c * y - s * x, solution.rotation(two.end)[-1]))
+    assert ends[0][1] > 0.4
+    np.testing.assert_allclose(ends[1], ends[0], rtol=2e-5, atol=1e-9)
+    np.testing.assert_allclose(ends[2], ends[0], rtol=1e-8, atol=1e-9)
+
+
+def test_a_slider_moves_apart_under_a_force_along_it_and_carries_moment():
+    one, two = arms()
+    slider, spring = bf.Slider(one.end, two.start, (1, 0)), bf.SpringDamper(two.end, (3.0, 0.0), 50.0)
+    loads = [bf.PointForce(two.end, (10.0, 0.0)), bf.PointMoment(two.end, 2.0)]
+    solution = bf.solve_static(bf.Model([one, two], [bf.Clamp(one.start)], loads, connectors=[slider, spring]))
+    across, moment = solution.multipliers(slider)[-1]
+    pull = solution.connector_force(spring)[-1, 0]
+    assert solution.displacement(two.end)[-1, 0] > 0.15
+    reaction = solution.reaction(one.start)[-1]
+    np.testing.assert_allclose(reaction[:2], -(pull[:2] + np.array([10.0, 0.0])), atol=1e-7)
+    forces = solution.connector_force(slider)[-1]
+    np.testing.assert_allclose(forces[0, :2], -forces[1, :2], atol=1e-9)
+    assert abs(across) < 10.0
+    assert moment == pytest.approx(-forces[1, 2], rel=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [2.0, -0.5])
+def test_a_gear_turns_the_moment_by_the_square_of_its_ratio(ratio):
+    """A spring k holds b: M t_a = k (r t_a)^2, so t_a = M / (k r^2)."""
+    one, two = arms(0.5)
+    spring = bf.Spring(two.start, rotational=30.0)
+    model = bf.Model(
+        [one, two],
+        [bf.Pin(one.start), bf.Pin(two.start), spring],
+        [bf.PointMoment(one.start, 5.0)],
+        connectors=[bf.Gear(one.start, two.start, ratio)],
+    )
+    solution = bf.solve_static(model)
+    assert solution.rotation(one.start)[-1] == pytest.approx(5.0 / (30.0 * ratio**2), rel=1e-9)
+    assert solution.rotation(two.start)[-1] == pytest.approx(5.0 / (30.0 * ratio), rel=1e-9)
+
+
+def test_two_geared_flywheels_swing_as_one():
+    """J_a + r^2 J_b on a torsion spring k: the frequency is that of the reduced inertia."""
+    light = bf.Material(2.1e11, 0.3, 1e-4)
+    one, two = (bf.Beam(bf.Line((x, 0), (x + 0.5, 0)), 1, bf.CRBF(2), SQUARE, light) for x in (0.0, 1.0))
+    wheels = [bf.PointMass(beam.start, 1.0, inertia) for beam, inertia in ((one, 0.2), (two, 0.05))]
+    supports = [bf.Pin(one.start), bf.Pin(two.start), bf.Spring(one.start, rotational=40.0)]
+    model = bf.Model([one, two], supports, connectors=[bf.Gear(one.start, two.start, 3.0)], masses=wheels)
+    frequency = bf.solve_modes(model, 1).frequencies[0]
+    assert frequency == pytest.approx(np.sqrt(40.0 / (0.2 + 9.0 * 0.05)) / (2 * np.pi), rel=1e-6)

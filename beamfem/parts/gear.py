@@ -1,0 +1,63 @@
+"""A gear between two sections."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.model.beam import Point, require_point_of
+from beamfem.parts.at_points import PartAtPoints
+from beamfem.physics.connections import GEAR, Connection
+from beamfem.validation import convert, finite
+
+
+@dataclass(frozen=True, slots=True)
+class Gear(PartAtPoints):
+    """A gear between two sections: the rotation of b from the reference is `ratio` times that of a.
+
+    Its condition is t_b - ratio t_a = 0, its multiplier the moment on b [N m].
+
+    Parameters
+    ----------
+    a, b : Point
+        Points of beams.
+    ratio : float, [-]
+        Transmission ratio, negative if both turn in opposite directions.
+
+    Raises
+    ------
+    InputError
+        For an invalid value, or a ratio of zero.
+
+    Examples
+    --------
+    >>> shaft = bf.Beam(bf.Line((0, 1), (2, 1)), 2, bf.CRBF(order=3), bf.Rectangle(0.05, 0.1), steel)
+    >>> gear = bf.Gear(beam.start, shaft.start, ratio=-2.0)
+    >>> pins = [bf.Pin(beam.start), bf.Pin(beam.end), bf.Pin(shaft.start), bf.Pin(shaft.end)]
+    >>> geared = bf.Model([beam, shaft], pins, [bf.PointMoment(beam.start, 10.0)], connectors=[gear])
+    """
+
+    a: Point
+    b: Point
+    ratio: float
+
+    def __post_init__(self) -> None:
+        require_point_of(self, "a")
+        require_point_of(self, "b")
+        convert(self, finite, "ratio")
+        if self.ratio == 0.0:
+            raise InputError("the ratio of a Gear must not be zero")
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """Both points."""
+        return self.a, self.b
+
+    @property
+    def connection(self) -> Connection:
+        """A gear."""
+        return GEAR
+
+    def data(self, reference: np.ndarray) -> tuple[float, ...]:
+        """Return the ratio."""
+        return (self.ratio,)

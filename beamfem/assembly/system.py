@@ -325,7 +325,7 @@ class System:
     @shared_table
     def unknowns(self) -> Unknowns:
         """The order of the coordinates that are not prescribed."""
-        connectors, joined = self.connectors, bool(self.model.joints)
+        connectors, joined = self.connectors, bool(self.model.shared_joints)
         border = 0 if self.static else None if self.inclined else layout.WIDEST_BORDER
         coupled, multipliers = [item.all for item in connectors.items], connectors.multipliers.tolist()
         known = np.concatenate((self.prescribed_dofs, self.history.numbers))

@@ -102,7 +102,7 @@ def required_nodes(model: "Model") -> list[list[tuple[float, str]]]:
     """
     result: list[list[tuple[float, str]]] = [[] for _ in model.beams]
     points: list[tuple[object, Point]] = [(support, support.point) for support in model.point_supports]
-    points += [(joint, point) for joint in model.joints for point in (joint.a, joint.b)]
+    points += [(joint, point) for joint in model.shared_joints for point in (joint.a, joint.b)]
     points += [(load, load.point) for load in model.point_loads]
     points += [(connector, point) for connector in model.at_points for point in connector.points]
     for part, point in points:
@@ -313,7 +313,7 @@ def _block_key(beam: Beam) -> tuple[Element, Hashable]:
 def _joined(model: "Model", grids: Sequence[Grid]) -> tuple[np.ndarray, np.ndarray]:
     """Return pairs (grid, node, grid, node) (n, 4) of nodes with a common rotation, and with a common position."""
     corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]
-    if not corners and not model.joints:
+    if not corners and not model.shared_joints:
         return _NO_PAIRS, _NO_PAIRS
     rigid, hinged = (_pairs(model, grids, keeps_angle) for keeps_angle in (True, False))
     turning = np.concatenate([np.array(corners, dtype=np.int64).reshape(-1, 4), rigid])
@@ -322,7 +322,7 @@ def _joined(model: "Model", grids: Sequence[Grid]) -> tuple[np.ndarray, np.ndarr
 
 def _pairs(model: "Model", grids: Sequence[Grid], keeps_angle: bool) -> np.ndarray:
     """Return grid and node of both points (n, 4) of the joints that keep the angle, or of those that do not."""
-    joints = [joint for joint in model.joints if joint.keeps_angle == keeps_angle]
+    joints = [joint for joint in model.shared_joints if joint.keeps_angle == keeps_angle]
     a, b = [joint.a for joint in joints], [joint.b for joint in joints]
     return np.hstack([_places(model, grids, a), _places(model, grids, b)])
 

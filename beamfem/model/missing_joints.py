@@ -64,7 +64,7 @@ def _point_in_words(model: Model, point: Point) -> str:
 def _joined_beams(model: Model) -> dict[tuple[int, float], set[int]]:
     """Return the beams of the other points that joints connect with a point, by its beam and fraction."""
     groups: dict[tuple[int, float], set[tuple[int, float]]] = {}
-    for joint in model.joints:
+    for joint in model.shared_joints:
         a, b = ((model.number_of(point.beam), point.fraction) for point in (joint.a, joint.b))
         together = groups.get(a, {a}) | groups.get(b, {b})
         for point in together:

@@ -44,8 +44,8 @@ def refused(name: str, item: object, kinds: Kinds) -> str:
     """Return why a list of a Model cannot hold an item: where it belongs, or what it lacks."""
     said = f"{name} of a Model cannot hold {shown(item)}"
     right = [other for other, own in kinds.items() if other != name and isinstance(item, own)]
-    if right:
-        return f"{said}; it belongs in {right[0]}"
+    if right:  # of several, what holds any contribution
+        return f"{said}; it belongs in {'connectors' if 'connectors' in right else right[0]}"
     lacking = [member for member in members(Contribution) if not hasattr(item, member)]
     if Contribution in kinds[name] and 0 < len(lacking) < len(members(Contribution)):
         return f"{said}, which has no {' and no '.join(lacking)}, but a Contribution"
@@ -82,7 +82,7 @@ _KINDS: dict[str, tuple[type, ...]] = {
     "beams": (Beam,),
     "supports": (PointSupport, LineSupport),
     "loads": (BodyLoad, LineLoad, PointLoad, ImposedStrain),
-    "joints": (Joint,),
+    "joints": (Joint, Contribution),
     "connectors": (Contribution,),
     "masses": (Contribution,),
 }
@@ -103,9 +103,9 @@ class Model:
         Supports, such as `Clamp` or `Foundation`.
     loads : sequence, optional
         Loads, such as `PointForce`, `Gravity` or `Temperature`.
-    joints : sequence of Joint, optional
-        Joints between beams. The distance of joined points may be up to 1e-5 of the longer beam: the second is moved to
-        the first without stress.
+    joints : sequence, optional
+        Joints between beams: `Rigid` and `Hinge`, also `Link`, `Slider` and `Gear`. The distance of points that `Rigid`
+        or `Hinge` joins may be up to 1e-5 of the longer beam: the second is moved to the first without stress.
     connectors : sequence of Contribution, optional
         Forces between points, such as `SpringDamper` and `Link`, or user-defined ones, see `Contribution`.
     units : str, default "N, m, s"
@@ -135,7 +135,7 @@ class Model:
     beams: Sequence[Beam]
     supports: Sequence[Support] = ()
     loads: Sequence[Load] = ()
-    joints: Sequence[Joint] = ()
+    joints: Sequence[Joint | Contribution] = ()
     connectors: Sequence[Contribution] = ()
     units: str = _UNNAMED
     masses: Sequence[Contribution] = ()
@@ -234,7 +234,8 @@ class Model:
                 if not isinstance(item, kinds):
                     raise InputError(refused(name, item, _KINDS))
                 kind: Any = type(item)
-                if Contribution not in kinds and not (is_dataclass(item) and kind.__dataclass_params__.frozen):
+                own = Contribution not in kinds or isinstance(item, Joint)
+                if own and not (is_dataclass(item) and kind.__dataclass_params__.frozen):
                     raise InputError(f"{kind.__name__}, one of the {name} of a Model, must be a frozen dataclass")
         if not self.beams:
             raise InputError("a Model needs at least one beam")
@@ -242,12 +243,12 @@ class Model:
             raise InputError("a Model lists the same beam twice; make a second Beam for a second one")
         require_different_names(self.beams)
         parts: tuple[Support | Load, ...] = (*self.supports, *self.loads)
-        for part in (*parts, *self.joints):
+        for part in (*parts, *self.shared_joints):
             if not of_package(type(part)):
                 part.require_valid()
         for item in parts:
             self._require(item, item.place)
-        for joint in self.joints:
+        for joint in self.shared_joints:
             self._require(joint, joint.a)
             self._require(joint, joint.b)
         for connector in self.at_points:
@@ -268,11 +269,12 @@ class Model:
 
     def _require_touches(self) -> None:
         """Raise InputError for the first joint whose points do not coincide."""
-        if not self.joints:
+        joints = self.shared_joints
+        if not joints:
             return
-        a, b = (reference_positions([getattr(joint, name) for joint in self.joints]) for name in "ab")
+        a, b = (reference_positions([getattr(joint, name) for joint in joints]) for name in "ab")
         gaps = np.linalg.norm(a - b, axis=1).tolist()
-        for joint, gap in zip(self.joints, gaps, strict=True):
+        for joint, gap in zip(joints, gaps, strict=True):
             self._require_touch(joint, gap)
 
     def _require_touch(self, joint: Joint, gap: float) -> None:
@@ -397,10 +399,16 @@ class Model:
             raise self._unknown(f"the point {point} is on a beam that is not in this model", point.beam)
         return self.meshes[self._numbers[id(point.beam)]]
 
-    @property
+    @cached_property
+    def shared_joints(self) -> tuple[Joint, ...]:
+        """The joints at which beams share coordinates."""
+        return tuple(joint for joint in self.joints if isinstance(joint, Joint))
+
+    @cached_property
     def at_points(self) -> tuple[Contribution, ...]:
-        """Connectors and masses, which act on points."""
-        return (*self.connectors, *self.masses)
+        """Connectors, masses, and joints that are conditions: what acts on points."""
+        conditions = (joint for joint in self.joints if not isinstance(joint, Joint))
+        return (*self.connectors, *self.masses, *conditions)
 
     @cached_property
     def imposing(self) -> tuple[tuple[int, ImposedStrain], ...]:

@@ -166,7 +166,7 @@ def _centre(only: "Solution", disc: Disc) -> np.ndarray:
 def joints_of(solution: "Solution", row: int) -> Stamps:
     """Return the hinges of a model in a row as circles."""
     stamps = Stamps()
-    rings = [shape for joint in solution.model.joints for shape in drawn(joint, joint.shapes(), JointShape)]
+    rings = [shape for joint in solution.model.shared_joints for shape in drawn(joint, joint.shapes(), JointShape)]
     if rings:
         only = one_row(solution, row)
         for ring in rings:

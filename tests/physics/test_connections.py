@@ -371,3 +371,17 @@ def test_two_geared_flywheels_swing_as_one():
     model = bf.Model([one, two], supports, connectors=[bf.Gear(one.start, two.start, 3.0)], masses=wheels)
     frequency = bf.solve_modes(model, 1).frequencies[0]
     assert frequency == pytest.approx(np.sqrt(40.0 / (0.2 + 9.0 * 0.05)) / (2 * np.pi), rel=1e-6)
+
+
+@pytest.mark.parametrize("part", ["link", "slider", "gear"])
+def test_conditions_may_stand_among_the_joints(part, tmp_path):
+    one, two = rods()
+    own = parts(one, two)[part][0]
+    supports, load = [bf.Clamp(one.start), bf.Clamp(two.start)], [bf.PointForce(one.end, (2.0, 1.0))]
+    found = []
+    for lists in ({"joints": [own]}, {"connectors": [own]}):
+        solution = bf.solve_static(bf.Model([one, two], supports, load, **lists))
+        solution.save(tmp_path / "joined.h5")
+        assert np.array_equal(bf.solve_static(bf.load(tmp_path / "joined.h5").model).p, solution.p)
+        found.append(solution.displacement(two.end)[-1])
+    np.testing.assert_allclose(found[0], found[1], rtol=1e-12)

@@ -24,7 +24,9 @@ _FIRST_FEW = 3
 def bodies_of(model: Model) -> np.ndarray:
     """Return the number of the body (beams,) that each beam is part of; rigid joints make one body of two beams."""
     pairs = [
-        (model.number_of(joint.a.beam), model.number_of(joint.b.beam)) for joint in model.joints if joint.keeps_angle
+        (model.number_of(joint.a.beam), model.number_of(joint.b.beam))
+        for joint in model.shared_joints
+        if joint.keeps_angle
     ]
     count = len(model.beams)
     if not pairs:
@@ -61,7 +63,7 @@ class Conditions:
                 for row, k in zip(self.moved(position), foundation.stiffness, strict=True):
                     if k > 0.0:
                         self._add({int(body[number]): row})
-        for joint in model.joints:
+        for joint in model.shared_joints:
             one, other = (int(body[model.number_of(point.beam)]) for point in (joint.a, joint.b))
             if one != other:
                 for left, right in zip(self.displacement(joint.a), self.displacement(joint.b), strict=True):

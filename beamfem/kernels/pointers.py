@@ -14,8 +14,8 @@ from llvmlite import ir
 
 from beamfem.kernels.compiler.bounds_checks import CHECKED, register
 from beamfem.kernels.compiler.build import Build
-from beamfem.kernels.compiler.callables import RESULTS, operation
-from beamfem.kernels.compiler.value_types import KINDS, REALS, SLOTS, WHOLES, Kind, Value
+from beamfem.kernels.compiler.callables import operation
+from beamfem.kernels.compiler.value_types import FLAG, REALS, SLOTS, WHOLE, WHOLES, Kind, Value, signature_of
 
 _PLACE = c_char * 0  # an array may be empty
 
@@ -47,6 +47,13 @@ def _pointer(kind: Kind) -> Callable[..., Any]:
     return pointer
 
 
+@operation
+def given(build: Build, pointer: Value) -> Value:
+    """Return whether a pointer, to an array or a record, leads anywhere."""
+    address = build.builder.ptrtoint(pointer.llvm, WHOLE.llvm)
+    return Value(FLAG, build.builder.icmp_signed("!=", address, WHOLE.llvm(0)))
+
+
 reals = _pointer(REALS)
 wholes = _pointer(WHOLES)
 slots = _pointer(SLOTS)
@@ -55,18 +62,10 @@ slots = _pointer(SLOTS)
 @cache
 def caller(kinds: str, returns: str = "") -> Callable[..., Any]:
     """Return an operation call(address, *arguments) for functions with these kinds of arguments, in C convention."""
-    value_kinds, result = [KINDS[kind] for kind in kinds], RESULTS[returns]
-    outer = ir.VoidType() if result is None else result.llvm
-    function_type = ir.FunctionType(outer, [kind.llvm for kind in value_kinds]).as_pointer()
 
     @operation
     def call(build: Build, address: Value, *arguments: Value) -> Value | None:
-        for each in arguments:
-            build.pass_on(each)
-        values = [build.converted(value, kind) for value, kind in zip(arguments, value_kinds, strict=True)]
-        returned = build.builder.call(build.builder.inttoptr(address.llvm, function_type), values)
-        build.end_if_ended()
-        return None if result is None else Value(result, returned)
+        return build.call_at(address.llvm, signature_of(kinds, returns), arguments)
 
     return call
 

@@ -29,11 +29,13 @@ from beamfem.assembly.model_coordinates import (
     stress_free,
 )
 from beamfem.assembly.rotating_vectors import rotating_vectors
-from beamfem.assembly.solver_table import SolverTable
+from beamfem.assembly.solver_table import motion_solver, newton_solver
 from beamfem.assembly.strain_rates import StrainRates, strain_rates
 from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
 from beamfem.kernels.block import Block, Layout, PointLoads, Springs
+from beamfem.kernels.motion_record import MotionSolver
+from beamfem.kernels.newton_record import NewtonSolver
 from beamfem.model.load_base import factor
 from beamfem.model.model import Model
 from beamfem.precision.roundoff_bounds import residual_errors, stress_errors
@@ -154,9 +156,14 @@ class System:
         return Assembler(self.equations, shared=shared)
 
     @shared_table
-    def solver_table(self) -> SolverTable:
-        """The unknowns of a band, as compiled drivers take them."""
-        return SolverTable(self.unknowns, self.rotated, self.scale)
+    def newton_solver(self) -> NewtonSolver:
+        """The solver of Newton's iteration without workspace."""
+        return newton_solver(self.unknowns, self.rotated, self.scale)
+
+    @shared_table
+    def motion_solver(self) -> MotionSolver:
+        """The solver of time steps without workspace."""
+        return motion_solver(self.unknowns, self.rotated, self.scale, self.prescribed_dofs)
 
     @shared_table
     def residual_errors(self) -> np.ndarray:

@@ -1,12 +1,7 @@
-"""Memory in compiled code: pointers made from addresses, and calls of compiled functions by their address.
-
-Functions that call one another by address are compiled separately, and each only once. Addresses are passed in tables
-of integers that Python owns.
-"""
+"""Memory in compiled code: pointers, and the addresses of arrays."""
 
 from collections.abc import Callable
 from ctypes import addressof, c_char
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -15,9 +10,9 @@ from llvmlite import ir
 from beamfem.kernels.compiler.bounds_checks import CHECKED, register
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import operation
-from beamfem.kernels.compiler.value_types import FLAG, REALS, SLOTS, WHOLE, WHOLES, Kind, Value, signature_of
+from beamfem.kernels.compiler.value_types import FLAG, REALS, SLOTS, WHOLE, WHOLES, Kind, Value
 
-_PLACE = c_char * 0  # an array may be empty
+_memory_of: Any = (c_char * 0).from_buffer  # an array may be empty
 
 
 @operation
@@ -59,21 +54,11 @@ wholes = _pointer(WHOLES)
 slots = _pointer(SLOTS)
 
 
-@cache
-def caller(kinds: str, returns: str = "") -> Callable[..., Any]:
-    """Return an operation call(address, *arguments) for functions with these kinds of arguments, in C convention."""
-
-    @operation
-    def call(build: Build, address: Value, *arguments: Value) -> Value | None:
-        return build.call_at(address.llvm, signature_of(kinds, returns), arguments)
-
-    return call
-
-
 def address_of(values: np.ndarray) -> int:
     """Return the address of the first number of an array."""
     if CHECKED:
         register(values)
-    if values.flags.writeable and values.flags.c_contiguous:
-        return addressof(_PLACE.from_buffer(values.data))
-    return int(values.__array_interface__["data"][0])  # works for all arrays, but takes twice as long
+    try:
+        return addressof(_memory_of(values))
+    except TypeError:  # an array that is only read or not contiguous, which takes longer
+        return int(values.__array_interface__["data"][0])

@@ -44,11 +44,11 @@ def _type(kind: Kind) -> np.dtype[Any]:
     return np.dtype(np.float64 if kind in (REALS, ROWS) else np.int32 if kind is SLOTS else np.int64)
 
 
-def checked(kind: Kind, array: np.ndarray, name: str = "compiled code") -> int:
+def checked(kind: Kind, array: np.ndarray) -> int:
     """Return the address of an array after a check of its type and layout, which compiled code does not make."""
     wanted = _type(kind)
     if array.dtype != wanted or not array.flags.c_contiguous:
-        raise TypeError(f"{name} takes contiguous {wanted}, got {array.dtype} {array.strides}")
+        raise TypeError(f"compiled code takes contiguous {wanted}, got {array.dtype} {array.strides}")
     return address_of(array)
 
 
@@ -70,28 +70,35 @@ def kind_of(annotation: Any) -> tuple[Kind, tuple[str | int, ...]]:
     raise TypeError(f"compiled code knows no {annotation!r}")
 
 
-class _Field:
-    """A number in a slot of a record."""
+class _Number:
+    """An integer in a slot of a record."""
 
     def __init__(self, name: str, place: int, kind: Kind) -> None:
         self.name, self.place, self.kind = name, place, kind
 
     def __get__(self, record: Any, owner: type) -> Any:
-        return self if record is None else (record._reals if self.kind is NUMBER else record._wholes)[self.place]
+        return self if record is None else record._wholes[self.place]
 
     def __set__(self, record: Any, value: Any) -> None:
-        if self.kind is NUMBER:
-            record._reals[self.place] = value
-        else:
-            record._wholes[self.place] = int(value)
+        record._wholes[self.place] = int(value)
 
 
-class _Address(_Field):
-    """The address of an array, a function or a record, which the record keeps alive."""
+class _Real(_Number):
+    """A floating-point number."""
 
-    def __init__(self, name: str, place: int, kind: Kind, shape: tuple[str | int, ...], own: Any) -> None:
+    def __get__(self, record: Any, owner: type) -> Any:
+        return self if record is None else record._reals[self.place]
+
+    def __set__(self, record: Any, value: Any) -> None:
+        record._reals[self.place] = value
+
+
+class _Address(_Number):
+    """The address of an array, a function or a record, which the record keeps alive; declared: shape of the array."""
+
+    def __init__(self, name: str, place: int, kind: Kind, declared: Sequence[str | int] = (), own: Any = None) -> None:
         super().__init__(name, place, kind)
-        self._shape, self._own = shape, own
+        self.declared, self._own, self._dtype = declared, own, _type(kind)
 
     def __get__(self, record: Any, owner: type) -> Any:
         if record is None:
@@ -102,36 +109,42 @@ class _Address(_Field):
         return self._own.at(address) if self._own else memory_at(address, self.kind, *self.shape(record))
 
     def __set__(self, record: Any, value: Any) -> None:
-        record._wholes[self.place] = self._address(record, value)
+        if isinstance(value, np.ndarray):
+            if self._sizes and value.shape != self.shape(record):
+                raise ValueError(f"{self.name} has the shape {self.shape(record)}, got {value.shape}")
+            if value.dtype != self._dtype or not value.flags.c_contiguous:
+                raise TypeError(f"{self.name} takes contiguous {self._dtype}, got {value.dtype} {value.strides}")
+            record._wholes[self.place] = address_of(value)
+        else:
+            record._wholes[self.place] = self._address(record, value)
         record.kept[self.name] = value
 
-    def shape(self, record: Any) -> tuple[int, ...]:
-        """Return the shape that is declared for the array of a record, whose sizes are other fields."""
-        return tuple(getattr(record, size) if isinstance(size, str) else size for size in self._shape)
-
     def _address(self, record: Any, value: Any) -> int:
-        if value is None:
-            return 0
-        if isinstance(value, np.ndarray):
-            if self._shape and value.shape != self.shape(record):
-                raise ValueError(f"{self.name} has the shape {self.shape(record)}, got {value.shape}")
-            return checked(self.kind, value, self.name)
         if isinstance(value, list | tuple):
             addresses = np.array([each.address for each in value], dtype=np.int64)
             record.kept[self.name, "addresses"] = addresses
             return address_of(addresses)
-        return value if isinstance(value, int) else int(value.address)
+        return 0 if value is None else value if isinstance(value, int) else int(value.address)
+
+    def link(self, fields: "Mapping[str, _Number]") -> None:
+        """Look up the fields that are sizes of the array."""
+        self._sizes = [fields[each].place if isinstance(each, str) else -each for each in self.declared]
+
+    def shape(self, record: Any) -> tuple[int, ...]:
+        """Return the shape that is declared for the array of a record."""
+        wholes = record._wholes
+        return tuple([wholes[size] if size >= 0 else -size for size in self._sizes])  # a fixed size is negative
 
 
-class calls:
-    """A field with the address of a function like a given routine, which may be named as in "field:interpolate"."""
+class _Function:
+    """The routine that gives the signature of a function whose address is in a field."""
 
-    def __init__(self, like: Any) -> None:
-        self._like = like
+    def __init__(self, like: Any, tasks: tuple[str, ...]) -> None:
+        self._like, self.tasks = like, tasks
 
     @property
     def routine(self) -> Any:
-        """The routine that gives the signature."""
+        """The routine itself, which need not be imported before."""
         return resolve_name(f"{__package__}.{self._like}") if isinstance(self._like, str) else self._like
 
     def signature(self) -> Signature:
@@ -139,9 +152,13 @@ class calls:
         signature: Signature = self.routine.signature
         return signature
 
-    def __call__(self, *arguments: Any) -> Any:
-        """Stand for the call of the function, which only compiled code makes."""
-        raise NotImplementedError
+
+def calls(like: Any, *tasks: str) -> Any:
+    """Return a field for the address of a function like a given routine, which may be named: "field:interpolate".
+
+    tasks: what the function is needed for, if not always.
+    """
+    return _Function(like, tasks)
 
 
 class Record:
@@ -151,33 +168,43 @@ class Record:
     address: of the slots; kept: what the fields of addresses were set to; fields: by name, in the order of the slots.
     """
 
-    fields: ClassVar[dict[str, _Field]] = {}
+    fields: ClassVar[dict[str, _Number]] = {}
+    called: ClassVar[dict[str, _Function]]
     kind: ClassVar[Kind]
+    _defaults: ClassVar[dict[str, Any]] = {}
 
     def __init_subclass__(cls) -> None:
-        fields, cls._defaults = dict(cls.fields), dict(getattr(cls, "_defaults", {}))
+        fields, cls._defaults = dict(cls.fields), dict(cls._defaults)
         for name, annotation in get_annotations(cls).items():
             kind, shape = kind_of(annotation)
             own = annotation if kind.fields is not None else None
-            place = len(fields)
-            fields[name] = _Address(name, place, kind, shape, own) if kind.points else _Field(name, place, kind)
+            if kind.points:
+                fields[name] = _Address(name, len(fields), kind, shape, own)
+            else:
+                fields[name] = (_Real if kind is NUMBER else _Number)(name, len(fields), kind)
             if name in vars(cls):
                 cls._defaults[name] = vars(cls)[name]
         for name, given in vars(cls).items():
-            if isinstance(given, calls):
-                fields[name] = _Address(name, len(fields), address_of_function(given.signature), (), None)
-        cls.called = {name: each for name, each in vars(cls).items() if isinstance(each, calls)}
+            if isinstance(given, _Function):
+                fields[name] = _Address(name, len(fields), address_of_function(given.signature))
+        if taken := [name for name in fields if hasattr(Record, name)]:
+            raise TypeError(f"a record has its own {', '.join(taken)}")
+        cls.called = {name: each for name, each in vars(cls).items() if isinstance(each, _Function)}
         for name, field in fields.items():
             setattr(cls, name, field)
+            if isinstance(field, _Address):
+                field.link(fields)
         cls.fields = fields
         cls.kind = record_kind(cls.__name__, {name: (field.place, field.kind) for name, field in fields.items()})
-
-    _defaults: ClassVar[dict[str, Any]]
-    called: ClassVar[dict[str, calls]]
 
     def __init__(self, **values: Any) -> None:
         self._hold(np.zeros(len(self.fields), dtype=np.int64))
         self.fill(**self._defaults | values)
+
+    @classmethod
+    def usual(cls, **others: Any) -> Self:
+        """Return the record of the routines that give the signatures of its functions, but for some others."""
+        return cls(**{name: each.routine for name, each in cls.called.items()} | others)
 
     def _hold(self, memory: np.ndarray) -> None:
         self.memory, self.address, self.kept = memory, address_of(memory), dict[Any, Any]()
@@ -199,15 +226,26 @@ class Record:
 
     def fill(self, **values: Any) -> None:
         """Set fields by name, numbers first because they may be sizes of arrays."""
-        if not values.keys() <= self.fields.keys():
-            raise TypeError(f"{type(self).__name__} has no {', '.join(sorted(values.keys() - self.fields.keys()))}")
-        for name in sorted(values, key=lambda name: isinstance(self.fields[name], _Address)):
-            setattr(self, name, values[name])
+        fields, addresses = self.fields, list[tuple[_Number, Any]]()
+        for name, value in values.items():
+            if name not in fields:
+                raise TypeError(f"{type(self).__name__} has no {name}")
+            if isinstance(fields[name], _Address):
+                addresses.append((fields[name], value))
+            else:
+                fields[name].__set__(self, value)
+        for field, value in addresses:
+            field.__set__(self, value)
 
-    def make_room(self, *names: str) -> None:
-        """Set fields to new arrays of zeros with the shapes that are declared for them, in one block of memory."""
-        fields = [(name, self.fields[name]) for name in names]
-        self.fill(**aligned({name: field.shape(self) for name, field in fields if isinstance(field, _Address)}))
+    def forget(self, *names: str) -> None:
+        """Let go of what some fields refer to."""
+        for name in names:
+            self._wholes[self.fields[name].place] = 0
+            self.kept.pop(name, None)
+
+    def shapes(self, *names: str) -> dict[str, tuple[int, ...]]:
+        """Return the shapes that are declared for arrays."""
+        return {name: field.shape(self) for name in names if isinstance(field := self.fields[name], _Address)}
 
 
 def aligned(shapes: Mapping[Any, Sequence[int]]) -> dict[Any, np.ndarray]:

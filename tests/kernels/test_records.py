@@ -9,7 +9,7 @@ import pytest
 
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.pointers import at, given
-from beamfem.kernels.records import Reals, Record, Several, Slots, Table, Wholes, calls
+from beamfem.kernels.records import Reals, Record, Several, Slots, Table, Wholes, aligned, calls
 
 
 class Pair(Record):
@@ -151,7 +151,7 @@ def test_arrays_are_checked_when_they_are_given(values, message):
 
 def test_room_is_made_by_the_shapes_that_are_declared():
     own = Part(count=5)
-    own.make_room("values")
+    own.fill(**aligned(own.shapes("values")))
     assert own.values.shape == (5, 2)
     assert own.values.ctypes.data % 64 == 0
     assert not own.values.any()

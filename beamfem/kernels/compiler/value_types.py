@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import NamedTuple
 
 from llvmlite import ir
@@ -76,11 +77,13 @@ def record_kind(name: str, fields: dict[str, tuple[int, Kind]]) -> Kind:
     return Kind(name, _INTEGER.as_pointer(), fields=fields)
 
 
+@cache
 def addresses_of(entry: Kind) -> Kind:
     """Return the kind of pointers to a table of addresses."""
     return Kind(f"table of addresses of {entry.name}", _INTEGER.as_pointer(), entry=entry, stored=_INTEGER)
 
 
+@cache
 def side_by_side(entry: Kind) -> Kind:
     """Return the kind of pointers to records side by side."""
     return Kind(f"pointer to several {entry.name}", _INTEGER.as_pointer(), entry=entry)

@@ -2,13 +2,15 @@
 
 import json
 import math
+from typing import Annotated
 
 import numpy as np
 
 import beamfem as bf
 from beamfem.kernels.compiler.bounds_checks import CheckError
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.pointers import address_of, at, caller, room, slots
+from beamfem.kernels.pointers import address_of, at, room, slots
+from beamfem.kernels.records import Reals, Record, Several, Wholes, calls
 from beamfem.kernels.simd import as_rows
 
 
@@ -54,14 +56,31 @@ def read_address(place, values):
     values[0] = short[place[0]]
 
 
-write_by_address = caller("nr")
+class Callee(Record):
+    write = calls(write)
 
 
-@routine("nr")
-def call_and_go_on(place, values):
+@routine()
+def call_and_go_on(callee: Callee, place: Wholes, values: Reals) -> None:
     own = room(2)
-    write_by_address(place[1], place, own)
+    callee.write(place, own)
     values[1] = 3.0
+
+
+class Drawer(Record):
+    number: int
+    own: Reals
+
+
+class Shelf(Record):
+    drawers: Annotated[Several, Drawer]
+
+
+@routine()
+def read_drawer(shelf: Shelf, place: Wholes, values: Reals) -> None:
+    drawer = shelf.drawers[place[0]]
+    numbers = drawer.own
+    values[0] = numbers[place[1]]
 
 
 @routine("nr")
@@ -104,7 +123,11 @@ def main():
     ends |= {f"stack {i}": ended(read_stack, np.array([i])) for i in (2, 3)}
     ends |= {f"address {i}": ended(read_address, np.array([i, address_of(table)])) for i in (3, 4)}
     ends["null"] = ended(read_address, np.array([0, 0]))
-    ends |= {f"call {i}": ended(call_and_go_on, np.array([i, write.address])) for i in (1, 2)}
+    ends |= {f"call {i}": ended(call_and_go_on, Callee(write=write), np.array([i])) for i in (1, 2)}
+    stored = np.arange(3.0)
+    drawers = np.array([[0, 0], [0, address_of(stored)]])
+    shelf = Shelf(drawers=drawers)
+    ends |= {f"drawer {i} {j}": ended(read_drawer, shelf, np.array([i, j])) for i, j in ((1, 2), (1, 3), (2, 0))}
     ends |= {f"divide {i}": ended(divide, np.array([i])) for i in (2, 0)}
     ends |= {f"whole {x}": ended(whole, x) for x in (2.5, math.nan, 1e19)}
     try:

@@ -10,7 +10,7 @@ from beamfem.assembly.assembler import Assembler
 from beamfem.assembly.callbacks import Deferred, KeptErrors
 from beamfem.assembly.equations import STATICS, add_coupled
 from beamfem.assembly.system import System
-from beamfem.kernels import model_passes, record
+from beamfem.kernels import model_passes
 
 _Balance = CFUNCTYPE(None, c_int64)
 
@@ -48,7 +48,7 @@ class ConnectedBalance:
             model_passes.balance.compiled(equations)
             connectors, motion = self._system.called, (self._p, self._zeros, self._zeros)
             connectors.add_forces(self._residual, motion, self.load_factor)
-            if self._assembler.table[record.TANGENT]:
+            if self._assembler.record.tangent:
                 add_coupled(self._system, self._matrix, connectors.tangents(motion, self.load_factor, STATICS))
         except BaseException as error:
             self._errors.keep(error)

@@ -1,4 +1,4 @@
-"""The table that describes a group of similar elements to compiled code, and the arrays that it points to."""
+"""The record that describes a group of similar elements to compiled code."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from beamfem.assembly.routines import Routines, routines
-from beamfem.kernels import record
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.block import (
     ELASTIC_LINE,
@@ -22,8 +21,7 @@ from beamfem.kernels.block import (
     Layout,
     PointLoads,
 )
-from beamfem.kernels.pointers import address_of
-from beamfem.kernels.record import LANES, ROW
+from beamfem.kernels.record import LANES, ROW, Group
 from beamfem.kernels.simd import WIDTH
 
 _CACHE = 400  # workspace rows times elements of a batch, in units of `LANES`, that fit into the cache of a core
@@ -41,7 +39,6 @@ class Sizes(NamedTuple):
     measures: int
     bends: bool
     damped: bool
-    imposed: bool
     half_width: int
 
 
@@ -62,21 +59,14 @@ class Numbers(NamedTuple):
 class Structure:
     """The part of a group that identical groups share: see `element_group.ElementGroup`.
 
-    table: see `kernels.record`; kept: the arrays that it points to; dependent, parameters: numbers of components of
-    nodal vectors that are no coordinates, and of the coordinates on which they depend; constant: node data with the
-    entries that never change in any such group, None if there are none; rotated (k,): nodes with `ROTATED_GRADIENTS`,
-    in storage order; used: rows of workspace.
+    record: without what depends on the numbers of the block; constant: node data with the entries that never change in
+    any such group, None if there are none; rotated (k,): nodes with `ROTATED_GRADIENTS`, in storage order.
     """
 
-    table: np.ndarray
-    kept: tuple[np.ndarray, ...]
+    record: Group
     order: np.ndarray | None
-    dependent: int
-    parameters: int
     constant: np.ndarray | None
     rotated: np.ndarray
-    chunks: tuple[int, int, int]
-    used: int
     needs: Needs
 
 
@@ -90,20 +80,21 @@ def structure_of(block: Block, layout: Layout, loads: PointLoads) -> Structure:
         measures,
         block.measures == ELASTIC_LINE,
         bool(block.damping.any()),
-        block.imposed is not None,
         layout.half_width,
     )
     numbers = Numbers(
         block.node, block.kind, block.beam, block.node_kind, block.dof, block.home, layout.free, loads.element
     )
     if len(block.node) > _FEW or len(layout.free) > 10 * _FEW:
-        return _structure(numbers, sizes)
-    return _shared(tuple((values.tobytes(), values.shape) for values in numbers), sizes)
+        return _structure(numbers, sizes, block.imposed is not None)
+    content = tuple((values.tobytes(), values.shape) for values in numbers)
+    return _shared(content, sizes, block.imposed is not None)
 
 
 @lru_cache(maxsize=64)
-def _shared(content: tuple[tuple[bytes, tuple[int, ...]], ...], sizes: Sizes) -> Structure:
-    return _structure(Numbers(*(np.frombuffer(data, np.int64).reshape(shape) for data, shape in content)), sizes)
+def _shared(content: tuple[tuple[bytes, tuple[int, ...]], ...], sizes: Sizes, imposed: bool) -> Structure:
+    arrays = (np.frombuffer(data, np.int64).reshape(shape) for data, shape in content)
+    return _structure(Numbers(*arrays), sizes, imposed)
 
 
 def storage_order(node: np.ndarray, nodes: int) -> np.ndarray | None:
@@ -120,7 +111,7 @@ def storage_order(node: np.ndarray, nodes: int) -> np.ndarray | None:
     return np.argsort(rank, kind="stable")
 
 
-def _structure(given: Numbers, sizes: Sizes) -> Structure:
+def _structure(given: Numbers, sizes: Sizes, imposed: bool) -> Structure:
     """Return the structure of a group; see `element_group.ElementGroup`."""
     order = storage_order(given.node, len(given.node_kind))
     if order is not None:
@@ -134,101 +125,103 @@ def _structure(given: Numbers, sizes: Sizes) -> Structure:
     kinds = tuple(np.unique(given.node_kind).tolist())
     dependent = 4 if STRETCH in kinds or SHEAR_RIGID in kinds else (0 if set(kinds) <= {GRADIENTS} else 2)
     parameters = coordinates - (size - dependent) if dependent else 0
-    table = np.zeros(record.BLOCK_FIELDS, dtype=np.int64)
-    table_rows = _table_rows(table, nodes * sizes.vectors, sizes)
     velocity = 2 * size + 2 * dependent * parameters
     gathered = velocity + size * sizes.damped
-    chunk_rows = gathered + parameters * parameters + 2 * size
-    table[record.ACCELERATION], table[record.TRANSFORM] = size, 2 * size
-    table[record.CONVECTIVE] = 2 * size + dependent * parameters
-    table[record.VELOCITY], table[record.DAMPED] = velocity, sizes.damped
-    table[record.CURVATURE], table[record.FORCE] = gathered, gathered + parameters * parameters
-    table[record.PREDICTED_FORCE], table[record.NODE_ROWS] = gathered + parameters * parameters + size, chunk_rows
-    used = rows_of(nodes, sizes.vectors, sizes.points, gathered, table_rows)[-1]
+    force = gathered + parameters * parameters
+    rows = _table_rows(nodes * sizes.vectors, sizes)
+    used = rows_of(nodes, sizes.vectors, sizes.points, gathered, rows["table_rows"])[-1]
     batch = LANES
     while batch > _SMALLEST and used * batch > _CACHE * LANES:
         batch //= 2
-    offsets = given.node // LANES * (chunk_rows * ROW) + given.node % LANES
+    node_rows = force + 2 * size
+    offsets = given.node // LANES * (node_rows * ROW) + given.node % LANES
     number = np.where(given.dof >= 0, given.free[given.dof], -1)[given.node].reshape(elements, -1)
     runs = _runs(given.node_kind)
     arrays = {
-        record.CLASS: given.kind,
-        record.BEAM: given.beam,
-        record.PLACE: offsets.T,
-        record.DOF: given.dof.T,
-        record.SOURCE: np.append(np.maximum(given.dof.T, 0), np.zeros(WIDTH, dtype=np.int64)),
-        record.RUNS: runs,
-        record.NUMBER: number.T,
-        record.FREE: given.free,
-        record.HOME: given.home,
-        record.LOAD_ELEMENT: given.element,
-        record.LOAD_PLACE: offsets[given.element].T,
-        record.LOAD_NUMBER: number[given.element].T,
-        record.COUNTED: np.arange(elements) if sizes.half_width < 0 else np.empty(0, dtype=np.int64),
+        "classes": given.kind,
+        "beam": given.beam,
+        "place": offsets.T,
+        "dof": given.dof.T,
+        "source": np.append(np.maximum(given.dof.T, 0), np.zeros(WIDTH, dtype=np.int64)),
+        "runs": runs,
+        "number": number.T,
+        "free": given.free,
+        "home": given.home,
+        "load_element": given.element,
+        "load_place": offsets[given.element].T,
+        "load_number": number[given.element].T,
+        "counted": np.arange(elements) if sizes.half_width < 0 else np.empty(0, dtype=np.int64),
     }
-    kept = []
-    for field, values in arrays.items():
-        kept.append(np.ascontiguousarray(values, dtype=np.int64))
-        table[field] = address_of(kept[-1])
-    table[record.ELEMENTS], table[record.NODES], table[record.NODES_PER_ELEMENT] = elements, count, nodes
-    table[record.ORDERED] = (np.diff(given.node, axis=0) > 0).all()
-    table[record.VECTORS], table[record.POINTS] = sizes.vectors, sizes.points
-    table[record.MEASURES], table[record.BENDS] = sizes.measures, sizes.bends
-    table[record.DEPENDENT], table[record.PARAMETERS] = dependent, parameters
-    table[record.BATCH], table[record.TABLE_ROWS], table[record.COORDINATES] = batch, table_rows, coordinates
-    table[record.RUN_COUNT], table[record.HALF_WIDTH] = len(runs), sizes.half_width
-    table[record.LOADS] = len(given.element)
-    needs = _needs(kinds, sizes, bool(len(given.element)))
-    chunks = -(-count // LANES), chunk_rows, ROW
+    record = Group(
+        elements=elements,
+        nodes=count,
+        nodes_per_element=nodes,
+        dependent=dependent,
+        parameters=parameters,
+        coordinates=coordinates,
+        batch=batch,
+        ordered=(np.diff(given.node, axis=0) > 0).all(),
+        run_count=len(runs),
+        acceleration=size,
+        transform=2 * size,
+        convective=2 * size + dependent * parameters,
+        velocity=velocity,
+        curvature=gathered,
+        force=force,
+        predicted_force=force + size,
+        node_rows=node_rows,
+        chunk_count=-(-count // LANES),
+        space_rows=used,
+        loads=len(given.element),
+        **rows | sizes._asdict(),
+        **{name: np.ascontiguousarray(values, dtype=np.int64) for name, values in arrays.items()},
+    )
+    needs = _needs(kinds, sizes, bool(len(given.element)), imposed)
     rotated, constant = np.flatnonzero(given.node_kind == ROTATED_GRADIENTS), None
     if (dependent and len(kinds) > 1) or len(rotated):
-        constant = _constant(given.node_kind, chunks, size, dependent, parameters)
-    return Structure(table, tuple(kept), order, dependent, parameters, constant, rotated, chunks, used, needs)
+        constant = _constant(given.node_kind, record)
+    return Structure(record, order, constant, rotated, needs)
 
 
-def _constant(
-    node_kind: np.ndarray, shape: tuple[int, int, int], size: int, dependent: int, parameters: int
-) -> np.ndarray:
+def _constant(node_kind: np.ndarray, record: Group) -> np.ndarray:
     """Return node data with the entries that never change: B of nodes whose coordinates are nodal vectors."""
-    chunks = np.zeros(shape)
+    dependent, parameters = record.dependent, record.parameters
+    chunks = np.zeros((record.chunk_count, record.node_rows, ROW))
     for part in range(dependent):
         straight = node_kind == GRADIENTS
         if part < dependent - 2:
             straight |= (node_kind == ROTATION) | (node_kind == ROTATED_GRADIENTS)
         nodes = np.flatnonzero(straight)
-        chunks[nodes // LANES, 2 * size + part * parameters + (part if part < parameters else 0), nodes % LANES] = 1.0
+        row = record.transform + part * parameters + (part if part < parameters else 0)
+        chunks[nodes // LANES, row, nodes % LANES] = 1.0
     return chunks
 
 
-def _table_rows(table: np.ndarray, slots: int, sizes: Sizes) -> int:
-    """Set the offset of each quantity in the row of a class; return the length of the row."""
+def _table_rows(slots: int, sizes: Sizes) -> dict[str, int]:
+    """Return the first row of each table of a class, and the number of rows."""
     points, measures = sizes.points, sizes.measures
     lengths = {
-        record.SLOPE: points * slots,
-        record.SECOND: points * slots * sizes.bends,
-        record.STIFFNESS: points * measures * (measures + 1) // 2,
-        record.REFERENCE: points * measures,
-        record.WEIGHT: points,
-        record.MASS: slots * slots,
-        record.GRAVITY: slots,
-        record.LENGTH: slots,
-        record.DAMPING: int(sizes.damped),
+        "slope": points * slots,
+        "second": points * slots * sizes.bends,
+        "stiffness": points * measures * (measures + 1) // 2,
+        "reference": points * measures,
+        "weight": points,
+        "mass": slots * slots,
+        "gravity": slots,
+        "length": slots,
+        "damping": int(sizes.damped),
     }
-    first = 0
-    for field, length in lengths.items():
-        if length or field != record.DAMPING:
-            table[field] = first
-        first += length
-    return first
+    ends = np.cumsum([0, *lengths.values()]).tolist()
+    return dict(zip((*lengths, "table_rows"), ends, strict=True))
 
 
-def _needs(kinds: tuple[int, ...], sizes: Sizes, loads: bool) -> Needs:
+def _needs(kinds: tuple[int, ...], sizes: Sizes, loads: bool, imposed: bool) -> Needs:
     """Return the parts of `Routines` that each task needs, and the kinds of nodes with an angle."""
     angles = tuple(kind - ROTATION for kind in kinds if kind in (ROTATION, STRETCH, SHEAR_RIGID))
     rotated = ("rotated",) if ROTATED_GRADIENTS in kinds else ()
     rotates = bool(angles or rotated)
     forces = ("forces", *(("angles",) if angles else ()), *rotated, *(("loads",) if loads else ()))
-    forces += (*(("damping",) if sizes.damped else ()), *(("imposed",) if sizes.imposed else ()))
+    forces += (*(("damping",) if sizes.damped else ()), *(("imposed",) if imposed else ()))
     tangent = ["tangent", "band" if sizes.half_width >= 0 else "sparse"]
     tangent += ["rotation tangent"] if rotates else []
     tangent += ["load tangent"] if loads else []
@@ -251,16 +244,12 @@ _UPPER = {measures: np.flatnonzero(np.triu(np.ones((measures, measures)))) for m
 class ElementGroup:
     """A group of similar elements in the form that compiled code expects.
 
-    table: see `kernels.record`, without workspace; kept: the arrays that it points to; chunks: shape of the node data;
-    space: floats of scratch memory; order (N,): node numbers in storage order, None if they are stored as numbered;
-    constant: node data with the entries that never change, None if there are none; needs: routines of each task; law:
-    section law that the routines call, None if it is linear.
+    record: without workspace; order (N,): node numbers in storage order, None if they are stored as numbered; constant:
+    node data with the entries that never change, None if there are none; needs: routines of each task; law: section law
+    that the routines call, None if it is linear.
     """
 
-    table: np.ndarray
-    kept: tuple[np.ndarray, ...]
-    chunks: tuple[int, int, int]
-    space: int
+    record: Group
     order: np.ndarray | None
     constant: np.ndarray | None
     routines: Routines
@@ -272,12 +261,6 @@ class ElementGroup:
         """Compile the routines of tasks: "forces", "tangent", "mass" or "prediction"."""
         for task in tasks:
             self.routines.require(*self.needs[task])
-
-    @property
-    def points(self) -> tuple[int, int, int]:
-        """Numbers of elements, quadrature points and strain measures."""
-        t = self.table
-        return int(t[record.ELEMENTS]), int(t[record.POINTS]), int(t[record.MEASURES])
 
 
 def stored(block: Block, order: np.ndarray | None) -> Block:
@@ -305,48 +288,33 @@ def make_group(block: Block, layout: Layout, loads: PointLoads) -> ElementGroup:
         block.mass.reshape(classes, -1),
         block.gravity,
         block.length,
-        *((block.damping[:, None],) if structure.table[record.DAMPED] else ()),
+        *((block.damping[:, None],) if structure.record.damped else ()),
     ]
-    table, frame = structure.table.copy(), block.frame if order is None else block.frame[order]
+    frame = block.frame if order is None else block.frame[order]
     mixed = block.mass.reshape(classes, nodes, vectors, nodes, vectors)[..., :-1, :, -1]
-    table[record.APART] = not mixed.any()
     arrays = {
-        record.TABLES: np.concatenate(parts, axis=1),
-        record.DIRECTOR: block.director,
-        record.FRAME: np.concatenate((frame.T.ravel(), _PADDING)),
+        "tables": np.concatenate(parts, axis=1),
+        "director": block.director,
+        "frame": np.concatenate((frame.T.ravel(), _PADDING)),
+        "position": loads.position.T,
+        "direction": loads.direction.T,
+        "follows": loads.follows.T,
+        "stretches": loads.stretches,
+        "spring": loads.spring.T,
+        "anchor": loads.anchor.T,
     }
-    slot, history = np.ascontiguousarray(layout.slot, dtype=np.int32), np.ascontiguousarray(block.history)
-    kept = [*structure.kept, slot, element_routines.addresses, history]
-    table[record.SLOT], table[record.ROUTINES], table[record.HISTORY] = (address_of(array) for array in kept[-3:])
-    table[record.VARIABLES] = history.shape[-1]
-    for field, values in arrays.items():
-        kept.append(np.ascontiguousarray(values, dtype=float))
-        table[field] = address_of(kept[-1])
-    if len(loads.element):
-        kept.append(_add_loads(table, loads))
-    constant, space = _constant_of_nodes(structure, 2 * vectors, frame), structure.used * ROW
-    needs, law = structure.needs, block.law
-    return ElementGroup(
-        table, tuple(kept), structure.chunks, space, order, constant, element_routines, needs, law, block.imposed
+    record = structure.record.copy()
+    record.fill(
+        apart=not mixed.any(),
+        law_points=block.history.shape[1],
+        variables=block.history.shape[2],
+        history=np.ascontiguousarray(block.history) if block.history.size else None,
+        slot=np.ascontiguousarray(layout.slot, dtype=np.int32),
+        routines=element_routines.record,
+        **{name: np.ascontiguousarray(values, dtype=float) for name, values in arrays.items()},
     )
-
-
-def _add_loads(table: np.ndarray, loads: PointLoads) -> np.ndarray:
-    """Set the addresses of the tables of point loads; return the memory that they share."""
-    arrays = {
-        record.POSITION: loads.position,
-        record.DIRECTION: loads.direction,
-        record.FOLLOWS: loads.follows,
-        record.STRETCHES: loads.stretches,
-        record.SPRING: loads.spring,
-        record.ANCHOR: loads.anchor,
-    }
-    memory = np.concatenate([values.T.ravel() for values in arrays.values()], dtype=float)
-    address = address_of(memory)
-    for field, values in arrays.items():
-        table[field] = address
-        address += memory.itemsize * values.size
-    return memory
+    constant = _constant_of_nodes(structure, frame)
+    return ElementGroup(record, order, constant, element_routines, structure.needs, block.law, block.imposed)
 
 
 def _routines(block: Block) -> Routines:
@@ -356,15 +324,14 @@ def _routines(block: Block) -> Routines:
     return routines(block.measures, sizes) if block.law is None else Routines(block.measures, sizes, block.law.address)
 
 
-def _constant_of_nodes(structure: Structure, size: int, frame: np.ndarray) -> np.ndarray | None:
+def _constant_of_nodes(structure: Structure, frame: np.ndarray) -> np.ndarray | None:
     """Return node data with the entries that never change; frame (N, 3): of nodes in storage order."""
-    rotated, dependent, parameters = structure.rotated, structure.dependent, structure.parameters
+    rotated, own = structure.rotated, structure.record
     if structure.constant is None or not len(rotated):
         return structure.constant
     chunks = structure.constant.copy()
     c, s = frame[rotated, 0], frame[rotated, 1]
     for part, column, value in ((2, 2, c), (2, 1, -s), (1, 2, s), (1, 1, c)):
-        chunks[rotated // LANES, 2 * size + (dependent - part) * parameters + parameters - column, rotated % LANES] = (
-            value
-        )
+        row = own.transform + (own.dependent - part) * own.parameters + own.parameters - column
+        chunks[rotated // LANES, row, rotated % LANES] = value
     return chunks

@@ -1,16 +1,15 @@
 """A section law as a pass over rows of points that compiled code can call, see `kernels.linear_law`."""
 
-from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p, cast
-from math import prod
-from typing import Any
+from ctypes import CFUNCTYPE, c_int64, c_void_p, cast
 
 import numpy as np
 
 from beamfem.assembly.callbacks import KeptErrors
 from beamfem.element.thickness_law import THICKNESS, ThicknessLaw
-from beamfem.kernels import record
+from beamfem.kernels.compiler.value_types import REALS
 from beamfem.kernels.point import POINT_ROWS, RESULTANT, STIFFNESS, STRAIN
-from beamfem.kernels.record import ROW
+from beamfem.kernels.record import ROW, Group, System
+from beamfem.kernels.records import memory_at
 from beamfem.section.law import ConstitutiveLaw
 
 _MEASURES = 4  # stretch, shear, curvature and thickness stretch; a law has only the first three
@@ -85,7 +84,7 @@ class LawPass:
                 if number < self._points:
                     past = _NOTHING
                     if self._law.remembers:
-                        past = _past(group, system, slice(first, first + count), number, self._points)
+                        past = _past(group, system, slice(first, first + count), number)
                     self._fill_rows(own, weights, natural[:3], past, tangent != 0)
             except BaseException:
                 own[RESULTANT : RESULTANT + _MEASURES] = np.nan
@@ -103,26 +102,12 @@ class LawPass:
         own[STIFFNESS + _KNOWN] = weight * slope[:, _PAIRS[0, _KNOWN], _PAIRS[1, _KNOWN]].T
 
 
-def _past(group: int, system: int, elements: slice, number: int, points: int) -> _Past:
+def _past(group: int, system: int, elements: slice, number: int) -> _Past:
     """Return the committed history at a point of some elements where the law acts, and the time step since then."""
-    b, s = _wholes(group, record.BLOCK_FIELDS).tolist(), _wholes(system, record.SYSTEM_FIELDS).tolist()
-    table = _wholes(b[record.HISTORY], b[record.ELEMENTS], points, b[record.VARIABLES])
-    state, factors = _reals(s[record.COORDINATES_P], s[record.SIZE]), _reals(s[record.FACTORS], record.FACTOR_COUNT)
-    return state[table[elements, number]], float(factors[record.SINCE_COMMITTED])
+    state = System.at(system)
+    return state.p[Group.at(group).history[elements, number]], state.since_committed
 
 
 def _rows(address: int, count: int) -> np.ndarray:
     """Return rows of floats at an address (count, ROW)."""
-    return _reals(address, count * ROW).reshape(count, ROW)
-
-
-def _reals(address: int, count: int) -> np.ndarray:
-    """Return floats at an address (count,)."""
-    memory: Any = (c_double * count).from_address(address)
-    return np.frombuffer(memory)
-
-
-def _wholes(address: int, *shape: int) -> np.ndarray:
-    """Return integers at an address (shape)."""
-    memory: Any = (c_int64 * prod(shape)).from_address(address)
-    return np.frombuffer(memory, dtype=np.int64).reshape(shape)
+    return memory_at(address, REALS, count, ROW)

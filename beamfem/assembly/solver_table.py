@@ -1,98 +1,63 @@
-"""The table of unknowns, factors and loop settings for compiled drivers."""
+"""The unknowns of a band and the routines that solve for them, as compiled drivers take them."""
 
-from collections.abc import Mapping
 from functools import cache
+from typing import Any
 
 import numpy as np
 
 from beamfem.assembly.equation_numbering import Unknowns
-from beamfem.kernels import bordered_band, model_passes, motion_stages, motion_steps, record, rollers
-from beamfem.kernels import newton_loop as newton
-from beamfem.kernels.band import Band, band
-from beamfem.kernels.bidirectional_lu import SHORT, BidirectionalLU, bidirectional_lu
-from beamfem.kernels.compiling import Routine
-from beamfem.kernels.pointers import address_of
+from beamfem.kernels.band import band
+from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
+from beamfem.kernels.motion_record import MotionRoutines, MotionSolver
+from beamfem.kernels.newton_record import NewtonRoutines, NewtonSolver
 
 
-class SolverTable:
-    """The constant part of a table for `kernels.newton` and `kernels.march`: the unknowns of a band matrix.
+def _fields(unknowns: Unknowns, rotated: tuple[np.ndarray, np.ndarray], scale: np.ndarray) -> dict[str, Any]:
+    """Return the fields of `kernels.record.Solver` that are no workspace; arguments: see `newton_solver`."""
+    half = unknowns.layouts[0].half_width
+    return {
+        "size": len(scale),
+        "unknown": len(unknowns.dofs),
+        "free_dofs": np.ascontiguousarray(unknowns.dofs, dtype=np.int64),
+        "first_free": unknowns.first,
+        "half": half,
+        "width": 2 * half + 1,
+        "rollers": len(rotated[0]),
+        "roller_first": np.ascontiguousarray(rotated[0], dtype=np.int64),
+        "roller_normal": np.ascontiguousarray(rotated[1], dtype=float),
+        "scale": np.ascontiguousarray(scale, dtype=float),
+        "inverse_scale": 1.0 / scale,
+        "reach": unknowns.reach,
+    }
+
+
+def newton_solver(unknowns: Unknowns, rotated: tuple[np.ndarray, np.ndarray], scale: np.ndarray) -> NewtonSolver:
+    """Return the solver of Newton's iteration without workspace.
 
     rotated: equation numbers (nt,) and normals (nt, 2) of inclined rollers; scale (n,): scale of the coordinates.
     """
+    fields = _fields(unknowns, rotated, scale)
+    return NewtonSolver(routines=_newton_routines(fields["half"]), **fields)
 
-    def __init__(self, unknowns: Unknowns, rotated: tuple[np.ndarray, np.ndarray], scale: np.ndarray) -> None:
-        free_dofs, self.half_width = unknowns.dofs, unknowns.layouts[0].half_width
-        self._kept = (
-            *(np.ascontiguousarray(array, dtype=np.int64) for array in (free_dofs, rotated[0])),
-            *(np.ascontiguousarray(array, dtype=float) for array in (rotated[1], scale, 1.0 / scale)),
-            unknowns.reach,
-        )
-        self._table = np.zeros(record.SOLVER_FIELDS, dtype=np.int64)
-        fields = (
-            *(record.FREE_DOFS, record.ROLLER_FIRST, record.ROLLER_NORMAL),
-            *(record.SCALE, record.INVERSE_SCALE, record.REACH),
-        )
-        for field, values in zip(fields, self._kept, strict=True):
-            self._table[field] = address_of(values)
-        self._table[record.UNKNOWN], self._table[record.HALF] = len(free_dofs), self.half_width
-        self._table[record.ROLLERS] = len(rotated[0])
-        self._table[record.FIRST_FREE] = unknowns.first
 
-    def filled(self, addresses: Mapping[int, int]) -> np.ndarray:
-        """Return a copy of the table with further addresses."""
-        table = self._table.copy()
-        for field, address in addresses.items():
-            table[field] = address
-        return table
-
-    def routines(self, moving: bool) -> np.ndarray:
-        """Return the addresses of the routines of the static or dynamic driver."""
-        return _driver_routines(self.half_width, moving, int(self._table[record.UNKNOWN]) < SHORT)
+def motion_solver(
+    unknowns: Unknowns, rotated: tuple[np.ndarray, np.ndarray], scale: np.ndarray, prescribed: np.ndarray
+) -> MotionSolver:
+    """Return the solver of time steps without workspace; prescribed: numbers of coordinates."""
+    fields = _fields(unknowns, rotated, scale)
+    routines = _motion_routines(fields["half"], fields["unknown"] < SHORT)
+    return MotionSolver(routines=routines, prescribed=len(prescribed), prescribed_dofs=prescribed, **fields)
 
 
 @cache
-def _driver_routines(half_width: int, moving: bool, short: bool) -> np.ndarray:
-    """Return the addresses of the routines that the static or dynamic driver calls for a band of this half width."""
-    routines = {
-        record.BALANCE: model_passes.balance,
-        record.PREDICT_RESULTANTS: model_passes.predict_resultants,
-        record.SMALLEST_JACOBIAN: model_passes.smallest_jacobian,
-        record.CONSTRAIN_NORMALS: rollers.constrain_normals,
-        record.ROTATE_IN: rollers.rotate_in,
-        record.ROTATE_BACK: rollers.rotate_back,
-    }
-    if moving:
-        routines |= _of_motions(bidirectional_lu(half_width, short))
-    else:
-        routines |= _of_statics(band(half_width))
-    table = np.zeros(record.SOLVER_ROUTINES, dtype=np.int64)
-    for number, routine in routines.items():
-        table[number] = routine.address
-    return table
+def _newton_routines(half_width: int) -> NewtonRoutines:
+    """Return the routines of Newton's iteration for a band of a half width."""
+    own = band(half_width)
+    return NewtonRoutines.usual(factor=own.factor, solve_upper=own.solve_upper)
 
 
-def _of_statics(own: Band) -> dict[int, Routine]:
-    return {
-        record.FACTOR: own.factor,
-        record.SOLVE_UPPER: own.solve_upper,
-        record.TAKE_STEP: newton.take_step,
-    }
-
-
-def _of_motions(own: BidirectionalLU) -> dict[int, Routine]:
-    return {
-        record.KEEP_DIRECTIONS: motion_steps.keep_directions,
-        record.ROTATIONS_SINCE: motion_steps.rotations_since,
-        record.ROTATE_PAIRS: motion_steps.rotate_pairs,
-        record.COUNT_ROTATIONS: motion_steps.count_rotations,
-        record.PREDICT: motion_stages.predict,
-        record.COMPLETE: motion_stages.complete,
-        record.FACTOR_BOTH: own.factor,
-        record.SOLVE_BOTH: own.solve,
-        record.ASSEMBLE: motion_stages.assemble,
-        record.FACTORISE: motion_stages.factorise,
-        record.SOLVE: motion_stages.solve,
-        record.CORRECT: motion_stages.correct,
-        record.FACTOR_BORDERED: bordered_band.factor_bordered,
-        record.SOLVE_BORDERED: bordered_band.solve_bordered,
-    }
+@cache
+def _motion_routines(half_width: int, short: bool) -> MotionRoutines:
+    """Return the routines of time steps for a band of a half width."""
+    own = bidirectional_lu(half_width, short)
+    return MotionRoutines.usual(factor=own.factor, solve_both=own.solve)

@@ -70,7 +70,8 @@ class StrainRates:
     @property
     def shape(self) -> tuple[int, int, int]:
         """Numbers of elements, points and strain measures of the stress resultants."""
-        return self.group.points
+        own = self.group.record
+        return own.elements, own.points, own.measures
 
 
 def strain_rates(block: Block, free: np.ndarray) -> StrainRates:

@@ -18,7 +18,7 @@ from beamfem.assembly.applied_loads import (
 )
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.blocks import build_block
-from beamfem.assembly.connection_table import ConnectionTable
+from beamfem.assembly.connection_table import records_of
 from beamfem.assembly.connectors import Connectors, connectors_of
 from beamfem.assembly.element_group import make_group
 from beamfem.assembly.equation_numbering import Unknowns
@@ -30,11 +30,14 @@ from beamfem.assembly.model_coordinates import (
     stress_free,
 )
 from beamfem.assembly.rotating_vectors import rotating_vectors
-from beamfem.assembly.solver_table import SolverTable
+from beamfem.assembly.solver_table import motion_solver, newton_solver
 from beamfem.assembly.strain_rates import StrainRates, strain_rates
 from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
 from beamfem.kernels.block import Block, Layout, PointLoads, Springs
+from beamfem.kernels.motion_record import MotionSolver
+from beamfem.kernels.newton_record import NewtonSolver
+from beamfem.kernels.record import Parts
 from beamfem.model.load_base import factor
 from beamfem.model.model import Model
 from beamfem.precision.roundoff_bounds import residual_errors, stress_errors
@@ -148,15 +151,15 @@ class System:
     def equations_of(self, blocks: Sequence[Block]) -> Equations:
         """Return the equations with other blocks in place of those of the system."""
         groups = [make_group(*parts) for parts in zip(blocks, self.layouts, self.point_loads, strict=True)]
-        return Equations(groups, self.springs, self.model.size, self._connections)
+        return Equations(groups, self.springs, self.model.size, self._parts)
 
     @shared_table
-    def _connections(self) -> ConnectionTable | None:
-        """The parts at points that compiled code evaluates, None if there are none."""
+    def _parts(self) -> list[Parts]:
+        """The parts at points that compiled code evaluates."""
         if not any(self._inside):
-            return None
+            return []
         places = zip(self.connectors.items, self.unknowns.coupled, self._inside, strict=True)
-        return ConnectionTable((item, own) for item, own, inside in places if inside)
+        return records_of((item, own) for item, own, inside in places if inside)
 
     @shared_table
     def _inside(self) -> tuple[bool, ...]:
@@ -183,9 +186,14 @@ class System:
         return Assembler(self.equations, shared=shared)
 
     @shared_table
-    def solver_table(self) -> SolverTable:
-        """The unknowns of a band, as compiled drivers take them."""
-        return SolverTable(self.unknowns, self.rotated, self.scale)
+    def newton_solver(self) -> NewtonSolver:
+        """The solver of Newton's iteration without workspace."""
+        return newton_solver(self.unknowns, self.rotated, self.scale)
+
+    @shared_table
+    def motion_solver(self) -> MotionSolver:
+        """The solver of time steps without workspace."""
+        return motion_solver(self.unknowns, self.rotated, self.scale, self.prescribed_dofs)
 
     @shared_table
     def residual_errors(self) -> np.ndarray:

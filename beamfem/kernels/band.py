@@ -112,3 +112,6 @@ def _solve_upper(rows, n, half, lu, x):
         for k in range(min(n, i + half + 1) - 1, i, -1):
             total -= row[half + k - i] * x[k]
         x[i] = total
+
+
+ANY = band(0)  # those for any half width

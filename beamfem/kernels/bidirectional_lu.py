@@ -145,3 +145,6 @@ def _from_one_end(known: int) -> BidirectionalLU:
         _solve_upper(n, n, half, lu, x)
 
     return BidirectionalLU(factor, solve)
+
+
+ANY = _from_one_end(0)  # those for any half width

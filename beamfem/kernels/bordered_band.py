@@ -4,11 +4,9 @@ With the band B, unit vectors E of the t coupled unknowns x_t, and the border D 
 x + Z (D_t x_t + D_l l) = y with Z = B^-1 E and y = B^-1 r; the rows t of it and the conditions are a small system.
 """
 
-from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.pointers import at, caller, reals, slots, small_code, wholes
-
-_factor, _solve = caller("iisrr", "d"), caller("iirr")
+from beamfem.kernels.motion_record import MotionSolver
+from beamfem.kernels.pointers import at, small_code
 
 
 @inlined
@@ -17,21 +15,20 @@ def _exchange(count, one, other):
         one[j], other[j] = other[j], one[j]
 
 
-@routine("ii", "d")
-def factor_bordered(solver, calls):
+@routine()
+def factor_bordered(solver: MotionSolver) -> float:
     """Factor the band and the small system; return the smallest ratio of a pivot of the band, 0 if one is singular."""
     small_code()
-    b, call = wholes(solver), wholes(calls)
-    edge, k, half, rows = b[r.EDGE], b[r.CONDITIONS], b[r.HALF], reals(b[r.ROWS])
-    n, m, numbers, border = b[r.UNKNOWN] - k, edge + k, wholes(b[r.EDGE_NUMBERS]), reals(b[r.BORDER])
-    columns, small = reals(b[r.EDGE_COLUMNS]), reals(b[r.EDGE_FACTORS])
-    ratio = _factor(call[r.FACTOR_BOTH], n, half, slots(b[r.REACH]), rows, reals(b[r.STEP]))
+    edge, k, half, rows, call = solver.edge, solver.conditions, solver.half, solver.rows, solver.routines
+    n, m, numbers, border = solver.unknown - k, edge + k, solver.edge_numbers, solver.border
+    columns, small = solver.edge_columns, solver.edge_factors
+    ratio = call.factor(n, half, solver.reach, rows, solver.step)
     for column in range(edge):
         x = at(columns, column * n)
         for i in range(n):
             x[i] = 0.0
         x[numbers[column]] = 1.0
-        _solve(call[r.SOLVE_BOTH], n, half, rows, x)
+        call.solve_both(n, half, rows, x)
     for i in range(m):
         row = at(small, i * (m + 1))
         for j in range(m):
@@ -60,15 +57,14 @@ def factor_bordered(solver, calls):
     return ratio
 
 
-@routine("ii")
-def solve_bordered(solver, calls):
+@routine()
+def solve_bordered(solver: MotionSolver) -> None:
     """Replace the right-hand side by the solution, multipliers last."""
     small_code()
-    b, call = wholes(solver), wholes(calls)
-    edge, k, right = b[r.EDGE], b[r.CONDITIONS], reals(b[r.RIGHT])
-    n, m, numbers, border = b[r.UNKNOWN] - k, edge + k, wholes(b[r.EDGE_NUMBERS]), reals(b[r.BORDER])
-    columns, small, coupled = reals(b[r.EDGE_COLUMNS]), reals(b[r.EDGE_FACTORS]), reals(b[r.STEP])
-    _solve(call[r.SOLVE_BOTH], n, b[r.HALF], reals(b[r.ROWS]), right)
+    edge, k, right = solver.edge, solver.conditions, solver.right
+    n, m, numbers, border = solver.unknown - k, edge + k, solver.edge_numbers, solver.border
+    columns, small, coupled = solver.edge_columns, solver.edge_factors, solver.step
+    solver.routines.solve_both(n, solver.half, solver.rows, right)
     for i in range(edge):
         coupled[i] = right[numbers[i]]
     for i in range(k):

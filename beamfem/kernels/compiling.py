@@ -9,23 +9,23 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p
 from functools import cached_property
+from inspect import get_annotations
 from threading import RLock, local
 from time import perf_counter, process_time
 from typing import Any, ClassVar, TypeVar
 
-from numpy import dtype, float64, int32, int64, ndarray
+from numpy import ndarray
 
 from beamfem.kernels import cache
 from beamfem.kernels.compiler import machine
 from beamfem.kernels.compiler.bounds_checks import CHECKED, raise_violation
 from beamfem.kernels.compiler.callables import Inlined
 from beamfem.kernels.compiler.translation import translate
-from beamfem.kernels.pointers import address_of
+from beamfem.kernels.compiler.value_types import NUMBER, WHOLE, Kind, Signature, signature_of
+from beamfem.kernels.records import Record, checked, kind_of
 
-# types of arrays by kind of argument; "i" takes the address of a table of integers
-_TYPES = {"r": dtype(float64), "v": dtype(float64), "n": dtype(int64), "s": dtype(int32), "i": dtype(int64)}
 _Value = TypeVar("_Value", covariant=True)
-_PLAIN: dict[str, Any] = {"": None, "i": c_int64, "d": c_double}
+_PLAIN: dict[Kind | None, Any] = {None: None, WHOLE: c_int64, NUMBER: c_double}
 _compiling = RLock()  # two threads may need a kernel at the same time, but LLVM is not thread-safe
 if hasattr(os, "register_at_fork"):  # a child forked while the lock is held would wait for it forever
     os.register_at_fork(
@@ -72,10 +72,9 @@ class Routine:
     """A compiled function of numbers and pointers, compiled or loaded when its address is first needed.
 
     Machine code is cached on disk; if no folder is writable, or the disk is full, each process compiles it again.
-    kinds: one letter per argument, see `compiler.kinds.KINDS`; returns: "i" for an integer, "d" for a double, "" for
-    nothing; seconds: CPU time of compiling or loading it [s]; compiled_here: whether this process compiled it instead
-    of loading it; made: all routines of this process; fixed: values of arguments known at compile time, which replace
-    those passed.
+    signature: kinds of arguments and result; seconds: CPU time of compiling or loading it [s]; compiled_here: whether
+    this process compiled it instead of loading it; made: all routines of this process; fixed: values of arguments known
+    at compile time, which replace those passed.
     """
 
     made: ClassVar[list["Routine"]] = []
@@ -83,12 +82,11 @@ class Routine:
     def __init__(
         self,
         function: Callable[..., Any],
-        kinds: str,
-        returns: str,
+        signature: Signature,
         fastmath: Iterable[str],
         fixed: tuple[tuple[str, int], ...] = (),
     ) -> None:
-        self.function, self.kinds, self.returns, self.fastmath = function, kinds, returns, tuple(sorted(fastmath))
+        self.function, self.signature, self.fastmath = function, signature, tuple(sorted(fastmath))
         self._fixed, self._others = fixed, dict[tuple[tuple[str, int], ...], Routine]()
         self.__doc__, self.__module__ = function.__doc__, function.__module__
         self.seconds, self.compiled_here = 0.0, False
@@ -105,7 +103,7 @@ class Routine:
         if not constants:
             return self
         if constants not in self._others:
-            self._others[constants] = Routine(self.function, self.kinds, self.returns, self.fastmath, constants)
+            self._others[constants] = Routine(self.function, self.signature, self.fastmath, constants)
         return self._others[constants]
 
     @property
@@ -133,46 +131,56 @@ class Routine:
 
     def module(self) -> Any:
         """Return the routine as an LLVM module, before optimisation."""
-        return translate(self.function, self.kinds, self.returns, self.fastmath, dict(self._fixed), machine.SYMBOL)
+        return translate(self.function, self.signature, self.fastmath, dict(self._fixed), machine.SYMBOL)
 
     @_lockless_property
     def compiled(self) -> Callable[..., Any]:
         """The compiled function, called without the GIL with numbers and addresses that nobody checks."""
-        kinds = [_PLAIN.get(kind, c_void_p) for kind in self.kinds]
-        function = CFUNCTYPE(_PLAIN[self.returns], *kinds)(self.address)
+        kinds = [_PLAIN.get(kind, c_void_p) for kind in self.signature.arguments]
+        function = CFUNCTYPE(_PLAIN[self.signature.result], *kinds)(self.address)
         if CHECKED:
             function.errcheck = raise_violation
         return function
 
     def __call__(self, *arguments: Any) -> Any:
-        """Call it from Python, without the GIL; pointers are given as arrays of the right type or as addresses."""
-        both = zip(self.kinds, arguments, strict=True)
-        return self.compiled(*[_address(kind, each) if isinstance(each, ndarray) else each for kind, each in both])
+        """Call it from Python, without the GIL; pointers are given as arrays or records, or as addresses."""
+        return self.compiled(*map(_plain, self.signature.arguments, arguments))
 
 
-def _address(kind: str, array: ndarray) -> int:
-    """Return the address of an array after a check of its type and layout, which compiled code does not make."""
-    if array.dtype != _TYPES.get(kind) or not array.flags.c_contiguous:
-        raise TypeError(
-            f"compiled code takes contiguous {_TYPES.get(kind, 'numbers')}, got {array.dtype} {array.strides}"
-        )
-    return address_of(array)
+def _plain(kind: Kind, argument: Any) -> Any:
+    """Return a number, or the address of an array or a record."""
+    if isinstance(argument, Record):
+        if argument.kind is not kind:
+            raise TypeError(f"compiled code takes a {kind.name}, got a {argument.kind.name}")
+        return argument.address
+    return checked(kind, argument) if isinstance(argument, ndarray) else argument
+
+
+def _declared(function: Callable[..., Any]) -> Signature:
+    """Return the signature that the annotations of a function declare."""
+    annotations = get_annotations(function)
+    result = annotations.pop("return")
+    return Signature(
+        [kind_of(each)[0] for each in annotations.values()], None if result is None else kind_of(result)[0]
+    )
 
 
 def routine(
-    kinds: str, returns: str = "", case: str = "", fastmath: Iterable[str] = ()
+    kinds: str | None = None, returns: str = "", case: str = "", fastmath: Iterable[str] = ()
 ) -> Callable[[Callable[..., Any]], Routine]:
     """Return a decorator that turns a function into a `Routine`.
 
-    kinds, returns: see `Routine`; case: distinguishes functions made from one definition, since machine code is found
-    by name; fastmath: LLVM's names of the fast-math flags for its arithmetic.
+    kinds, returns: letters of `compiler.value_types.KINDS` for arguments and result, if they are not annotated; case:
+    distinguishes functions made from one definition, since machine code is found by name; fastmath: LLVM's names of the
+    fast-math flags for its arithmetic.
     """
 
     def made(function: Callable[..., Any]) -> Routine:
         if case:
             function.__name__ += f"_{case}"
             function.__qualname__ += f"_{case}"
-        return Routine(function, kinds, returns, fastmath)
+        signature = _declared(function) if kinds is None else signature_of(kinds, returns)
+        return Routine(function, signature, fastmath)
 
     return made
 

@@ -1,10 +1,9 @@
 """Gather of nodal data and tables into the workspace of a batch, and scatter of its forces to the nodes."""
 
-from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.pointers import at, reals, small_code, wholes
-from beamfem.kernels.record import LANES, ROW
+from beamfem.kernels.pointers import at, given, small_code
+from beamfem.kernels.record import LANES, ROW, Group, System
 from beamfem.kernels.simd import WIDTH, as_rows, merged, zeros
 
 
@@ -53,42 +52,41 @@ def gather(nodes, count, first, stride, ordered, place, rows, chunks, e):
 
 
 @inlined
-def _bring_last(b, offsets, count, rows):
+def _bring_last(group, offsets, count, rows):
     """Copy the last node of a batch behind the lanes of the chunk of the others; return whether these are in a row."""
-    chunk, last, before = b[r.NODE_ROWS] * ROW, offsets[count - 1], offsets[count - 2]
+    chunk, last, before = group.node_rows * ROW, offsets[count - 1], offsets[count - 2]
     behind = count > 1 and before - offsets[0] == count - 2 and last % chunk == 0 and before % chunk == LANES - 1
     if behind:
-        chunks = reals(b[r.CHUNKS])
+        chunks = group.chunks
         for row in range(rows):
             chunks[before + 1 + row * ROW] = chunks[last + row * ROW]
     return behind
 
 
 @inlined
-def _fill_tables(b, first, count, part):
+def _fill_tables(group, first, count, part):
     """Copy the table of each element's class to the rows of a batch from `part` on, unless they contain it already.
 
     Elements of one class share a table, so the next batch of this class, or the next evaluation, need not copy it.
     """
-    rows, classes, t = b[r.TABLE_ROWS], at(wholes(b[r.CLASS]), first), at(reals(b[r.SPACE]), part * ROW)
+    rows, classes, t = group.table_rows, at(group.classes, first), at(group.space, part * ROW)
     uniform = True
     for i in range(1, count):
         if classes[i] != classes[0]:
             uniform = False
-    # a class, or a range of elements; groups that share a workspace have different tables
-    filled, contents = classes[0] if uniform else -1 - first, wholes(b[r.FILLED])
-    if contents[0] == b[r.TABLES] and contents[1] == filled and contents[2] >= count:
+    filled = classes[0] if uniform else -1 - first
+    if group.filled_class == filled and group.filled_count >= count:
         return
-    contents[0], contents[1], contents[2] = b[r.TABLES], filled, count
+    group.filled_class, group.filled_count = filled, count
     if uniform:
-        table = at(reals(b[r.TABLES]), classes[0] * rows)
+        table = at(group.tables, classes[0] * rows)
         lanes = as_rows(t)
         for row in range(rows):
             for i in range(0, count, WIDTH):
                 lanes[row * ROW + i] = table[row]
         return
     for i in range(count):
-        table = at(reals(b[r.TABLES]), classes[i] * rows)
+        table = at(group.tables, classes[i] * rows)
         for row in range(rows):
             t[row * ROW + i] = table[row]
 
@@ -108,34 +106,33 @@ def _fill_body(count, beams, body, rows):
             rows[part * ROW + i] = body[beam + part]
 
 
-@routine("iiiiii", "i")
-def collect(group, system, first, count, rows, copied):
+@routine()
+def collect(group: Group, system: System, first: int, count: int, rows: int, copied: int) -> int:
     """Fill the workspace of a batch: tables, body forces and the first `rows` rows of its nodes.
 
-    system: 0 if body forces are not needed. Unless copies are needed (`copied`), nodes with consecutive lanes of one
+    system: None if body forces are not needed. Unless copies are needed (`copied`), nodes with consecutive lanes of one
     chunk are read there, the last one behind the lanes of the others: then the offset from one node of an element to
     the next is returned, otherwise 0.
     """
     small_code()
-    b = wholes(group)
-    nodes, elements, place, x = b[r.NODES_PER_ELEMENT], b[r.ELEMENTS], wholes(b[r.PLACE]), reals(b[r.SPACE])
-    body, e, _, _, table, _, _, _, _, _, _ = rows_of(nodes, b[r.VECTORS], b[r.POINTS], b[r.CURVATURE], b[r.TABLE_ROWS])
-    _fill_tables(b, first, count, table)
-    if system != 0:
-        s = wholes(system)
-        if s[r.LOADED] != 0:
-            _fill_body(count, at(wholes(b[r.BEAM]), first), reals(s[r.BODY]), at(x, body * ROW))
-    if copied == 0 and b[r.ORDERED] != 0:
+    nodes, elements, place, x = group.nodes_per_element, group.elements, group.place, group.space
+    body, e, _, _, table, _, _, _, _, _, _ = rows_of(
+        nodes, group.vectors, group.points, group.curvature, group.table_rows
+    )
+    _fill_tables(group, first, count, table)
+    if given(system) and system.loaded != 0:
+        _fill_body(count, at(group.beam, first), system.body, at(x, body * ROW))
+    if copied == 0 and group.ordered != 0:
         apart, begin = place[elements + first] - place[first], place[first]
         for n in range(nodes):
             offsets = at(place, n * elements + first)
             if offsets[0] - begin != n * apart:
                 apart = 0
             elif offsets[count - 1] - offsets[0] != count - 1:
-                apart = apart if _bring_last(b, offsets, count, rows) else 0
+                apart = apart if _bring_last(group, offsets, count, rows) else 0
         if apart != 0:
             return apart
-    gather(nodes, count, first, elements, b[r.ORDERED], place, rows, reals(b[r.CHUNKS]), at(x, e * ROW))
+    gather(nodes, count, first, elements, group.ordered, place, rows, group.chunks, at(x, e * ROW))
     return 0
 
 

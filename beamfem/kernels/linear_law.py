@@ -8,14 +8,26 @@ row; reference: eps0.
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.point import RATE, RESULTANT, STIFFNESS, STRAIN
 from beamfem.kernels.pointers import at, small_code
-from beamfem.kernels.record import ROW
+from beamfem.kernels.record import ROW, Group, System
+from beamfem.kernels.records import Rows
 from beamfem.kernels.simd import WIDTH
 
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@routine("iiiiiivvvv", fastmath=FAST)
-def four_resultants(group, system, first, number, count, tangent, weight, c, reference, x):
+@routine(fastmath=FAST)
+def four_resultants(
+    group: Group,
+    system: System,
+    first: int,
+    number: int,
+    count: int,
+    tangent: int,
+    weight: Rows,
+    c: Rows,
+    reference: Rows,
+    x: Rows,
+) -> None:
     """Fill the resultants of four measures and, if `tangent`, their stiffness; x: rows of a point, see `point`."""
     small_code()
     eps, s = at(x, STRAIN * ROW), at(x, RESULTANT * ROW)
@@ -36,8 +48,19 @@ def four_resultants(group, system, first, number, count, tangent, weight, c, ref
                 to[i] = weight[i] * entry[i]
 
 
-@routine("iiiiiivvvv", fastmath=FAST)
-def six_resultants(group, system, first, number, count, tangent, weight, c, reference, x):
+@routine(fastmath=FAST)
+def six_resultants(
+    group: Group,
+    system: System,
+    first: int,
+    number: int,
+    count: int,
+    tangent: int,
+    weight: Rows,
+    c: Rows,
+    reference: Rows,
+    x: Rows,
+) -> None:
     """Do the same as `four_resultants` for six measures."""
     eps, s = at(x, STRAIN * ROW), at(x, RESULTANT * ROW)
     for i in range(0, count, WIDTH):

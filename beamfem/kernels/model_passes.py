@@ -1,75 +1,67 @@
 """Residual and tangent of a whole model, and prediction of the resultants after a step."""
 
-from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.point import RATE, RESULTANT, STRAIN
-from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
-from beamfem.kernels.record import LANES, ROW
-
-_two, _three, _collect = caller("ii"), caller("iii"), caller("iiiiii", "i")
-_interpolate, _measure, _law = caller("iiiiirrrrr"), caller("ir"), caller("iiiiiirrrr")
-_node_rates, _release = caller("iiiiiinrrr"), caller("iiiiirr")
+from beamfem.kernels.pointers import at, given, small_code
+from beamfem.kernels.record import LANES, ROW, Group, System
 
 
 @inlined
-def clear(s):
+def clear(system):
     """Set the residual and, if the tangent is needed, the entries of the matrix to zero."""
-    residual, matrix = reals(s[r.RESIDUAL]), reals(s[r.MATRIX])
-    for i in range(s[r.SIZE]):
+    residual, matrix = system.residual, system.matrix
+    for i in range(system.size):
         residual[i] = 0.0
-    if s[r.TANGENT] != 0:
-        for i in range(s[r.ENTRIES]):
+    if system.tangent != 0:
+        for i in range(system.entries):
             matrix[i] = 0.0
 
 
 @inlined
-def add_group(s, system, number):
+def add_group(group, system):
     """Add the forces of a group to the residual and, if needed, its tangent to the matrix."""
-    group, values = wholes(s[r.GROUP_RECORDS])[number], wholes(s[r.VALUES])
-    b = wholes(group)
-    call = wholes(b[r.ROUTINES])
-    _three(call[r.PLACE_NODES], group, system, s[r.MOVING])
-    _two(call[r.ADD_ELEMENTS], group, system)
-    if b[r.LOADS] > 0:
-        _three(call[r.ADD_LOADS], group, system, values[number])
-    _two(call[r.FINISH_NODES], group, system)
+    call = group.routines
+    call.place_nodes(group, system, system.moving)
+    call.add_elements(group, system)
+    if group.loads > 0:
+        call.add_loads(group, system)
+    call.finish_nodes(group, system)
 
 
 @inlined
-def add_springs(s):
+def add_springs(system):
     """Add the forces of springs to the ground to the residual and, if needed, their stiffness to the matrix."""
-    p, dof, factor = reals(s[r.COORDINATES_P]), wholes(s[r.SPRING_DOF]), reals(s[r.FACTORS])[r.WEIGHT_P]
+    p, dof, factor = system.p, system.spring_dof, system.weight_p
     residual, matrix, stiffness, rest, place = (
-        reals(s[r.RESIDUAL]),
-        reals(s[r.MATRIX]),
-        reals(s[r.SPRING_STIFFNESS]),
-        reals(s[r.SPRING_REST]),
-        wholes(s[r.SPRING_PLACE]),
+        system.residual,
+        system.matrix,
+        system.spring_stiffness,
+        system.spring_rest,
+        system.spring_place,
     )
-    for i in range(s[r.SPRINGS]):
+    for i in range(system.springs):
         residual[dof[i]] += stiffness[i] * (p[dof[i]] - rest[i])
-        if s[r.TANGENT] != 0 and place[i] >= 0:
+        if system.tangent != 0 and place[i] >= 0:
             matrix[place[i]] += factor * stiffness[i]
 
 
 @inlined
-def add_parts_at_points(s, system):
+def add_parts_at_points(system):
     """Add the forces of masses, springs and the like, see `connection_passes`, and their tangents."""
-    if s[r.CONNECTIONS] > 0:
-        _three(s[r.ADD_CONNECTIONS], s[r.CONNECTIONS], s[r.CONNECTION_TABLES], system)
+    if system.part_kinds > 0:
+        system.add_parts(system)
 
 
-@routine("i")
-def balance(system):
+@routine()
+def balance(system: System) -> None:
     """Fill the residual (n,) and, if the tangent is needed, the matrix of a model."""
     small_code()
-    s = wholes(system)
-    clear(s)
-    for group in range(s[r.GROUPS]):
-        add_group(s, system, group)
-    add_springs(s)
-    add_parts_at_points(s, system)
+    clear(system)
+    for group in range(system.group_count):
+        add_group(system.groups[group], system)
+    add_springs(system)
+    add_parts_at_points(system)
 
 
 @routine("iiiiiinrrr", fastmath={"contract", "reassoc", "nsz"})
@@ -96,31 +88,29 @@ def add_node_rates(first, count, linear, dependent, parameters, stride, dof, ste
                     to[i] += factor[i] * step[dofs[i]]
 
 
-@routine("iii")
-def rate_nodes(group, system, row):
+@routine()
+def rate_nodes(group: Group, system: System, row: int) -> None:
     """Fill e' = B p' of all nodes of a group into the rows of its chunks from `row` on; p': `COORDINATES_V`."""
-    b, s = wholes(group), wholes(system)
-    call, chunks, first = wholes(b[r.ROUTINES]), reals(b[r.CHUNKS]), 0
-    while first < b[r.NODES]:
-        count, chunk = min(LANES, b[r.NODES] - first), at(chunks, first // LANES * b[r.NODE_ROWS] * ROW)
-        _node_rates(
-            call[r.NODE_RATES],
+    call, chunks, first = group.routines, group.chunks, 0
+    while first < group.nodes:
+        count, chunk = min(LANES, group.nodes - first), at(chunks, first // LANES * group.node_rows * ROW)
+        call.add_node_rates(
             first,
             count,
-            2 * b[r.VECTORS] - b[r.DEPENDENT],
-            b[r.DEPENDENT],
-            b[r.PARAMETERS],
-            b[r.NODES],
-            wholes(b[r.DOF]),
-            reals(s[r.COORDINATES_V]),
-            at(chunk, b[r.TRANSFORM] * ROW),
+            2 * group.vectors - group.dependent,
+            group.dependent,
+            group.parameters,
+            group.nodes,
+            group.dof,
+            system.v,
+            at(chunk, group.transform * ROW),
             at(chunk, row * ROW),
         )
         first += count
 
 
-@routine("iii")
-def predict_resultants(group, system, placed):
+@routine()
+def predict_resultants(group: Group, system: System, placed: int) -> None:
     """Fill `STRESS` with the resultants at the strains eps + (d eps / de) B dp, minus imposed strains, after a step dp.
 
     eps and B are those at p, and `COORDINATES_V` holds dp instead of p'. They are the independent stresses of Magisano,
@@ -128,47 +118,46 @@ def predict_resultants(group, system, placed):
     instead of p'', and t C (d eps / de) B (p' + cv dp) is added, with the retardation time t. placed: whether the nodes
     were placed at p by the residual or tangent before.
     """
-    b = wholes(group)
-    call, x, director = wholes(b[r.ROUTINES]), reals(b[r.SPACE]), reals(b[r.DIRECTOR])
+    call, x, director = group.routines, group.space, group.director
     nodes, vectors, bends, elements, measures = (
-        b[r.NODES_PER_ELEMENT],
-        b[r.VECTORS],
-        b[r.BENDS],
-        b[r.ELEMENTS],
-        b[r.MEASURES],
+        group.nodes_per_element,
+        group.vectors,
+        group.bends,
+        group.elements,
+        group.measures,
     )
-    s, size, slots, stress = wholes(system), 2 * vectors, nodes * vectors, reals(b[r.STRESS])
-    damped = b[r.DAMPED] != 0 and s[r.RATED] != 0
-    cv = reals(s[r.FACTORS])[r.WEIGHT_V] if damped else 0.0
-    rows = b[r.CURVATURE] if damped else 2 * size
+    size, slots, stress = 2 * vectors, nodes * vectors, group.stress
+    damped = group.damped != 0 and system.rated != 0
+    cv = system.weight_v if damped else 0.0
+    rows = group.curvature if damped else 2 * size
     if placed == 0:
-        _three(call[r.PLACE_NODES], group, system, 0)
-    _three(call[r.RATE_NODES], group, system, b[r.ACCELERATION])
+        call.place_nodes(group, system, 0)
+    call.rate_nodes(group, system, group.acceleration)
     if damped:
-        step = s[r.COORDINATES_V]
-        s[r.COORDINATES_V] = s[r.COORDINATES_A]
-        _three(call[r.RATE_NODES], group, system, b[r.VELOCITY])
-        s[r.COORDINATES_V] = step
-    _, e, _, _, tables, q, unit, _, _, _, _ = rows_of(nodes, vectors, b[r.POINTS], b[r.CURVATURE], b[r.TABLE_ROWS])
+        step = system.v
+        system.v = system.a
+        call.rate_nodes(group, system, group.velocity)
+        system.v = step
+    _, e, _, _, tables, q, unit, _, _, _, _ = rows_of(nodes, vectors, group.points, group.curvature, group.table_rows)
     e, t, q, unit = at(x, e * ROW), at(x, tables * ROW), at(x, q * ROW), at(x, unit * ROW)
-    pairs, chunks, place = measures * (measures + 1) // 2, reals(b[r.CHUNKS]), wholes(b[r.PLACE])
+    pairs, chunks, place = measures * (measures + 1) // 2, group.chunks, group.place
     first = 0
     while first < elements:
-        count = min(b[r.BATCH], elements - first)
+        count = min(group.batch, elements - first)
         for i in range(count):
             unit[i] = 1.0
-        apart = _collect(call[r.COLLECT], group, 0, first, count, rows, 0)
+        apart = call.collect(group, None, first, count, rows, 0)
         nodal = e if apart == 0 else at(chunks, place[first])
         stride = rows * ROW if apart == 0 else apart
-        for number in range(b[r.POINTS]):
-            slope, factor = at(t, (b[r.SLOPE] + number * slots) * ROW), at(director, number * nodes)
-            second = at(t, (b[r.SECOND] + number * slots * bends) * ROW)
-            rate, time = at(q, RATE * ROW), at(t, b[r.DAMPING] * ROW)
-            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, nodal, q)
-            _measure(call[r.STRAINS], count, q)
-            change = at(nodal, b[r.ACCELERATION] * ROW)
-            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, change, rate)
-            _measure(call[r.RATES], count, q)
+        for number in range(group.points):
+            slope, factor = at(t, (group.slope + number * slots) * ROW), at(director, number * nodes)
+            second = at(t, (group.second + number * slots * bends) * ROW)
+            rate, time = at(q, RATE * ROW), at(t, group.damping * ROW)
+            call.interpolate(nodes, vectors, bends, count, stride, slope, second, factor, nodal, q)
+            call.strains(count, q)
+            change = at(nodal, group.acceleration * ROW)
+            call.interpolate(nodes, vectors, bends, count, stride, slope, second, factor, change, rate)
+            call.rates(count, q)
             for row in range(measures):
                 strain, rate_row = at(q, (STRAIN + row) * ROW), at(rate, row * ROW)
                 for i in range(count):
@@ -177,19 +166,16 @@ def predict_resultants(group, system, placed):
                     for i in range(count):
                         strain[i] += time[i] * cv * rate_row[i]
             if damped:
-                moving = at(nodal, b[r.VELOCITY] * ROW)
-                _interpolate(
-                    call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, moving, rate
-                )
-                _measure(call[r.RATES], count, q)
+                moving = at(nodal, group.velocity * ROW)
+                call.interpolate(nodes, vectors, bends, count, stride, slope, second, factor, moving, rate)
+                call.rates(count, q)
                 for row in range(measures):
                     strain, rate_row = at(q, (STRAIN + row) * ROW), at(rate, row * ROW)
                     for i in range(count):
                         strain[i] += time[i] * rate_row[i]
-            if b[r.NATURAL] != 0:
-                _release(call[r.RELEASE], first, count, b[r.POINTS], number, measures, reals(b[r.NATURAL]), q)
-            _law(
-                call[r.LAW],
+            if given(group.natural):
+                call.release(first, count, group.points, number, measures, group.natural, q)
+            call.law(
                 group,
                 system,
                 first,
@@ -197,45 +183,39 @@ def predict_resultants(group, system, placed):
                 count,
                 0,
                 unit,
-                at(t, (b[r.STIFFNESS] + number * pairs) * ROW),
-                at(t, (b[r.REFERENCE] + number * measures) * ROW),
+                at(t, (group.stiffness + number * pairs) * ROW),
+                at(t, (group.reference + number * measures) * ROW),
                 q,
             )
             for i in range(count):
-                to = at(stress, ((first + i) * b[r.POINTS] + number) * measures)
+                to = at(stress, ((first + i) * group.points + number) * measures)
                 for row in range(measures):
                     to[row] = q[(RESULTANT + row) * ROW + i]
         first += count
 
 
-@routine("i", "d")
-def smallest_jacobian(group):
+@routine()
+def smallest_jacobian(group: Group) -> float:
     """Return the smallest r0' x d of all quadrature points, at most 1; it is negative where an element is inverted.
 
     The nodal vectors are taken from the chunks.
     """
-    b = wholes(group)
-    call, x, director = wholes(b[r.ROUTINES]), reals(b[r.SPACE]), reals(b[r.DIRECTOR])
-    nodes, vectors, bends, elements = (
-        b[r.NODES_PER_ELEMENT],
-        b[r.VECTORS],
-        b[r.BENDS],
-        b[r.ELEMENTS],
-    )
+    call, x, director = group.routines, group.space, group.director
+    nodes, vectors, bends, elements = group.nodes_per_element, group.vectors, group.bends, group.elements
     size, slots = 2 * vectors, nodes * vectors
-    _, e, _, _, tables, q, _, _, _, _, _ = rows_of(nodes, vectors, b[r.POINTS], b[r.CURVATURE], b[r.TABLE_ROWS])
+    _, e, _, _, tables, q, _, _, _, _, _ = rows_of(nodes, vectors, group.points, group.curvature, group.table_rows)
     e, t, q = at(x, e * ROW), at(x, tables * ROW), at(x, q * ROW)
-    chunks, place = reals(b[r.CHUNKS]), wholes(b[r.PLACE])
+    chunks, place = group.chunks, group.place
     smallest, first = 1.0, 0
     while first < elements:
-        count = min(b[r.BATCH], elements - first)
-        apart = _collect(call[r.COLLECT], group, 0, first, count, size, 0)
+        count = min(group.batch, elements - first)
+        apart = call.collect(group, None, first, count, size, 0)
         nodal = e if apart == 0 else at(chunks, place[first])
         stride = size * ROW if apart == 0 else apart
-        for number in range(b[r.POINTS]):
-            slope, factor = at(t, (b[r.SLOPE] + number * slots) * ROW), at(director, number * nodes)
-            second = at(t, (b[r.SECOND] + number * slots * bends) * ROW)
-            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, nodal, q)
+        for number in range(group.points):
+            slope, factor = at(t, (group.slope + number * slots) * ROW), at(director, number * nodes)
+            second = at(t, (group.second + number * slots * bends) * ROW)
+            call.interpolate(nodes, vectors, bends, count, stride, slope, second, factor, nodal, q)
             for i in range(count):
                 smallest = min(smallest, q[i] * q[3 * ROW + i] - q[ROW + i] * q[2 * ROW + i])
         first += count

@@ -1,26 +1,14 @@
 """Operations of a generalized-alpha time step: corrections of the state, convergence, rotation of the tangent."""
 
 import math
+from typing import Annotated
 
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.pointers import at, reals, small_code, wholes
+from beamfem.kernels.motion_record import MotionSolver, MotionStatistics, PairRun
+from beamfem.kernels.pointers import at, small_code
 from beamfem.kernels.predictor import FAST, larger_of
-from beamfem.kernels.record import (
-    CHUNKS,
-    LANES,
-    NODE_ROWS,
-    NODES,
-    PAIR_COUNT,
-    PAIR_FIELDS,
-    PAIR_NODE,
-    PAIR_STEP,
-    PAIR_X,
-    PAIR_Y,
-    ROW,
-    VECTORS,
-    WEIGHT_A,
-    WEIGHT_V,
-)
+from beamfem.kernels.record import LANES, ROW, Group, System
+from beamfem.kernels.records import Reals, Several
 from beamfem.kernels.simd import WIDTH, as_rows, larger, largest, zeros
 
 # of the tolerance: largest estimated error if the tangent is not that of the last iterate
@@ -40,15 +28,12 @@ RATIO, RATIO_BEFORE = range(2)  # of successive corrections
 _GROWTH = 2.0  # largest ratio of successive corrections of Newton's method from the second on; above, it diverges
 
 
-@routine("iiirrnrrr", "d", fastmath=FAST)
-def correct(n, unknown, first_free, state, right, free, inverse_scale, coefficients, change):
-    """Add corrections (unknown,) to p, and their multiples to p' and p''; return the largest, relative to its scale.
-
-    first_free: number of the first unknown coordinate if all have consecutive numbers, else -1, and then `free`
-    (unknown,) has their numbers and the corrections are copied to change (padded(n),), which is zero elsewhere;
-    coefficients (3,): those of p, p' and p''.
-    """
-    to_velocity, to_acceleration, size, rest = coefficients[WEIGHT_V], coefficients[WEIGHT_A], zeros(), 0.0
+@routine(fastmath=FAST)
+def correct(system: System, solver: MotionSolver) -> float:
+    """Add corrections to p, and their multiples to p' and p''; return the largest, relative to its scale."""
+    n, unknown, first_free, right, free = solver.size, solver.unknown, solver.first_free, solver.right, solver.free_dofs
+    state, inverse_scale, change = solver.state, solver.inverse_scale, solver.change
+    to_velocity, to_acceleration, size, rest = system.weight_v, system.weight_a, zeros(), 0.0
     begin, end, source, offset = 0, n, change, 0
     if first_free >= 0:
         begin, end = first_free, first_free + unknown
@@ -70,18 +55,33 @@ def correct(n, unknown, first_free, state, right, free, inverse_scale, coefficie
         state[i] += value
         state[n + i] += to_velocity * value
         state[2 * n + i] += to_acceleration * value
+    multipliers = solver.multipliers
+    for i in range(solver.conditions):
+        state[n + multipliers[i]] = 0.0  # multipliers have no rates
+        state[2 * n + multipliers[i]] = 0.0
     return larger_of(largest(size), rest)
 
 
-@routine("iiiiddddrr", "i")
-def check_convergence(iteration, full, own, far, size, last, changed, tolerance, rate, noise):
+@routine()
+def check_convergence(
+    iteration: int,
+    full: int,
+    own: int,
+    far: int,
+    size: float,
+    last: float,
+    changed: float,
+    tolerance: float,
+    rate: Reals,
+    statistics: MotionStatistics,
+) -> int:
     """Return whether a step has converged after a correction: `CONVERGED`, `DIVERGED`, `RENEW`, or 0 to go on.
 
     full: whether every correction has a new tangent (Newton's method); own: whether this one has; far: whether the
     first correction was larger than `FAR`, so that its tangent says little about the state reached; size, last: sizes
     of this correction and the previous one; changed: change of p in the step that the change of the acceleration
     causes. Updated: rate (2,), the ratio of successive corrections and the one before, of which the larger counts: if a
-    kept tangent lacks the coupling of stiff and soft directions, small and large ratios take turns; noise (1,), the
+    kept tangent lacks the coupling of stiff and soft directions, small and large ratios take turns; noise, the
     size up to which corrections have been found, with a new tangent, to be round-off. Hairer and Wanner 1996, IV.8.
     """
     if not size < _LARGEST:
@@ -90,11 +90,11 @@ def check_convergence(iteration, full, own, far, size, last, changed, tolerance,
         if last <= tolerance and size <= tolerance:
             if own != 0:
                 if 0.5 * last < size <= 2.0 * last:
-                    noise[0] = 2.0 * last
+                    statistics.noise = 2.0 * last
                 return CONVERGED
             if size > 0.5 * last:
                 # no longer decreasing: either this is round-off, or the kept tangent cannot reduce the remaining error
-                return CONVERGED if size <= noise[0] else RENEW
+                return CONVERGED if size <= statistics.noise else RENEW
         rate[RATIO_BEFORE] = rate[RATIO] if iteration > 2 else SMALLEST_RATE
         rate[RATIO] = size / last if last > 0.0 else 0.0
     if full != 0:
@@ -121,28 +121,28 @@ def count_rotations(pairs, table, before, now, rotated_by):
         rotated_by[i] += math.atan2(crossed, before[x] * now[x] + before[y] * now[y])
 
 
-@routine("iiir")
-def keep_directions(group, first, stride, kept):
+@routine()
+def keep_directions(group: Group, first: int, stride: int, kept: Reals) -> None:
     """Store the vectors d of the nodes of a group in `kept` (2, stride), from column `first` on."""
-    b, begin = wholes(group), 0
-    chunks, size, nodes = reals(b[CHUNKS]), 2 * b[VECTORS], b[NODES]
+    begin = 0
+    chunks, size, nodes = group.chunks, 2 * group.vectors, group.nodes
     while begin < nodes:
-        d, own = at(chunks, (begin // LANES * b[NODE_ROWS] + size - 2) * ROW), at(kept, first + begin)
+        d, own = at(chunks, (begin // LANES * group.node_rows + size - 2) * ROW), at(kept, first + begin)
         for i in range(min(LANES, nodes - begin)):
             own[i], own[stride + i] = d[i], d[ROW + i]
         begin += LANES
 
 
-@routine("iiirr", fastmath=FAST)
-def rotations_since(group, first, stride, kept, rotations):
+@routine(fastmath=FAST)
+def rotations_since(group: Group, first: int, stride: int, kept: Reals, rotations: Reals) -> None:
     """Fill the cosine and sine (2, stride) of the rotation of each node of a group since its d was kept.
 
     See `keep_directions`.
     """
-    b, begin = wholes(group), 0
-    chunks, size, nodes = reals(b[CHUNKS]), 2 * b[VECTORS], b[NODES]
+    begin = 0
+    chunks, size, nodes = group.chunks, 2 * group.vectors, group.nodes
     while begin < nodes:
-        d = at(chunks, (begin // LANES * b[NODE_ROWS] + size - 2) * ROW)
+        d = at(chunks, (begin // LANES * group.node_rows + size - 2) * ROW)
         offset, its = at(kept, first + begin), at(rotations, first + begin)
         for i in range(min(LANES, nodes - begin)):
             x, y, x0, y0 = d[i], d[ROW + i], offset[i], offset[stride + i]
@@ -152,20 +152,22 @@ def rotations_since(group, first, stride, kept, rotations):
         begin += LANES
 
 
-@routine("idnirr", fastmath=FAST)
-def rotate_pairs(runs, sense, table, stride, rotations, right):
+@routine(fastmath=FAST)
+def rotate_pairs(
+    count: int, sense: float, runs: Annotated[Several, PairRun], stride: int, rotations: Reals, right: Reals
+) -> None:
     """Rotate the vectors in a right-hand side (n,) by the rotations of their nodes, or back if `sense` is -1.
 
     A kept tangent K rotates with the sections: the present one is nearly R K R^T, and exactly so if the body has
-    rotated as a whole; so the rotation of a pendulum or a rotor needs no new tangent. table (runs, pair fields): see
-    `rotating_vectors.runs_of`; rotations (2, stride): see `rotations_since`.
+    rotated as a whole; so the rotation of a pendulum or a rotor needs no new tangent. rotations (2, stride): see
+    `rotations_since`.
     """
     small_code()
-    for run in range(runs):
-        own = at(table, PAIR_FIELDS * run)
-        step, apart, vector = own[PAIR_STEP], own[PAIR_Y] - own[PAIR_X], at(right, own[PAIR_X])
-        cosine, sine = at(rotations, own[PAIR_NODE]), at(rotations, stride + own[PAIR_NODE])
-        for i in range(own[PAIR_COUNT]):
+    for number in range(count):
+        run = runs[number]
+        step, apart, vector = run.step, run.y - run.x, at(right, run.x)
+        cosine, sine = at(rotations, run.node), at(rotations, stride + run.node)
+        for i in range(run.length):
             c, s = cosine[i], sense * sine[i]
             x, y = vector[i * step], vector[i * step + apart]
             vector[i * step], vector[i * step + apart] = c * x - s * y, s * x + c * y

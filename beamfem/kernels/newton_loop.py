@@ -1,33 +1,12 @@
 """Newton's iterations for an equilibrium at fixed loads, of models whose tangent is a band, in one compiled call."""
 
-from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.newton_record import (
-    CORRECTION,
-    CORRECTION_BEFORE,
-    DIVERGENT,
-    FIRST_CORRECTION,
-    FORCE,
-    ITERATIONS,
-    JACOBIAN,
-    MOST_ITERATIONS,
-    NEGATIVE_PIVOTS,
-    NEGATIVE_PIVOTS_AFTER_FIRST,
-    PIVOT_RATIO,
-    PREDICTED_RESULTANTS,
-    REQUIRED_NEGATIVE_PIVOTS,
-    STAGNANT,
-    TOLERANCE,
-    UNBALANCED,
-)
-from beamfem.kernels.pointers import at, caller, reals, slots, wholes
+from beamfem.kernels.newton_record import NewtonSolver
+from beamfem.kernels.pointers import at
+from beamfem.kernels.record import System
 from beamfem.kernels.simd import WIDTH, as_rows, larger, largest, zeros
 
 _FAST = {"contract", "reassoc", "nsz"}
-
-_balance, _predict, _jacobian = caller("i"), caller("iii"), caller("i", "d")
-_factor, _solve = caller("iiiisrrr", "d"), caller("iiirr")
-_constrain, _rotate, _take = caller("iiirnr"), caller("inrr"), caller("irrr", "d")
 
 
 @inlined
@@ -72,38 +51,33 @@ def _negative(unknown, signs):
     return negative
 
 
-@routine("iii", "i")
-def iterate(system, solver, calls):
+@routine()
+def iterate(system: System, solver: NewtonSolver) -> int:
     """Iterate from p (n,), changed in place; return 1 if every tangent could be factorised without pivots, else 0.
 
-    `PRESCRIBED_STEP`, `PRESCRIBED_FORCE`: first step (n,) of the prescribed coordinates and what it changes in the
-    residual (n,), zero to go on. `LIMITS`, `FOUND`: see `newton_record`; the residual (n,) of the state reached is
-    filled. `LINEAR` (n,): the state after the linear step, where the second tangent has another number of negative
-    pivots than required. Stops where corrections are small or stagnant, or have grown.
+    `prescribed_step`, `prescribed_force`: first step (n,) of the prescribed coordinates and what it changes in the
+    residual (n,), zero to go on. The residual (n,) of the state reached is filled. `linear` (n,): the state after the
+    linear step, where the second tangent has another number of negative pivots than required. Stops where corrections
+    are small or stagnant, or have grown.
     """
-    s, b, call = wholes(system), wholes(solver), wholes(calls)
-    n, unknown, half, rollers = s[r.SIZE], b[r.UNKNOWN], b[r.HALF], b[r.ROLLERS]
-    free, first_of, normal = wholes(b[r.FREE_DOFS]), wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL])
+    call = solver.routines
+    n, unknown, half, rollers = system.size, solver.unknown, solver.half, solver.rollers
+    free, first_of, normal = solver.free_dofs, solver.roller_first, solver.roller_normal
     rows, right, step, scale, inverse_scale = (
-        reals(b[r.ROWS]),
-        reals(b[r.RIGHT]),
-        reals(b[r.STEP]),
-        reals(b[r.SCALE]),
-        reals(b[r.INVERSE_SCALE]),
+        solver.rows,
+        solver.right,
+        solver.step,
+        solver.scale,
+        solver.inverse_scale,
     )
-    limits, found, prescribed_step, prescribed_force = (
-        reals(b[r.LIMITS]),
-        reals(b[r.FOUND]),
-        reals(b[r.PRESCRIBED_STEP]),
-        reals(b[r.PRESCRIBED_FORCE]),
-    )
-    linear, in_a_row, reach = reals(b[r.LINEAR]), b[r.FIRST_FREE], slots(b[r.REACH])
-    residual, p, groups = reals(s[r.RESIDUAL]), reals(s[r.COORDINATES_P]), wholes(s[r.GROUP_RECORDS])
+    prescribed_step, prescribed_force = solver.prescribed_step, solver.prescribed_force
+    linear, in_a_row, reach = solver.linear, solver.first_free, solver.reach
+    residual, p, groups = system.residual, system.p, system.groups
     first, done = True, False
     while True:
-        s[r.TANGENT] = 0 if done else 1
-        s[r.PREDICTED] = 1 if not done and found[ITERATIONS] > 0.0 and limits[PREDICTED_RESULTANTS] > 0.0 else 0
-        _balance(call[r.BALANCE], system)
+        system.tangent = not done
+        system.predicted = not done and solver.iterations > 0 and solver.predicted_resultants != 0
+        call.balance(system)
         if done:
             break
         if in_a_row >= 0 and not first:
@@ -116,24 +90,23 @@ def iterate(system, solver, calls):
             for i in range(unknown):
                 right[i] = -residual[free[i]] - (prescribed_force[free[i]] if first else 0.0)
         if rollers > 0:
-            _constrain(call[r.CONSTRAIN_NORMALS], unknown, half, rollers, rows, first_of, normal)
-            _rotate(call[r.ROTATE_IN], rollers, first_of, normal, right)
-        if not _factor(call[r.FACTOR], unknown, unknown, half, 1, reach, rows, right, step) > limits[PIVOT_RATIO]:
+            call.constrain_normals(unknown, half, rollers, rows, first_of, normal)
+            call.rotate_in(rollers, first_of, normal, right)
+        if not call.factor(unknown, unknown, half, 1, reach, rows, right, step) > solver.pivot_ratio:
             return 0
-        negative = _negative(unknown, step)
-        found[NEGATIVE_PIVOTS] = negative
-        if found[ITERATIONS] == 1.0:
-            found[NEGATIVE_PIVOTS_AFTER_FIRST] = negative
-        if limits[REQUIRED_NEGATIVE_PIVOTS] >= 0.0 and found[NEGATIVE_PIVOTS] != limits[REQUIRED_NEGATIVE_PIVOTS]:
-            if found[ITERATIONS] > 1.0:
-                found[ITERATIONS] += 1.0
+        solver.negative_pivots = _negative(unknown, step)
+        if solver.iterations == 1:
+            solver.negative_pivots_after_first = solver.negative_pivots
+        if solver.required_negative_pivots >= 0 and solver.negative_pivots != solver.required_negative_pivots:
+            if solver.iterations > 1:
+                solver.iterations += 1
                 return 1
-            if found[ITERATIONS] == 1.0:
+            if solver.iterations == 1:
                 for i in range(n):
                     linear[i] = p[i]
-        _solve(call[r.SOLVE_UPPER], unknown, unknown, half, rows, right)
+        call.solve_upper(unknown, unknown, half, rows, right)
         if rollers > 0:
-            _rotate(call[r.ROTATE_BACK], rollers, first_of, normal, right)
+            call.rotate_back(rollers, first_of, normal, right)
         for i in range(n):
             step[i] = prescribed_step[i] if first else 0.0
         if in_a_row >= 0:
@@ -146,61 +119,51 @@ def iterate(system, solver, calls):
             for i in range(unknown):
                 step[free[i]] = right[i]
         first = False
-        if limits[PREDICTED_RESULTANTS] > 0.0:
-            for group in range(s[r.GROUPS]):
-                _predict(call[r.PREDICT_RESULTANTS], groups[group], system, 1)
-        found[ITERATIONS] += 1.0
-        found[CORRECTION_BEFORE], found[CORRECTION] = (
-            found[CORRECTION],
-            _take(call[r.TAKE_STEP], n, step, p, inverse_scale),
-        )
-        if found[ITERATIONS] == 1.0:
-            found[FIRST_CORRECTION] = found[CORRECTION]
-        if not found[CORRECTION] <= limits[DIVERGENT]:
+        if solver.predicted_resultants != 0:
+            for group in range(system.group_count):
+                call.predict_resultants(groups[group], system, 1)
+        solver.iterations += 1
+        solver.correction_before = solver.correction
+        solver.correction = call.take_step(n, step, p, inverse_scale)
+        if solver.iterations == 1:
+            solver.first_correction = solver.correction
+        if not solver.correction <= solver.divergent:
             return 1
         stagnant = (
-            found[ITERATIONS] > 2.0
-            and found[CORRECTION] > 0.25 * found[CORRECTION_BEFORE]
-            and found[CORRECTION] < limits[STAGNANT]
+            solver.iterations > 2
+            and solver.correction > 0.25 * solver.correction_before
+            and solver.correction < solver.stagnant
         )
-        done = found[CORRECTION] <= limits[TOLERANCE] or stagnant or not found[ITERATIONS] < limits[MOST_ITERATIONS]
-    found[FORCE] = _largest_product(n, residual, scale)
+        done = solver.correction <= solver.tolerance or stagnant or not solver.iterations < solver.most_iterations
+    solver.force = _largest_product(n, residual, scale)
     for i in range(unknown):
         right[i], step[i] = residual[free[i]], scale[free[i]]
     if rollers > 0:
-        _rotate(call[r.ROTATE_IN], rollers, first_of, normal, right)
-    found[UNBALANCED] = _largest_product(unknown, right, step)
-    found[JACOBIAN] = 1.0
-    for group in range(s[r.GROUPS]):
-        found[JACOBIAN] = min(found[JACOBIAN], _jacobian(call[r.SMALLEST_JACOBIAN], groups[group]))
+        call.rotate_in(rollers, first_of, normal, right)
+    solver.unbalanced = _largest_product(unknown, right, step)
+    solver.jacobian = 1.0
+    for group in range(system.group_count):
+        solver.jacobian = min(solver.jacobian, call.smallest_jacobian(groups[group]))
     return 1
 
 
-@routine("iii", "i")
-def count_after_step(system, solver, calls):
-    """Return the negative pivots of the tangent in p (n,) with the resultants that the linear `STEP` (n,) leads to.
+@routine()
+def count_after_step(system: System, solver: NewtonSolver) -> int:
+    """Return the negative pivots of the tangent in p (n,) with the resultants that the linear `step` (n,) leads to.
 
     -1 if a pivot is tiny.
     """
-    s, b, call = wholes(system), wholes(solver), wholes(calls)
-    unknown, half, rollers = b[r.UNKNOWN], b[r.HALF], b[r.ROLLERS]
-    rows, right, limits, reach = reals(b[r.ROWS]), reals(b[r.RIGHT]), reals(b[r.LIMITS]), slots(b[r.REACH])
-    groups = wholes(s[r.GROUP_RECORDS])
-    for group in range(s[r.GROUPS]):
-        _predict(call[r.PREDICT_RESULTANTS], groups[group], system, 0)
-    s[r.TANGENT] = s[r.PREDICTED] = 1
-    _balance(call[r.BALANCE], system)
+    call = solver.routines
+    unknown, half, rollers = solver.unknown, solver.half, solver.rollers
+    rows, right, reach = solver.rows, solver.right, solver.reach
+    groups = system.groups
+    for group in range(system.group_count):
+        call.predict_resultants(groups[group], system, 0)
+    system.tangent = system.predicted = 1
+    call.balance(system)
     if rollers > 0:
-        _constrain(
-            call[r.CONSTRAIN_NORMALS],
-            unknown,
-            half,
-            rollers,
-            rows,
-            wholes(b[r.ROLLER_FIRST]),
-            reals(b[r.ROLLER_NORMAL]),
-        )
-    signs = reals(b[r.STEP])
-    if not _factor(call[r.FACTOR], unknown, unknown, half, 0, reach, rows, right, signs) > limits[PIVOT_RATIO]:
+        call.constrain_normals(unknown, half, rollers, rows, solver.roller_first, solver.roller_normal)
+    signs = solver.step
+    if not call.factor(unknown, unknown, half, 0, reach, rows, right, signs) > solver.pivot_ratio:
         return -1
     return _negative(unknown, signs)

@@ -1,22 +1,51 @@
-"""The tables of numbers that Newton's iteration for an equilibrium shares with Python: limits, and what it found."""
+"""The record that Newton's iteration for an equilibrium shares with Python: limits, and what it found."""
 
-# ------------------------------------------------------------------ `LIMITS`
-TOLERANCE = 0  # of a correction
-STAGNANT = 1  # correction below which it may be stagnant
-DIVERGENT = 2  # correction above which the iteration diverges
-PIVOT_RATIO = 3  # the smallest of a pivot to the row's original diagonal entry
-MOST_ITERATIONS = 4
-PREDICTED_RESULTANTS = 5  # 1 to take them for the geometric tangent, else 0
-# where the third tangent or a later one has another number, the iteration stops; -1: any number will do
-REQUIRED_NEGATIVE_PIVOTS = 6
-LIMIT_FIELDS = 7
+from typing import Annotated
 
-# ------------------------------------------------------------------ `FOUND`
-ITERATIONS = 0  # so far
-CORRECTION, CORRECTION_BEFORE = 1, 2  # sizes of the last correction and the one before
-# in the state reached: largest residual of the unknown and of all coordinates, times their scales, smallest r0' x d
-UNBALANCED, FORCE, JACOBIAN = 3, 4, 5
-NEGATIVE_PIVOTS = 6  # of the last tangent
-FIRST_CORRECTION = 7  # its size
-NEGATIVE_PIVOTS_AFTER_FIRST = 8  # those of the second tangent, which has the resultants of a linear step
-FOUND_FIELDS = 9
+from beamfem.kernels.record import Solver
+from beamfem.kernels.records import Reals, Record, calls
+
+
+class NewtonRoutines(Record):
+    """The compiled functions that the iteration calls."""
+
+    balance = calls("model_passes:balance")
+    predict_resultants = calls("model_passes:predict_resultants")
+    smallest_jacobian = calls("model_passes:smallest_jacobian")
+    constrain_normals = calls("rollers:constrain_normals")
+    rotate_in = calls("rollers:rotate_in")
+    rotate_back = calls("rollers:rotate_back")
+    factor = calls("band:ANY.factor")
+    solve_upper = calls("band:ANY.solve_upper")
+    take_step = calls("newton_loop:take_step")
+
+
+class NewtonSolver(Solver):
+    """Workspace of an iteration, its limits and what it found."""
+
+    routines: NewtonRoutines
+    prescribed_step: Annotated[Reals, "size"]
+    prescribed_force: Annotated[Reals, "size"]
+    linear: Annotated[Reals, "size"]
+
+    # limits
+    tolerance: float  # of a correction
+    stagnant: float  # correction below which it may be stagnant
+    divergent: float  # correction above which the iteration diverges
+    pivot_ratio: float  # the smallest of a pivot to the row's original diagonal entry
+    most_iterations: int
+    predicted_resultants: int  # whether to take them for the geometric tangent
+    # where the third tangent or a later one has another number, the iteration stops; -1: any number will do
+    required_negative_pivots: int
+
+    # what was found
+    iterations: int  # so far
+    correction: float  # size of the last one
+    correction_before: float  # and of the one before
+    # in the state reached: largest residual of the unknown and of all coordinates, times their scales, smallest r0' x d
+    unbalanced: float
+    force: float
+    jacobian: float
+    negative_pivots: int  # of the last tangent
+    first_correction: float  # its size
+    negative_pivots_after_first: int  # those of the second tangent, which has the resultants of a linear step

@@ -95,7 +95,7 @@ def rotate(count, c, s, vector):
 
 
 @routine("iivv")
-def copy(rows, count, source, to):
+def copy_rows(rows, count, source, to):
     """Copy rows."""
     small_code()
     for i in range(0, count, WIDTH):

@@ -2,81 +2,56 @@
 
 import math
 
-from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.gathering import gather
-from beamfem.kernels.pointers import at, caller, reals, wholes
-from beamfem.kernels.record import ROW
-
-_scatter, _clear = caller("iiiiiniirr"), caller("iir")
-_reduced, _forces = caller("iiiir"), caller("iiidrrrr", "i")
+from beamfem.kernels.pointers import at
+from beamfem.kernels.record import ROW, Group, System
+from beamfem.kernels.records import Reals
 
 
-@routine("iii")
-def add_loads(group, system, values):
-    """Subtract the generalized forces of all loads of a group from its nodal forces, their tangents from the matrix.
-
-    values: address of forces and moments (loads, 3) [N, N, N m].
-    """
-    b, s = wholes(group), wholes(system)
-    call, x, chunks = wholes(b[r.ROUTINES]), reals(b[r.SPACE]), reals(b[r.CHUNKS])
-    nodes, vectors, loads, place = (
-        b[r.NODES_PER_ELEMENT],
-        b[r.VECTORS],
-        b[r.LOADS],
-        wholes(b[r.LOAD_PLACE]),
-    )
-    size, tangent = 2 * vectors, s[r.TANGENT]
-    ck = reals(s[r.FACTORS])[r.WEIGHT_P]
-    rows = b[r.CURVATURE] if tangent != 0 else size
-    _, e, f, _, _, _, _, _, _, k, _ = rows_of(nodes, vectors, b[r.POINTS], b[r.CURVATURE], b[r.TABLE_ROWS])
+@routine()
+def add_loads(group: Group, system: System) -> None:
+    """Subtract the generalized forces of all loads of a group from its nodal forces, their tangents from the matrix."""
+    call, x, chunks = group.routines, group.space, group.chunks
+    nodes, vectors, loads, place = group.nodes_per_element, group.vectors, group.loads, group.load_place
+    size, tangent = 2 * vectors, system.tangent
+    ck = system.weight_p
+    rows = group.curvature if tangent != 0 else size
+    _, e, f, _, _, _, _, _, _, k, _ = rows_of(nodes, vectors, group.points, group.curvature, group.table_rows)
     e, f, k = at(x, e * ROW), at(x, f * ROW), at(x, k * ROW)
     stiff = 1 if tangent != 0 and ck != 0.0 else 0
     first = 0
     while first < loads:
-        count = min(b[r.BATCH], loads - first)
+        count = min(group.batch, loads - first)
         gather(nodes, count, first, loads, 0, place, rows, chunks, e)
         if stiff != 0:
-            _clear(call[r.CLEAR], nodes * size * nodes * size, count, k)
+            call.clear(nodes * size * nodes * size, count, k)
         coupled = 0
         for lane in range(count):
-            load_values = at(reals(values), 3 * (first + lane))
-            done = _forces(
-                call[r.LOAD_FORCES],
-                group,
-                first + lane,
-                rows,
-                ck * stiff,
-                load_values,
-                at(e, lane),
-                at(f, lane),
-                at(k, lane),
+            load_values = at(group.values, 3 * (first + lane))
+            done = call.load_forces(
+                group, first + lane, rows, ck * stiff, load_values, at(e, lane), at(f, lane), at(k, lane)
             )
             coupled = max(coupled, done)
-        _scatter(call[r.SCATTER], nodes, count, first, loads, 0, place, size, b[r.FORCE], f, chunks)
-        if s[r.PREDICTED] != 0:
-            _scatter(call[r.SCATTER], nodes, count, first, loads, 0, place, size, b[r.PREDICTED_FORCE], f, chunks)
+        call.scatter(nodes, count, first, loads, 0, place, size, group.force, f, chunks)
+        if system.predicted != 0:
+            call.scatter(nodes, count, first, loads, 0, place, size, group.predicted_force, f, chunks)
         if stiff != 0 and coupled != 0:
-            _reduced(call[r.REDUCE], group, system, first, count, x)
+            call.reduce_and_add(group, system, first, count, x)
         first += count
 
 
-@routine("iiidrrrr", "i")
-def load_forces(group, load, stride, ck, values, e, f, k):
+@routine()
+def load_forces(group: Group, load: int, stride: int, ck: float, values: Reals, e: Reals, f: Reals, k: Reals) -> int:
     """Fill f with the negative nodal forces of a load and, unless zero, k with ck df/de; return 1 if it did, else 0.
 
     e (nodes, stride, ROW), f, k: pointers to the lane of the load in the first row of each. The moment acts on the
     vector g that defines the direction of the section, with virtual work M (g x delta g) / |g|^2. A follower force
     rotates with g, and a pressure is also proportional to |g|.
     """
-    b = wholes(group)
-    nodes, vectors, loads = b[r.NODES_PER_ELEMENT], b[r.VECTORS], b[r.LOADS]
-    position, direction, follow = (
-        at(reals(b[r.POSITION]), load),
-        at(reals(b[r.DIRECTION]), load),
-        at(reals(b[r.FOLLOWS]), load),
-    )
+    nodes, vectors, loads = group.nodes_per_element, group.vectors, group.loads
+    position, direction, follow = at(group.position, load), at(group.direction, load), at(group.follows, load)
     gx, gy, rx, ry = 0.0, 0.0, 0.0, 0.0
     for n in range(nodes):
         for s in range(vectors):
@@ -96,7 +71,7 @@ def load_forces(group, load, stride, ck, values, e, f, k):
     # derivatives of the force with respect to g
     fxx, fxy, fyx, fyy = 0.0, 0.0, 0.0, 0.0
     if follows:
-        if reals(b[r.STRETCHES])[load] != 0.0:
+        if group.stretches[load] != 0.0:
             co, si = gx * ux + gy * uy, gy * ux - gx * uy
             fxx, fxy = ux * fx + uy * fy, uy * fx - ux * fy
             fyx, fyy = -fxy, fxx
@@ -106,7 +81,7 @@ def load_forces(group, load, stride, ck, values, e, f, k):
             co, si = (gx * ux + gy * uy) / long, (gy * ux - gx * uy) / long
             fx, fy = co * fx - si * fy, si * fx + co * fy
             fxx, fxy, fyx, fyy = -fy * ax, -fy * ay, fx * ax, fx * ay
-    spring, anchor = at(reals(b[r.SPRING]), load), at(reals(b[r.ANCHOR]), load)
+    spring, anchor = at(group.spring, load), at(group.anchor, load)
     kx, ky = spring[0], spring[loads]
     sx, sy = fx - kx * (rx - anchor[0]), fy - ky * (ry - anchor[loads])
     slots = nodes * vectors

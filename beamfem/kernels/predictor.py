@@ -2,12 +2,14 @@
 
 import math
 
+from beamfem.kernels import rollers
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.motion_record import ALPHA_F, ALPHA_M, BEST_ORDER, BETA, GAMMA, KNOWN_DIFFERENCES, TIME_STEP
-from beamfem.kernels.pointers import at
+from beamfem.kernels.motion_record import MotionSolver
+from beamfem.kernels.pointers import at, small_code
 from beamfem.kernels.simd import WIDTH, as_rows, larger, largest, where_negative, zeros
 
 FAST = {"contract", "reassoc", "nsz"}
+_stay_on_planes = inlined(rollers.stay_on_planes)
 MOST = 3  # differences of the acceleration used to extrapolate it; higher ones would amplify noise from step to step
 
 
@@ -41,18 +43,25 @@ def alternates(difference, higher):
     return difference * (1.5 * difference - higher)
 
 
-@routine("iidrrrnrr")
-def predict(n, prescribed, order, state, before, differences, dofs, values, rule):
-    """Store the state (4, n) in `before` and predict the end of the step; prescribed coordinates take their `values`.
+@routine()
+def predict(solver: MotionSolver) -> None:
+    """Store the state (4, n) in `before` and predict the end of the step; prescribed coordinates take their values.
 
     The acceleration is extrapolated by a polynomial through the last steps: order 0 keeps it constant, order 1 is
     linear, and so on; order -1 keeps p constant instead, which adds no strain if stiff parts oscillate within a step.
     Where the second difference changed its sign in the last step, as that of parts does whose period is shorter than a
     few steps, the error of orders 1 and 2 is expected to change its sign again.
-    values (3, prescribed): of p, p' and p''; differences: see `difference_rows`, at least `order` of them known, the
-    others zero; rule: see `motion_record`, without the order.
     """
-    h, alpha_m, alpha_f, gamma, beta = rule[TIME_STEP], rule[ALPHA_M], rule[ALPHA_F], rule[GAMMA], rule[BETA]
+    small_code()
+    n, rule, state, before, differences = solver.size, solver.rule, solver.state, solver.before, solver.differences
+    h, alpha_m, alpha_f, gamma, beta, order = (
+        rule.time_step,
+        rule.alpha_m,
+        rule.alpha_f,
+        rule.gamma,
+        rule.beta,
+        rule.order,
+    )
     kept, mean, fraction = 1.0 / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m), (1.0 - alpha_f) / (1.0 - alpha_m)
     length, lanes, now, then = padded(n), as_rows(differences), as_rows(state), as_rows(before)
     whole = n // WIDTH * WIDTH
@@ -88,9 +97,13 @@ def predict(n, prescribed, order, state, before, differences, dofs, values, rule
         state[i] = last_p + h * last_v + h * h * ((0.5 - beta) * last_mean + beta * next_a)
         state[n + i] = last_v + h * ((1.0 - gamma) * last_mean + gamma * next_a)
         state[2 * n + i] = last_a + change
+    prescribed, dofs, values = solver.prescribed, solver.prescribed_dofs, solver.prescribed_now
     for i in range(prescribed):
         for k in range(3):
             state[k * n + dofs[i]] = values[k * prescribed + i]
+    if solver.rollers > 0:
+        first, normal, free = solver.roller_first, solver.roller_normal, solver.free_dofs
+        _stay_on_planes(n, solver.rollers, first, normal, free, state, before)
 
 
 @inlined
@@ -107,7 +120,7 @@ def errors_of_orders(second, third, second_before, third_before):
 @inlined
 def _choose_order(n, state, before, differences, inverse_scale, rule, statistics):
     """Set the order of extrapolation that would have been best for this step, and the number of known differences."""
-    top = min(int(statistics[KNOWN_DIFFERENCES]), int(statistics[BEST_ORDER]) + 1)
+    top = min(int(statistics.known_differences), int(statistics.best_order) + 1)
     order, least, errors = 0, math.inf, MOST * padded(n)
     for k in range(top + 1):
         error = 0.0
@@ -117,28 +130,28 @@ def _choose_order(n, state, before, differences, inverse_scale, rule, statistics
             order, least = k, error
     # order -1 is better if p changed by less than half of the change that corresponds to that of the acceleration
     if order == 0:
-        h, beta, changed = rule[TIME_STEP], rule[BETA], 0.0
+        h, beta, changed = rule.time_step, rule.beta, 0.0
         for i in range(n):
             moved = (state[i] - before[i]) * inverse_scale[i]
             changed += moved * moved
-        to_acceleration = (1.0 - rule[ALPHA_M]) / (h * h * beta * (1.0 - rule[ALPHA_F]))
+        to_acceleration = (1.0 - rule.alpha_m) / (h * h * beta * (1.0 - rule.alpha_f))
         if 4.0 * to_acceleration * to_acceleration * changed < least:
             order = -1
-    statistics[BEST_ORDER], statistics[KNOWN_DIFFERENCES] = order, min(statistics[KNOWN_DIFFERENCES] + 1.0, MOST)
+    statistics.best_order, statistics.known_differences = order, min(statistics.known_differences + 1.0, MOST)
 
 
-@routine("iirrrrnrr", "d", fastmath=FAST)
-def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rule, statistics):
+@routine(fastmath=FAST)
+def complete(solver: MotionSolver) -> float:
     """Update the auxiliary acceleration and the differences of p'' at the end of a step, and choose the next order.
 
-    Return the largest change of p'', relative to its scale. inverse_scale (padded(n),): zero beyond n; statistics: see
-    `motion_record`, updated are the order of `predict` that would have been best, at most one more than the last one,
-    and the number of known differences.
+    Return the largest change of p'', relative to its scale. Updated are the order of `predict` that would have been
+    best, at most one more than the last one, and the number of known differences.
     """
-    alpha_m, alpha_f = rule[ALPHA_M], rule[ALPHA_F]
+    n, state, before, differences, rule = solver.size, solver.state, solver.before, solver.differences, solver.rule
+    inverse_scale, statistics, alpha_m, alpha_f = solver.inverse_scale, solver.statistics, rule.alpha_m, rule.alpha_f
     new, old, mean = (1.0 - alpha_f) / (1.0 - alpha_m), alpha_f / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m)
     # differences that are not known yet stay zero
-    known = statistics[KNOWN_DIFFERENCES]
+    known = statistics.known_differences
     has_second, has_third = 1.0 if known > 0.0 else 0.0, 1.0 if known > 1.0 else 0.0
     length, rest, sum_0, sum_1, sum_2, sum_3 = padded(n), 0.0, zeros(), zeros(), zeros(), zeros()
     lanes, weight, now, then = as_rows(differences), as_rows(inverse_scale), as_rows(state), as_rows(before)
@@ -155,12 +168,8 @@ def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rul
         lanes[i], lanes[length + i], lanes[2 * length + i] = change, has_second * second, has_third * third
         by_0, by_1, by_2, by_3 = factor * change, factor * by_1, factor * by_2, factor * by_3
         sum_0, sum_1, sum_2, sum_3 = sum_0 + by_0 * by_0, sum_1 + by_1 * by_1, sum_2 + by_2 * by_2, sum_3 + by_3 * by_3
-    lanes[errors], lanes[errors + WIDTH], lanes[errors + 2 * WIDTH], lanes[errors + 3 * WIDTH] = (
-        sum_0,
-        sum_1,
-        sum_2,
-        sum_3,
-    )
+    lanes[errors], lanes[errors + WIDTH] = sum_0, sum_1
+    lanes[errors + 2 * WIDTH], lanes[errors + 3 * WIDTH] = sum_2, sum_3
     for i in range(whole, n):
         state[3 * n + i] = new * state[2 * n + i] + old * before[2 * n + i] - mean * before[3 * n + i]
         difference = state[2 * n + i] - before[2 * n + i]
@@ -174,7 +183,8 @@ def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rul
         own[WIDTH] += (inverse_scale[i] * error_1) ** 2
         own[2 * WIDTH] += (inverse_scale[i] * error_2) ** 2
         own[3 * WIDTH] += (inverse_scale[i] * error_3) ** 2
-    for i in range(prescribed):
+    dofs = solver.prescribed_dofs
+    for i in range(solver.prescribed):
         state[3 * n + dofs[i]] = state[2 * n + dofs[i]]
     _choose_order(n, state, before, differences, inverse_scale, rule, statistics)
     return larger_of(largest(largest_change), rest)

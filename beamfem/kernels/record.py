@@ -1,258 +1,227 @@
-"""Layout of the tables of integers and addresses that describe a group of like elements, or a model, to compiled code.
-
-Python owns all arrays that addresses point to, and checks them once, when it makes a table (`assembly.element_group`).
+"""The records that describe a group of like elements, a model in a state and its unknowns to compiled code.
 
 Elements are processed in batches, nodes in chunks, of at most `LANES`. Each quantity of a batch is a row of `ROW`
 numbers, one per element, so that loops along rows use vector instructions. Nodes are stored in chunks of such rows.
 """
 
+from typing import Annotated
+
+from beamfem.kernels.records import Reals, Record, Several, Slots, Table, Wholes, calls
+
 LANES = 64
 ROW = 72  # longer than a batch, so that rows do not all map to the same cache sets
 
-# ------------------------------------------------------------------ a group of like elements
-ELEMENTS = 0
-NODES = 1
-NODES_PER_ELEMENT = 2
-VECTORS = 3  # nodal vectors per node
-POINTS = 4  # quadrature points
-MEASURES = 5  # strain measures
-DEPENDENT = 6  # number of components of nodal vectors, the last ones, that are not coordinates but w(u): 0, 2 or 4
-PARAMETERS = 7  # number of coordinates u, the last ones, on which they depend
-BENDS = 8  # whether the third vector of strain measures is r0''
-BATCH = 9  # elements in a batch
-# rows of a class of elements: first row of each table, and the number of rows
-SLOPE = 10  # (points, slots)
-SECOND = 11  # (points, slots)
-STIFFNESS = 12  # (points, measures (measures + 1) / 2) upper triangle
-REFERENCE = 13  # (points, measures)
-WEIGHT = 14  # (points,)
-MASS = 15  # (slots, slots)
-GRAVITY = 16  # (slots,)
-LENGTH = 17  # (slots,)
-TABLE_ROWS = 18
-TABLES = 19  # address (classes, table rows)
-DIRECTOR = 20  # address (points, nodes of an element)
-CLASS = 21  # address (elements,)
-BEAM = 22  # address (elements,)
-PLACE = 23  # address (nodes of an element, elements): offset of the node's first entry in the chunks
-DOF = 24  # address (coordinates of a node, nodes)
-FRAME = 25  # address (3, nodes)
-RUNS = 26  # address (runs, run fields): nodes of one kind, see RUN_KIND
-RUN_COUNT = 27
-NUMBER = 28  # address (nodes of an element * coordinates of a node, elements): number among the unknowns, or -1
-SLOT = 29  # address (elements, coordinates, coordinates): positions in the data of a sparse matrix
-HALF_WIDTH = 30  # half-bandwidth, -1 for a sparse matrix
-FREE = 31  # address (n,): number of a coordinate among the unknowns
-HOME = 32  # address (nodes, 2): an element that contains the node, and the node's number in that element
-COORDINATES = 33  # per node, at most
-# rows of a node, after its nodal vectors
-ACCELERATION = 34
-TRANSFORM = 35  # B (dependent, parameters)
-CONVECTIVE = 36  # derivatives of e'' with respect to p and p' (dependent, parameters)
-CURVATURE = 37  # derivative of B^T f (parameters, parameters)
-FORCE = 38
-PREDICTED_FORCE = 39  # the same with the stress resultants predicted by the last correction
-NODE_ROWS = 40
-# workspace
-CHUNKS = 41  # address (chunks, node rows, ROW)
-STRESS = 42  # address (elements, points, measures)
-SPACE = 43  # address: workspace of a batch, laid out by `batch`
-# forces, moments and springs at points
-LOADS = 44
-LOAD_ELEMENT = 45
-POSITION = 46  # address (slots, loads)
-DIRECTION = 47
-FOLLOWS = 48  # (2, loads)
-STRETCHES = 49
-SPRING = 50  # (2, loads)
-ANCHOR = 51  # (2, loads)
-LOAD_PLACE = 52  # (nodes of an element, loads)
-LOAD_NUMBER = 53  # (nodes * coordinates, loads)
-FILLED = 54  # address (3,): tables, class or elements that are in the workspace, and the number of elements
-ROUTINES = 55  # address of a table of compiled functions
-COUNTED = 56  # address (elements,): 0, 1, 2, ...
-DAMPED = 57  # whether resultants depend on strain rates
-DAMPING = 58  # rows of a class: (1,) retardation time [s]
-VELOCITY = 59  # rows of a node: e', if resultants depend on it
-APART = 60  # whether the mass does not couple d with r0
-NATURAL = 61  # address (elements, points, measures): strains imposed by loads; 0 if there are none
-ORDERED = 62  # whether each node of an element has a greater number than the same node of the element before
-SOURCE = 63  # address (coordinates of a node, nodes), padded: as DOF with 0 for -1, so that lanes can be read blindly
-HISTORY = 64  # address (elements, points of the law, k): coordinates that are history variables of a law
-VARIABLES = 65  # k
-BLOCK_FIELDS = 66
 
-RUN_KIND, RUN_FIRST, RUN_LENGTH = range(3)
-RUN_FIELDS = 3
+class Run(Record):
+    """Consecutive nodes of one kind."""
 
-# ------------------------------------------------------------------ a model in a state
-GROUPS = 0
-GROUP_RECORDS = 1  # address of a table of addresses
-COORDINATES_P = 2  # p, p', p'' (n,)
-COORDINATES_V = 3
-COORDINATES_A = 4
-BODY = 5  # (beams, 4)
-VALUES = 6  # address of a table of addresses (loads, 3), of each group
-RESIDUAL = 7
-SIZE = 8
-MATRIX = 9
-ENTRIES = 10
-FACTORS = 11  # see WEIGHT_P
-TANGENT = 12
-PREDICTED = 13  # whether the geometric part of the tangent uses the resultants in `STRESS`
-MOVING = 14
-LOADED = 15
-SPRINGS = 16
-SPRING_DOF = 17
-SPRING_STIFFNESS = 18
-SPRING_REST = 19
-SPRING_PLACE = 20
-RATED = 21  # whether strain rates matter
-CONNECTIONS = 22  # number of kinds of parts at points, see `connection_passes`
-CONNECTION_TABLES = 23  # address (kinds, fields)
-ADD_CONNECTIONS = 24  # address of their routine
-SYSTEM_FIELDS = 25
+    node_kind: int
+    first: int
+    length: int
 
-WEIGHT_P, WEIGHT_V, WEIGHT_A = range(3)  # ck, cv, ca: weights of p, p' and p'' in the tangent
-SINCE_COMMITTED = 3  # [s] from the committed history
-FACTOR_COUNT = 4
 
-# ------------------------------------------------------------------ compiled functions, by their number in `ROUTINES`
-(
-    COLLECT,
-    SCATTER,
-    INTERPOLATE,
-    DISTRIBUTE,
-    COLUMNS,
-    PRODUCTS,
-    MIRROR,
-    ADD_INERTIA,
-    ADD_MASS,
-    REDUCE_COLUMNS,
-    REDUCE_ROWS,
-    ADD_TO_BAND,
-    ADD_TO_SPARSE,
-    ADD_CURVATURE,
-    ROTATE_FRAME,
-    ROTATE,
-    COPY,
-    CLEAR,
-    STRAINS,
-    FORCES,
-    RATES,
-    HESSIAN,
-    LAW,
-    LOAD_FORCES,
-    PLACE_NODES,
-    ADD_ELEMENTS,
-    ADD_LOADS,
-    FINISH_NODES,
-    REDUCE,
-    NODE_RATES,
-    COMBINE,
-    STORE,
-    ADD_SCALED,
-    FORM_MATRICES,
-    ADD_MATRICES,
-    RATE_NODES,
-    VISCOUS,
-    RELEASE,
-) = range(38)
-PLACE_KIND = 38  # place, convect and curve of each kind of node with a rotation
-ROUTINE_COUNT = 47
+class NodePasses(Record):
+    """The compiled functions of a kind of node with an angle."""
 
-# ------------------------------------------------------------------ the unknown coordinates and the solution for them
-UNKNOWN = 0
-FREE_DOFS = 1  # address (unknown,)
-HALF = 2
-ROLLERS = 3
-ROLLER_FIRST = 4  # address (rollers,): number of the x of each among the unknowns
-ROLLER_NORMAL = 5  # address (rollers, 2)
-ROWS = 6  # address (unknown, 2 half + 1)
-RIGHT = 7  # address (unknown,)
-STEP = 8  # address (n,), for motions (n + 2,): with the last two rates of convergence
-SCALE = 9  # address (n,)
-LIMITS = 10  # see `newton_record`, for motions `motion_record`
-FOUND = 11  # see `newton_record`
-PRESCRIBED_STEP = 12
-PRESCRIBED_FORCE = 13
-PRESCRIBED = 14
-PRESCRIBED_DOFS = 15
-STATE = 16  # address (4, n): p, p', p'' and the auxiliary acceleration
-BEFORE = 17
-DIFFERENCES = 18  # see `predictor.difference_rows`
-INVERSE_SCALE = 19  # address (padded(n),)
-RULE = 20  # see `motion_record`
-STATISTICS = 21  # see `motion_record`
-RUNS_OF_PAIRS = 22  # of vectors that rotate with their section
-PAIR_TABLE = 23  # (runs, pair fields): see `rotating_vectors.runs_of`
-KEPT = 24  # (2, node stride)
-ROTATIONS = 25  # (2, node stride)
-STEPS = 26
-PRESCRIBED_VALUES = 27  # (steps, 3, prescribed)
-BODIES = 28  # (steps or 1, beams, 4)
-BODY_STRIDE = 29  # from step to step, 0 if nothing varies
-LOAD_VALUES = 30  # address of addresses, for each group (steps or 1, loads, 3)
-LOADS_VARY = 31
-SAVED = 32  # (rows, 3, n)
-FIRST_STEP = 33
-EVERY = 34
-ROTATION_COUNT = 35
-ROTATION_TABLE = 36  # (counted, 2)
-ROTATED_BY = 37
-SAVED_ROTATIONS = 38
-LINEAR = 39  # address (n,)
-NATURALS = 40  # address of addresses, for each group (steps or 1, elements, points, measures), 0 if there are none
-NATURALS_VARY = 41
-CHANGE = 42  # address (padded(n),): corrections, zero for prescribed coordinates
-FIRST_FREE = 43  # number of the first unknown coordinate if all have consecutive numbers, else -1
-PRESCRIBED_NOW = 44  # address (3, prescribed): in this step
-ROTATIONS_WANTED = 45  # whether the stage computes how far sections have rotated since the last tangent
-REACH = 46  # address (2, unknown) of 32 bits: see `band.elimination`, downwards and backwards
-NODE_STRIDE = 47
-NOW = 48  # number of the step that is taken, of those of this call
-# a border of the band: unknowns that are coupled beyond it, and multipliers
-EDGE = 49  # number t of those unknowns
-EDGE_NUMBERS = 50  # address (t,)
-CONDITIONS = 51  # number k of multipliers, which follow the unknowns of the band
-MULTIPLIERS = 52  # address (k,): their coordinates
-BORDER = 53  # address (t + k, t + k)
-EDGE_COLUMNS = 54  # address (t, unknown): solutions of the band for the unit vectors of the edge
-EDGE_FACTORS = 55  # address (t + k, t + k + 1): factors of the coupled system, each row with its pivot row
-SOLVER_FIELDS = 56
+    place = calls("generated.rotation_node:place", "forces")
+    convect = calls("generated.rotation_node:convect", "mass")
+    curve = calls("generated.rotation_node:curve", "tangent")
 
-# ------------------------------------------------------------------ runs of vectors that rotate with their section
-PAIR_X, PAIR_Y = range(2)  # equation numbers of the first
-PAIR_NODE = 2  # of the first, and one more for each of the next
-PAIR_STEP = 3  # from one equation number to the next
-PAIR_COUNT = 4
-PAIR_FIELDS = 5
 
-(
-    BALANCE,
-    FACTOR,
-    SOLVE_UPPER,
-    FACTOR_BOTH,  # from both ends, see `bidirectional_lu`
-    SOLVE_BOTH,
-    PREDICT_RESULTANTS,
-    SMALLEST_JACOBIAN,
-    CONSTRAIN_NORMALS,
-    ROTATE_IN,
-    ROTATE_BACK,
-    TAKE_STEP,
-    KEEP_DIRECTIONS,
-    ROTATIONS_SINCE,
-    ROTATE_PAIRS,
-    COUNT_ROTATIONS,
-    # stages of a time step, see `motion_stages`
-    PREDICT,
-    ASSEMBLE,
-    FACTORISE,
-    SOLVE,
-    CORRECT,
-    COMPLETE,
-    # of a band with a border, see `bordered_band`
-    FACTOR_BORDERED,
-    SOLVE_BORDERED,
-) = range(23)
-SOLVER_ROUTINES = 23
+class GroupRoutines(Record):
+    """The compiled functions of a group, each set when a task first needs it; nodes: by kind of node, less one."""
+
+    nodes: Table[NodePasses]
+    collect = calls("gathering:collect", "forces")
+    scatter = calls("gathering:scatter", "forces")
+    interpolate = calls("field:interpolate", "forces")
+    distribute = calls("field:distribute", "forces")
+    columns = calls("element_stiffness:columns", "tangent")
+    products = calls("element_stiffness:products", "tangent")
+    mirror = calls("element_stiffness:mirror", "tangent")
+    combine = calls("element_stiffness:combine", "rotation tangent")
+    store = calls("element_stiffness:store", "tangent")
+    add_inertia = calls("inertia_forces:add_inertia", "forces")
+    add_mass = calls("inertia_forces:add_mass", "mass")
+    add_scaled = calls("inertia_forces:add_scaled", "mass")
+    reduce_columns = calls("reduction:reduce_columns", "rotation load tangent")
+    reduce_rows = calls("reduction:reduce_rows", "rotation load tangent")
+    add_to_sparse = calls("reduction:add_to_sparse", "sparse")
+    add_curvature = calls("reduction:add_curvature", "rotation tangent")
+    add_to_band = calls("band_assembly:add_to_band", "band")
+    rotate_frame = calls("nodes:rotate_frame", "angles")
+    rotate = calls("nodes:rotate", "rotated")
+    copy_rows = calls("nodes:copy_rows", "forces")
+    clear = calls("nodes:clear", "forces")
+    strains = calls("generated.structural_pass:strains", "forces")
+    forces = calls("generated.structural_pass:forces", "forces")
+    rates = calls("generated.structural_pass:rates", "prediction", "damping")
+    hessian = calls("generated.structural_pass:hessian", "tangent")
+    law = calls("linear_law:four_resultants", "forces")
+    add_viscous = calls("linear_law:add_viscous", "damping")
+    release = calls("imposed_strain_pass:release", "imposed")
+    add_loads = calls("point_loads:add_loads", "loads")
+    load_forces = calls("point_loads:load_forces", "loads")
+    place_nodes = calls("node_passes:place_nodes", "forces")
+    finish_nodes = calls("node_passes:finish_nodes", "forces")
+    add_elements = calls("element_passes:add_elements", "forces")
+    form_matrices = calls("element_matrices:form_matrices", "tangent")
+    add_matrices = calls("element_matrices:add_matrices", "tangent")
+    reduce_and_add = calls("element_matrices:reduce_and_add", "load tangent")
+    add_node_rates = calls("model_passes:add_node_rates", "prediction", "damping")
+    rate_nodes = calls("model_passes:rate_nodes", "prediction", "damping")
+
+
+class Group(Record):
+    """A group of like elements."""
+
+    elements: int
+    nodes: int
+    nodes_per_element: int
+    vectors: int  # nodal vectors per node
+    points: int  # quadrature points
+    measures: int  # strain measures
+    dependent: int  # number of components of nodal vectors, the last ones, that are not coordinates but w(u): 0, 2 or 4
+    parameters: int  # number of coordinates u, the last ones, on which they depend
+    coordinates: int  # per node, at most
+    bends: int  # whether the third vector of strain measures is r0''
+    batch: int  # elements in a batch
+    routines: GroupRoutines
+
+    # first row of each table of a class of elements, and the number of rows
+    slope: int  # (points, slots)
+    second: int  # (points, slots), none unless it bends
+    stiffness: int  # (points, measures (measures + 1) / 2) upper triangle
+    reference: int  # (points, measures)
+    weight: int  # (points,)
+    mass: int  # (slots, slots)
+    gravity: int  # (slots,)
+    length: int  # (slots,)
+    damping: int  # (1,) retardation time [s], if it is damped
+    table_rows: int
+    tables: Reals  # (classes, table rows)
+
+    damped: int  # whether resultants depend on strain rates
+    apart: int  # whether the mass does not couple d with r0
+    ordered: int  # whether each node of an element has a greater number than the same node of the element before
+    director: Annotated[Reals, "points", "nodes_per_element"]
+    classes: Annotated[Wholes, "elements"]
+    beam: Annotated[Wholes, "elements"]
+    place: Annotated[Wholes, "nodes_per_element", "elements"]  # offset of the node's first entry in the chunks
+    dof: Annotated[Wholes, "coordinates", "nodes"]
+    source: Wholes  # (coordinates, nodes), padded: as `dof` with 0 for -1, so that lanes can be read blindly
+    frame: Reals  # (3, nodes), padded
+    run_count: int
+    runs: Annotated[Several, Run]  # (runs, 3)
+    number: Wholes  # (nodes of an element * coordinates, elements): number among the unknowns, or -1
+    slot: Slots  # (elements, coordinates, coordinates): positions in the data of a sparse matrix
+    half_width: int  # half-bandwidth, -1 for a sparse matrix
+    free: Wholes  # (n,): number of a coordinate among the unknowns
+    home: Annotated[Wholes, "nodes", 2]  # an element that contains the node, and the node's number in that element
+    counted: Wholes  # (elements,): 0, 1, 2, ..., for a sparse matrix
+    law_points: int  # quadrature points where a law with history acts
+    variables: int
+    history: Annotated[Wholes, "elements", "law_points", "variables"]  # coordinates that are history variables of a law
+    natural: Reals  # (elements, points, measures): strains imposed by loads, if there are any
+    natural_of_steps: Reals  # (steps or 1, elements, points, measures): those of the steps of a motion
+
+    # rows of a node, after its nodal vectors e
+    acceleration: int  # e''
+    transform: int  # B (dependent, parameters)
+    convective: int  # derivatives of e'' with respect to p and p' (dependent, parameters)
+    velocity: int  # e', if resultants depend on it
+    curvature: int  # derivative of B^T f (parameters, parameters)
+    force: int
+    predicted_force: int  # the same with the stress resultants predicted by the last correction
+    node_rows: int
+
+    # workspace
+    chunk_count: int
+    chunks: Annotated[Reals, "chunk_count", "node_rows", ROW]
+    stress: Annotated[Reals, "elements", "points", "measures"]
+    space_rows: int
+    space: Annotated[Reals, "space_rows", ROW]  # workspace of a batch, laid out by `batch`
+    filled_class: int  # the class whose tables are in the workspace, or -1 - the first of several elements
+    filled_count: int  # number of these elements
+
+    # forces, moments and springs at points
+    loads: int
+    load_element: Annotated[Wholes, "loads"]
+    position: Reals  # (slots, loads)
+    direction: Reals  # (slots, loads)
+    follows: Reals  # (2, loads)
+    stretches: Reals  # (loads,)
+    spring: Reals  # (2, loads)
+    anchor: Reals  # (2, loads)
+    load_place: Annotated[Wholes, "nodes_per_element", "loads"]
+    load_number: Wholes  # (nodes * coordinates, loads)
+    values: Reals  # (loads, 3): forces and moments [N, N, N m]
+    values_of_steps: Reals  # (steps or 1, loads, 3): those of the steps of a motion
+
+
+class Parts(Record):
+    """Parts at points of one kind, see `connection_passes`."""
+
+    count: int
+    coordinates: int  # of all points of a part
+    per_point: int
+    multipliers: int
+    unknowns: int  # coordinates and multipliers
+    numbers: Annotated[Wholes, "count", "unknowns"]
+    data_size: int
+    data: Annotated[Reals, "count", "data_size"]
+    places: Annotated[Wholes, "count", "unknowns", "unknowns"]  # of the tangent's entries in the matrix, -1 for none
+    force = calls("generated.connection_forces:mass_force")
+    tangent = calls("generated.connection_forces:mass_tangent")
+
+
+class System(Record):
+    """A model in a state p, p', p'', and what it is asked for."""
+
+    group_count: int
+    groups: Table[Group]
+    size: int
+    p: Annotated[Reals, "size"]
+    v: Annotated[Reals, "size"]
+    a: Annotated[Reals, "size"]
+    body: Reals  # (beams, 4)
+    residual: Annotated[Reals, "size"]
+    entries: int
+    matrix: Reals  # (entries,)
+    weight_p: float  # ck, cv, ca: weights of p, p' and p'' in the tangent
+    weight_v: float
+    weight_a: float
+    since_committed: float  # [s] from the committed history
+    tangent: int  # whether it is needed
+    predicted: int  # whether the geometric part of the tangent uses the resultants in `stress`
+    moving: int
+    rated: int  # whether strain rates matter
+    loaded: int
+    springs: int
+    spring_dof: Annotated[Wholes, "springs"]
+    spring_stiffness: Annotated[Reals, "springs"]
+    spring_rest: Annotated[Reals, "springs"]
+    spring_place: Annotated[Wholes, "springs"]
+    part_kinds: int
+    parts: Table[Parts]
+    add_parts = calls("connection_passes:add_parts")
+
+
+class Solver(Record):
+    """The unknown coordinates and the linear equations for them, which are a band."""
+
+    size: int
+    unknown: int
+    free_dofs: Annotated[Wholes, "unknown"]
+    first_free: int  # number of the first unknown coordinate if all have consecutive numbers, else -1
+    half: int
+    width: int  # 2 half + 1
+    rollers: int
+    roller_first: Annotated[Wholes, "rollers"]  # number of the x of each among the unknowns
+    roller_normal: Annotated[Reals, "rollers", 2]
+    rows: Reals  # (unknown, width), or the entries of a sparse matrix
+    right: Annotated[Reals, "unknown"]
+    step: Reals  # (n,), for motions (n + 2,): with the last two rates of convergence
+    scale: Annotated[Reals, "size"]
+    inverse_scale: Reals  # (n,), for motions padded
+    reach: Slots  # (2, unknown): see `band.elimination`, downwards and backwards

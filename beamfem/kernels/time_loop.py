@@ -1,47 +1,56 @@
 """Time steps of the generalized-alpha method, many in one compiled call."""
 
-from beamfem.kernels import motion_record as m
 from beamfem.kernels import motion_steps
-from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.motion_record import MotionSolver
 from beamfem.kernels.motion_steps import RATIO
-from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
+from beamfem.kernels.pointers import at, given, small_code
+from beamfem.kernels.record import System
 
-_constrain, _predict, _jacobian, _count = caller("iiirnr"), caller("iii"), caller("i", "d"), caller("inrrr")
-_stage = caller("iii", "d")
 _check_convergence = inlined(motion_steps.check_convergence)
 
 
 @inlined
-def _predict_resultants(s, b, call, system):
+def _predict_resultants(system, solver):
     """Keep the resultants that a correction leads to, for the geometric part of the next tangent."""
-    groups, free, right = wholes(s[r.GROUP_RECORDS]), wholes(b[r.FREE_DOFS]), reals(b[r.RIGHT])
-    change, velocity, acceleration = reals(b[r.CHANGE]), s[r.COORDINATES_V], s[r.COORDINATES_A]
-    for i in range(b[r.UNKNOWN]):
+    free, right, change, velocity, acceleration = solver.free_dofs, solver.right, solver.change, system.v, system.a
+    for i in range(solver.unknown):
         change[free[i]] = right[i]
-    s[r.COORDINATES_V] = b[r.CHANGE]
-    s[r.COORDINATES_A] = velocity
-    for group in range(s[r.GROUPS]):
-        _predict(call[r.PREDICT_RESULTANTS], groups[group], system, 1)
-    s[r.COORDINATES_V] = velocity
-    s[r.COORDINATES_A] = acceleration
+    system.v, system.a = change, velocity
+    for group in range(system.group_count):
+        solver.routines.predict_resultants(system.groups[group], system, 1)
+    system.v, system.a = velocity, acceleration
 
 
 @inlined
-def _is_inside_out(s, call):
+def _is_inside_out(system, solver):
     """Return whether the last state has r0' x d <= 0 at a quadrature point: no motion leads there."""
-    groups, smallest = wholes(s[r.GROUP_RECORDS]), 1.0
-    for group in range(s[r.GROUPS]):
-        smallest = min(smallest, _jacobian(call[r.SMALLEST_JACOBIAN], groups[group]))
+    smallest = 1.0
+    for group in range(system.group_count):
+        smallest = min(smallest, solver.routines.smallest_jacobian(system.groups[group]))
     return not smallest > 0.0
 
 
-@routine("iii", "i")
-def march(system, solver, calls):
-    """March through `STEPS` steps; return how many were completed.
+@inlined
+def _load(system, solver, step):
+    """Take the loads of a step, its imposed strains and the values of the prescribed coordinates."""
+    solver.now = step
+    solver.prescribed_now = at(solver.prescribed_values, 3 * solver.prescribed * step)
+    row = step if solver.varies != 0 else 0
+    system.body = at(solver.bodies, row * solver.body_size)
+    for number in range(system.group_count):
+        group = system.groups[number]
+        group.values = at(group.values_of_steps, 3 * row * group.loads)
+        if given(group.natural_of_steps):
+            strains = group.elements * group.points * group.measures
+            group.natural = at(group.natural_of_steps, row * strains)
 
-    `STATE`: p, p', p'', auxiliary acceleration (4, n), advanced in place. `RULE`, `LIMITS`, `STATISTICS`: see
-    `motion_record`. `ROWS`: the last tangent, or its factors.
+
+@routine()
+def march(system: System, solver: MotionSolver) -> int:
+    """March through `steps` steps from `state`, advanced in place; return how many were completed.
+
+    `rows`: the last tangent, or its factors.
 
     Chung and Hulbert 1993; in the form of Arnold and Bruels 2007 the equations hold at the end of each step. Iterations
     keep the tangent, over steps as well, rotated with the sections, and end when the estimated error is small (Hairer
@@ -50,85 +59,47 @@ def march(system, solver, calls):
     positions, first from those that were nearer in the last step.
     """
     small_code()
-    s, b, call = wholes(system), wholes(solver), wholes(calls)
-    n, unknown, half, fixed = s[r.SIZE], b[r.UNKNOWN], b[r.HALF], b[r.PRESCRIBED]
-    rows, state, before = reals(b[r.ROWS]), reals(b[r.STATE]), reals(b[r.BEFORE])
-    rule, limits, statistics, factors, space = (
-        reals(b[r.RULE]),
-        reals(b[r.LIMITS]),
-        reals(b[r.STATISTICS]),
-        reals(s[r.FACTORS]),
-        reals(b[r.STEP]),
-    )
-    groups, bodies, values, load_values, naturals = (
-        wholes(s[r.GROUP_RECORDS]),
-        b[r.BODIES],
-        wholes(s[r.VALUES]),
-        wholes(b[r.LOAD_VALUES]),
-        wholes(b[r.NATURALS]),
-    )
-    saved, every, rotated_by, saved_rotations = (
-        reals(b[r.SAVED]),
-        b[r.EVERY],
-        reals(b[r.ROTATED_BY]),
-        reals(b[r.SAVED_ROTATIONS]),
-    )
-    for step in range(b[r.STEPS]):
-        s[r.BODY] = bodies + 8 * step * b[r.BODY_STRIDE]
-        for group in range(s[r.GROUPS]):
-            loads = wholes(groups[group])[r.LOADS]
-            values[group] = load_values[group] + (24 * step * loads if b[r.LOADS_VARY] != 0 else 0)
-            if b[r.NATURALS_VARY] != 0 and naturals[group] != 0:
-                record = wholes(groups[group])
-                strains = record[r.ELEMENTS] * record[r.POINTS] * record[r.MEASURES]
-                record[r.NATURAL] = naturals[group] + 8 * step * strains
-        b[r.NOW] = step
-        b[r.PRESCRIBED_NOW] = b[r.PRESCRIBED_VALUES] + 24 * fixed * step
-        rule[m.ORDER] = statistics[m.BEST_ORDER]
-        _stage(call[r.PREDICT], system, solver, calls)
+    call = solver.routines
+    n, state, before, every = system.size, solver.state, solver.before, solver.every
+    rule, limits, statistics = solver.rule, solver.limits, solver.statistics
+    for step in range(solver.steps):
+        _load(system, solver, step)
+        rule.order = statistics.best_order
+        call.predict(solver)
         size, first_size, iteration, far = 0.0, 0.0, 0, 0
-        full, fresh, done = 0, statistics[m.RATE] < 0.0, 0
-        rate = at(space, n)
-        rate[RATIO] = max(statistics[m.RATE], motion_steps.SMALLEST_RATE) ** 0.8 if not fresh else 1.0
-        while iteration < limits[m.NEWTON_ITERATIONS]:
+        full, fresh, done = 0, statistics.rate < 0.0, 0
+        rate = at(solver.step, n)
+        rate[RATIO] = max(statistics.rate, motion_steps.SMALLEST_RATE) ** 0.8 if not fresh else 1.0
+        while iteration < limits.iterations:
             renew = full != 0 or fresh
-            s[r.TANGENT], s[r.PREDICTED] = renew, full != 0 and iteration > 0
-            b[r.ROTATIONS_WANTED] = iteration == 0 or renew
-            _stage(call[r.ASSEMBLE], system, solver, calls)
+            system.tangent, system.predicted = renew, full != 0 and iteration > 0
+            solver.rotations_wanted = iteration == 0 or renew
+            call.assemble(system, solver)
             if renew:
-                if b[r.ROLLERS] > 0:
-                    first_of, normal = wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL])
-                    _constrain(call[r.CONSTRAIN_NORMALS], unknown, half, b[r.ROLLERS], rows, first_of, normal)
-                pivots = _stage(call[r.FACTORISE], system, solver, calls)
-                statistics[m.PIVOT_RATIO] = min(statistics[m.PIVOT_RATIO], pivots)
-                statistics[m.TANGENTS] += 1.0
-            _stage(call[r.SOLVE], system, solver, calls)
+                if solver.rollers > 0:
+                    first_of, normal = solver.roller_first, solver.roller_normal
+                    call.constrain_normals(solver.unknown, solver.half, solver.rollers, solver.rows, first_of, normal)
+                pivots = call.factorise(system, solver)
+                statistics.pivot_ratio = min(statistics.pivot_ratio, pivots)
+                statistics.tangents += 1
+            call.solve(system, solver)
             if full != 0:
-                _predict_resultants(s, b, call, system)
-            last, size = size, _stage(call[r.CORRECT], system, solver, calls)
+                _predict_resultants(system, solver)
+            last, size = size, call.correct(system, solver)
             iteration += 1
-            statistics[m.ITERATIONS] += 1.0
-            statistics[m.CORRECTION] = size
+            statistics.iterations += 1
+            statistics.correction = size
             if iteration == 1:
-                first_size = max(size, statistics[m.CHANGE])
+                first_size = max(size, statistics.change)
                 far = 1 if size > motion_steps.FAR else 0
             new_tangent = 1 if renew else 0
             done = _check_convergence(
-                iteration,
-                full,
-                new_tangent,
-                far,
-                size,
-                last,
-                first_size,
-                limits[m.TOLERANCE],
-                rate,
-                at(statistics, m.NOISE),
+                iteration, full, new_tangent, far, size, last, first_size, limits.tolerance, rate, statistics
             )
             if (
                 done == motion_steps.CONVERGED
                 and (full != 0 or first_size > motion_steps.FAR)
-                and _is_inside_out(s, call)
+                and _is_inside_out(system, solver)
             ):
                 done = motion_steps.DIVERGED
             fresh = done == motion_steps.RENEW
@@ -138,34 +109,34 @@ def march(system, solver, calls):
                 done = 0
                 continue
             if full == 0:
-                converges = iteration < limits[m.KEPT_TANGENT_ITERATIONS] and (iteration < 2 or rate[RATIO] < 0.5)
+                converges = iteration < limits.most and (iteration < 2 or rate[RATIO] < 0.5)
                 fails = done < 0 or not converges
             else:
-                fails = done < 0 or not iteration < limits[m.NEWTON_ITERATIONS]
+                fails = done < 0 or not iteration < limits.iterations
             if fails and full == 2:
                 break
             if fails:
                 for i in range(4 * n):
                     state[i] = before[i]
                 # of the first step nothing is known
-                stays = statistics[m.BEST_ORDER] < 0.0 or statistics[m.KNOWN_DIFFERENCES] == 0.0
-                rule[m.ORDER] = -1.0 if stays == (full == 0) else 0.0
-                _stage(call[r.PREDICT], system, solver, calls)
+                stays = statistics.best_order < 0.0 or statistics.known_differences == 0.0
+                rule.order = -1.0 if stays == (full == 0) else 0.0
+                call.predict(solver)
                 full, iteration = full + 1, 0
-        statistics[m.MOST_ITERATIONS] = max(statistics[m.MOST_ITERATIONS], iteration)
-        slow = iteration > limits[m.MANY_ITERATIONS] or (iteration > 1 and rate[RATIO] > limits[m.SLOW_RATE])
-        statistics[m.RATE] = -1.0 if slow else rate[RATIO]
+        statistics.most_iterations = max(statistics.most_iterations, iteration)
+        slow = iteration > limits.many or (iteration > 1 and rate[RATIO] > limits.slow)
+        statistics.rate = -1.0 if slow else rate[RATIO]
         if done <= 0:
             for i in range(4 * n):
                 state[i] = before[i]
             return step
-        statistics[m.CHANGE] = _stage(call[r.COMPLETE], system, solver, calls) / factors[r.WEIGHT_A]
-        _count(call[r.COUNT_ROTATIONS], b[r.ROTATION_COUNT], wholes(b[r.ROTATION_TABLE]), before, state, rotated_by)
-        if (b[r.FIRST_STEP] + step) % every == 0:
-            row = (b[r.FIRST_STEP] + step) // every
-            to = at(saved, 3 * n * row)
+        statistics.change = call.complete(solver) / system.weight_a
+        call.count_rotations(solver.rotation_count, solver.rotation_table, before, state, solver.rotated_by)
+        if (solver.first_step + step) % every == 0:
+            row = (solver.first_step + step) // every
+            to = at(solver.saved, 3 * n * row)
             for i in range(3 * n):
                 to[i] = state[i]
-            for i in range(b[r.ROTATION_COUNT]):
-                saved_rotations[row * b[r.ROTATION_COUNT] + i] = rotated_by[i]
-    return b[r.STEPS]
+            for i in range(solver.rotation_count):
+                solver.saved_rotations[row * solver.rotation_count + i] = solver.rotated_by[i]
+    return solver.steps

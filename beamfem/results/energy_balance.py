@@ -10,7 +10,7 @@ import numpy as np
 from beamfem.assembly.assembler import Assembler
 from beamfem.assembly.equations import INERTIA, ROUND_OFF, linearise, residual, sizes
 from beamfem.assembly.system import System, system_of
-from beamfem.kernels.motion_record import ALPHA_F, ALPHA_M, BETA, GAMMA, TIME_STEP, MotionLimits
+from beamfem.kernels.motion_record import MotionLimits
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.time_functions import kinks_of
 from beamfem.results.connector_results import kinetic_of_connectors, potential_of_connectors
@@ -43,7 +43,7 @@ def resolved(solution: "Solution") -> bool:
             return False
         speed, change = squares.sum(axis=1).tolist()
     else:
-        squares = np.array((solution.v, rule[TIME_STEP] * solution.a)) ** 2 @ system.table(_masses)
+        squares = np.array((solution.v, rule[0] * solution.a)) ** 2 @ system.table(_masses)
         speed, acceleration = squares.sum(axis=1).tolist()
         change = acceleration**2 / (speed or 1.0)
     mean = change / (speed or 1.0)
@@ -57,7 +57,7 @@ def removal(rule: Sequence[float]) -> tuple[float, float]:
     From the odd powers of s in ln((w h)^2 / s^2), where exp(s) is a principal root of the method for x'' + w^2 x = 0.
     Of methods of second order b = 0, and of `GeneralizedAlpha` c = ((1 - rho_inf) / (1 + rho_inf))^3.
     """
-    alpha_m, alpha_f, gamma, beta = (rule[number] for number in (ALPHA_M, ALPHA_F, GAMMA, BETA))
+    _, alpha_m, alpha_f, gamma, beta = rule
     excess = gamma - 0.5
     means = _third_cumulant(alpha_f) - _third_cumulant(alpha_m)
     return excess + alpha_m - alpha_f, means - excess * (1.0 / 6.0 - beta + excess / 2.0 + excess**2 / 3.0)

@@ -13,7 +13,7 @@ import numpy as np
 from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 from beamfem.kernels.model_passes import balance
 from studies.benchmarks.roofline_cases import FACTOR, FORMS, KERNELS, RESIDUAL, SOLVE, TANGENT, case, place
-from studies.benchmarks.uncompiled import Memory, uncompiled
+from studies.benchmarks.uncompiled import Fields, Memory, arrays_of, uncompiled
 
 _NOTHING = 0  # a whole number, which no sum of floating-point numbers is
 _CHAINS = (17, 21)  # elements, so many that bands are factorised from both ends; their difference leaves the ends out
@@ -101,18 +101,18 @@ def _count_chain(form: str, elements: int) -> dict[str, tuple[int, int]]:
     # of a known half width, rows are changed in whole lanes, also beside the band
     own, needed = bidirectional_lu(half, n < SHORT), bidirectional_lu(0, True)
     equations, space = one.equations, np.empty(n)
-    arrays = [*equations.memory, one.state, one.residual, one.band, one.right, one.reach, space]
+    arrays = [*arrays_of(equations.record), one.state, one.residual, one.band, one.right, one.reach, space]
     addresses = [each.ctypes.data for each in (one.band, one.right, one.reach, space)]
     routines = balance, needed.factor, own.solve
     for routine in routines:
         assert routine.address
     memory = Memory(arrays, lambda value: Counted(value, tally))
     rows, right, reach, pivots = (memory.at(address) for address in addresses)
-    table = equations.address
+    record = Fields(equations.record, memory)
 
     def balanced(tangent: bool) -> None:
         place(one, tangent)
-        balance.function(table)
+        balance.function(record)
 
     def solved() -> None:
         own.solve.function(n, half, rows, right)
@@ -124,7 +124,7 @@ def _count_chain(form: str, elements: int) -> dict[str, tuple[int, int]]:
         SOLVE: solved,
     }
     found = {}
-    with uncompiled(memory):
+    with uncompiled():
         for name, task in tasks.items():
             tally.operations = tally.slow = 0
             task()

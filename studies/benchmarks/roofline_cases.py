@@ -7,7 +7,6 @@ import numpy as np
 import beamfem as bf
 from beamfem.assembly.assembler import Assembler
 from beamfem.assembly.system import System, system_of
-from beamfem.kernels import record
 from beamfem.kernels.block import Block, Layout
 from studies.benchmarks.peer_cases import STRUCTURAL, pendulum
 
@@ -55,7 +54,7 @@ def place(one: Case, tangent: bool) -> None:
     """Make ready for calls of `balance` on the table of the equations, with the tangent or without."""
     one.equations.require("tangent")
     one.equations.place(*one.state, one.residual, one.band)
-    one.equations.table[record.TANGENT] = int(tangent)
+    one.equations.record.tangent = tangent
 
 
 def least_traffic(system: System, one: Case) -> dict[str, int]:

@@ -20,6 +20,7 @@ from beamfem.kernels import simd as lanes
 from beamfem.kernels import simd as pairs
 from beamfem.kernels.compiler.callables import Inlined, Operation
 from beamfem.kernels.compiling import Routine
+from beamfem.kernels.records import Record
 
 
 class Pointer:
@@ -64,6 +65,7 @@ class Memory:
     """Arrays by their addresses; those of floating-point numbers as lists, each number passed through `made`."""
 
     def __init__(self, arrays: Iterable[np.ndarray], made: Callable[[float], Any]) -> None:
+        self.made = made
         held = sorted({each.ctypes.data: each for each in arrays if each.size}.items())
         self._bases = [base for base, _ in held]
         self._sizes = [each.itemsize for _, each in held]
@@ -76,14 +78,45 @@ class Memory:
         return Pointer(self._values[number], (int(address) - self._bases[number]) // self._sizes[number])
 
 
-@contextmanager
-def uncompiled(memory: Memory) -> Iterator[None]:
-    """Let functions of all kernel modules call each other as Python, on this memory."""
-    functions = {routine.address: routine.function for routine in Routine.made if routine.loaded}
-    replaced: list[tuple[ModuleType, str, Any]] = []
+class Fields:
+    """A record whose arrays are places in a memory, and whose functions are run as Python."""
 
-    def call(address: int, *arguments: Any) -> Any:
-        return functions[int(address)](*arguments)
+    def __init__(self, record: Record, memory: Memory) -> None:
+        vars(self).update(record=record, memory=memory)
+
+    def __getattr__(self, name: str) -> Any:
+        field, value = self.record.fields[name], getattr(self.record, name)
+        if isinstance(value, np.ndarray):
+            entry = field.kind.entry
+            if entry is not None and entry.fields is not None:  # records side by side
+                return [SimpleNamespace(**dict(zip(entry.fields, row, strict=True))) for row in value.tolist()]
+            return self.memory.at(value.ctypes.data)
+        if isinstance(value, list | tuple):
+            return [Fields(each, self.memory) for each in value]
+        if isinstance(value, Record):
+            return Fields(value, self.memory)
+        if isinstance(value, Routine):
+            return value.function
+        return self.memory.made(value) if isinstance(value, float) else value
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        setattr(self.record, name, value)
+
+
+def arrays_of(record: Record) -> Iterator[np.ndarray]:
+    """Yield the arrays of a record and of those that it refers to."""
+    for value in record.kept.values():
+        for each in value if isinstance(value, list | tuple) else [value]:
+            if isinstance(each, Record):
+                yield from arrays_of(each)
+            elif isinstance(each, np.ndarray):
+                yield each
+
+
+@contextmanager
+def uncompiled() -> Iterator[None]:
+    """Let functions of all kernel modules call each other as Python, on the records of `Fields`."""
+    replaced: list[tuple[ModuleType, str, Any]] = []
 
     def at(pointer: Pointer, count: int) -> Pointer:
         return Pointer(pointer.values, pointer.first + int(count))
@@ -94,9 +127,7 @@ def uncompiled(memory: Memory) -> Iterator[None]:
 
     plain = {
         "at": at,
-        "reals": memory.at,
-        "wholes": memory.at,
-        "slots": memory.at,
+        "given": lambda pointer: pointer is not None,
         "as_rows": lambda pointer: pointer,
         "zeros": lambda: 0,
         "gathered": lambda values, places: values[places[0]],
@@ -117,9 +148,9 @@ def uncompiled(memory: Memory) -> Iterator[None]:
                 if name in constants:
                     replaced.append((module, name, value))
                     setattr(module, name, constants[name])
-                elif isinstance(value, Operation) and module not in (lanes, pairs, pointers):
+                elif isinstance(value, Operation) and module not in (lanes, pairs, pointers) and name in plain:
                     replaced.append((module, name, value))
-                    setattr(module, name, plain.get(name, call))
+                    setattr(module, name, plain[name])
                 elif isinstance(value, Inlined):
                     replaced.append((module, name, value))
                     setattr(module, name, value.function)

@@ -55,7 +55,7 @@ def expected(nodes, coordinates, size, number, count, k):
 def without_parts():
     """The routine of processors that write parts of vectors slowly."""
     whole = band_assembly.add_to_band
-    routine = Routine(whole.function, whole.kinds, whole.returns, whole.fastmath)
+    routine = Routine(whole.function, whole.signature, whole.fastmath)
     routine.__module__ = __name__  # not from the cache
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(band_assembly, "WRITES_PARTS", False)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.pointers import at, caller, reals, room, wholes
+from beamfem.kernels.pointers import at, room
+from beamfem.kernels.records import Reals, Record, Wholes, calls
 
 
 @routine("iin")
@@ -124,8 +125,22 @@ def set_all(values, count, value):
 FACTOR = 2.5
 
 
-@routine("nrd", "d")
-def calls(table, values, x):
+@routine("ir", "d")
+def added(n, values):
+    total = 0.0
+    for i in range(n):
+        total += values[i]
+    return total
+
+
+class Sum(Record):
+    add = calls(added)
+    count: Wholes
+    numbers: Reals
+
+
+@routine()
+def called(table: Sum, values: Reals, x: float) -> float:
     """Calls by address and in place, memory of its own, names that begin anew with another kind."""
     a, b = swapped(values[0], values[1])
     set_all(values, 2, x)
@@ -135,20 +150,9 @@ def calls(table, values, x):
         own[i] = FACTOR * i
     values, first = at(values, 4), values
     values[0] = own[1] + own[2] + first[2]
-    x = wholes(table[1])
+    x = table.count
     x[0] += 4
-    return add(table[0], x[0], reals(table[2]))
-
-
-@routine("ir", "d")
-def added(n, values):
-    total = 0.0
-    for i in range(n):
-        total += values[i]
-    return total
-
-
-add = caller("ir", "d")
+    return table.add(x[0], table.numbers)
 
 
 def test_arguments_that_are_fixed_are_not_asked_for():
@@ -161,8 +165,7 @@ def test_arguments_that_are_fixed_are_not_asked_for():
 
 def test_calls_by_address_and_in_place():
     count, numbers, values = np.array([-1]), np.array([1.0, 10.0, 100.0]), np.array([7.0, 3.0, 0.0, 0.0, 0.0])
-    table = np.array([added.address, count.ctypes.data, numbers.ctypes.data])
-    assert calls(table, values, 9.0) == 111.0
+    assert called(Sum(add=added, count=count, numbers=numbers), values, 9.0) == 111.0
     assert count[0] == 3
     assert np.array_equal(values, [9.0, 9.0, 3.0, 7.0, 2.5 + 5.0 + 3.0])
 

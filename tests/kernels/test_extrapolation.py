@@ -4,32 +4,39 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.kernels.motion_record import BEST_ORDER, KNOWN_DIFFERENCES, MotionStatistics
+from beamfem.kernels.motion_record import MotionSolver, MotionStatistics, Rule
 from beamfem.kernels.motion_steps import check_convergence
 from beamfem.kernels.predictor import MOST, complete, difference_rows, padded, predict
+from beamfem.kernels.records import aligned
 from studies.benchmarks.peer_cases import STRUCTURAL, pendulum, swing
 
-RULE = np.array([0.01, 0.5, 0.5, 0.5, 0.25])  # trapezoidal rule
-NONE = np.zeros(0, dtype=np.int64)
+RULE = Rule(time_step=0.01, alpha_m=0.5, alpha_f=0.5, gamma=0.5, beta=0.25)  # trapezoidal rule
 
 
 def extrapolated(accelerations, weights):
     """Go through accelerations (steps, n); return what each step expected (steps - 1, n), and the last statistics."""
     n = accelerations.shape[1]
-    state, before, differences = np.zeros((4, n)), np.zeros((4, n)), np.zeros(difference_rows(n))
-    inverse_scale, statistics, expected = np.zeros(padded(n)), np.array(MotionStatistics()), []
-    inverse_scale[:n] = weights
+    steps = MotionSolver(
+        size=n,
+        rule=RULE,
+        statistics=MotionStatistics(),
+        differences=np.zeros(difference_rows(n)),
+        inverse_scale=np.zeros(padded(n)),
+    )
+    steps.fill(**aligned(steps.shapes("state", "before")))
+    steps.inverse_scale[:n] = weights
+    state, expected = steps.state, []
     state[2] = accelerations[0]
     for now in accelerations[1:]:
-        predict(n, 0, statistics[BEST_ORDER], state, before, differences, NONE, np.zeros(0), RULE)
+        RULE.order = steps.statistics.best_order
+        predict(steps)
         expected.append(state[2].copy())
-        h, alpha_m, alpha_f, gamma, beta = RULE
-        new = (1.0 - alpha_f) / (1.0 - alpha_m) * (now - state[2])
-        state[0] += h * h * beta * new
-        state[1] += h * gamma * new
+        new = (1.0 - RULE.alpha_f) / (1.0 - RULE.alpha_m) * (now - state[2])
+        state[0] += RULE.time_step**2 * RULE.beta * new
+        state[1] += RULE.time_step * RULE.gamma * new
         state[2] = now
-        complete(n, 0, state, before, differences, inverse_scale, NONE, RULE, statistics)
-    return np.array(expected), statistics
+        complete(steps)
+    return np.array(expected), steps.statistics
 
 
 @pytest.mark.parametrize("degree", range(MOST + 1))
@@ -40,8 +47,8 @@ def test_a_polynomial_is_extrapolated_exactly(degree, n):
     accelerations = np.array([np.polynomial.polynomial.polyval(0.1 * t, coefficients.T) for t in times])
     expected, statistics = extrapolated(accelerations, 1.0)
     first = degree + 2  # a step more than the differences that are known by then
-    assert degree <= statistics[BEST_ORDER] <= MOST
-    assert statistics[KNOWN_DIFFERENCES] >= statistics[BEST_ORDER]
+    assert degree <= statistics.best_order <= MOST
+    assert statistics.known_differences >= statistics.best_order
     np.testing.assert_allclose(expected[first:], accelerations[first + 1 :], atol=1e-10 * np.abs(accelerations).max())
 
 
@@ -67,10 +74,10 @@ def test_beside_what_jumps_to_and_fro_smooth_coordinates_are_extrapolated_as_alo
 def left_after_the_last_correction(first, ratios):
     """Return the sum of the corrections, whose ratios are repeated, that come after the one which ends a step."""
     sizes = first * np.cumprod([1.0, *np.tile(ratios, 10)])
-    rate, noise = np.array([0.1, 0.0]), np.zeros(1)
+    rate, known = np.array([0.1, 0.0]), MotionStatistics()
     for number, size in enumerate(sizes, start=1):
         last = sizes[number - 2] if number > 1 else 0.0
-        if check_convergence(number, 0, 0, 0, size, last, 1.0, 1e-9, rate, noise) == 1:
+        if check_convergence(number, 0, 0, 0, size, last, 1.0, 1e-9, rate, known) == 1:
             return sizes[number:].sum()
     raise AssertionError("it does not end")
 
@@ -94,7 +101,7 @@ def test_coordinates_without_weight_do_not_choose_the_order():
     rough = (-1.0) ** np.arange(30)[:, None]
     weights = np.array([1.0, 1.0, 1.0, 0.0])
     expected, statistics = extrapolated(np.hstack([smooth, rough]), weights)
-    assert statistics[BEST_ORDER] >= 2.0
+    assert statistics.best_order >= 2.0
     np.testing.assert_allclose(expected[4:, :3], smooth[5:], atol=1e-9)
 
 

@@ -39,7 +39,8 @@ def small(tmp_path):
     package.mkdir()
     (package / "__init__.py").touch()
     (package / "compiler").mkdir()
-    for file in (*map(KERNELS.joinpath, ("cache.py", "compiling.py", "pointers.py")), *KERNELS.glob("compiler/*.py")):
+    own = map(KERNELS.joinpath, ("cache.py", "compiling.py", "pointers.py", "records.py"))
+    for file in (*own, *KERNELS.glob("compiler/*.py")):
         text = file.read_text().replace("beamfem.kernels", "small")
         (package / file.relative_to(KERNELS)).write_text(text)
     (package / "inner.py").write_text(INNER.format(factor=3.0))

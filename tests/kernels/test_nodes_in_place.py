@@ -7,7 +7,6 @@ import beamfem as bf
 from beamfem.assembly.assembler import Assembler
 from beamfem.assembly.equations import linearise, predicted_stresses, residual
 from beamfem.assembly.system import System
-from beamfem.kernels import record
 
 KINDS = (bf.BilinearCRBF(), bf.BilinearANCF(), bf.CRBF(3), bf.CRBF(2), bf.ANCF(), bf.ANCFCRBF(), bf.ShearRigid())
 WEIGHTS = {"statics": (1.0, 0.0, 0.0), "motion": (1.0, 30.0, 900.0)}
@@ -29,8 +28,8 @@ def test_values_are_those_of_copied_nodes(element, damped, weights, elements):
     for in_a_row in (True, False):
         own = system(element, elements, damped)
         (group,) = own.equations.groups
-        assert group.table[record.ORDERED] == 1
-        group.table[record.ORDERED] = in_a_row
+        assert group.record.ordered == 1
+        group.record.ordered = in_a_row
         rng = np.random.default_rng(elements)
         p = own.reference + 1e-3 * rng.standard_normal(len(own.reference))
         v, a, step = 1e-2 * rng.standard_normal((3, len(p)))

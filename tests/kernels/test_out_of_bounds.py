@@ -26,6 +26,8 @@ BEYOND = {
     "address 4": "read_address, line {}: short, index 4, of an array of size 4",
     "null": "read_address, line {}: short, index 0, of an array of size 0",
     "call 2": "write, line {}: values, index 2, of an array of size 2",
+    "drawer 1 3": "read_drawer, line {}: numbers, index 3, of an array of size 3",
+    "drawer 2 0": "read_drawer, line {}: drawer, index 1, of an array of size 4, first index -4",
     "divide 0": "divide, line {}: integer division by zero",
     "whole nan": "whole, line {}: int of NaN or a number too large",
     "whole 1e+19": "whole, line {}: int of NaN or a number too large",
@@ -40,6 +42,7 @@ INSIDE = (
     "stack 2",
     "address 3",
     "call 1",
+    "drawer 1 2",
     "divide 2",
 )
 

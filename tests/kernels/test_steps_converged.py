@@ -8,8 +8,7 @@ from fuzz_steps import faults_of_steps
 
 import beamfem as bf
 from beamfem.assembly.system import system_of
-from beamfem.kernels import record
-from beamfem.kernels.motion_record import CHANGE, ORDER, TANGENTS
+from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.kernels.motion_steps import check_convergence
 from beamfem.solve.motion.compiled_steps import CompiledSteps
 
@@ -66,24 +65,27 @@ def test_a_step_that_is_not_converged_or_does_not_follow_is_seen():
     ],
 )
 def test_a_kept_tangent_does_not_judge_itself(own, size, last, noise, verdict):
-    rate, known = np.array([0.1, 0.0]), np.array([noise])
+    rate, known = np.array([0.1, 0.0]), MotionStatistics(noise=noise)
     assert check_convergence(3, 0, own, 0, size, last, 1.0, TOLERANCE, rate, known) == verdict
-    assert known[0] == (2.0 * last if own and size == 5e-10 else noise)
+    assert known.noise == (2.0 * last if own and size == 5e-10 else noise)
 
 
 @pytest.mark.parametrize(("own", "far", "verdict"), [(0, 0, 1), (0, 1, 2), (1, 1, 1)])
 def test_a_tangent_from_far_away_does_not_judge_what_it_led_to(own, far, verdict):
     """A beam that creeps: from 38 m away it converged to 7e-5 m beside the equilibrium."""
-    assert check_convergence(2, 0, own, far, 1e-15, 38.0, 38.0, TOLERANCE, np.array([1.0, 0.0]), np.zeros(1)) == verdict
+    assert (
+        check_convergence(2, 0, own, far, 1e-15, 38.0, 38.0, TOLERANCE, np.array([1.0, 0.0]), MotionStatistics())
+        == verdict
+    )
 
 
 @pytest.mark.parametrize(("last", "own", "verdict"), [(0.8e-9, 0, 2), (1.6e-9, 0, 0), (0.8e-9, 1, 1), (1.6e-9, 1, 0)])
 def test_one_small_correction_after_a_larger_one_is_no_round_off(last, own, verdict):
     """Ratios of 0.56 would leave as much again; only two corrections within the tolerance may be noise."""
     size = 0.56 * last
-    noise = np.zeros(1)
-    assert check_convergence(2, 0, own, 0, size, last, 1.0, TOLERANCE, np.array([1.0, 0.0]), noise) == verdict
-    assert (noise[0] > 0.0) == (verdict == 1)
+    known = MotionStatistics()
+    assert check_convergence(2, 0, own, 0, size, last, 1.0, TOLERANCE, np.array([1.0, 0.0]), known) == verdict
+    assert (known.noise > 0.0) == (verdict == 1)
 
 
 @pytest.mark.parametrize(("factor", "verdict"), [(0.9, 1), (1.1, 0)])
@@ -92,7 +94,7 @@ def test_what_steps_leave_decreases_with_what_they_change(factor, verdict):
     changed = 1e-7
     size = factor * 1e-8 * changed * 9.0
     rate = np.array([0.1, 0.1])
-    assert check_convergence(3, 0, 0, 0, size, 10.0 * size, changed, 1e-3, rate, np.zeros(1)) == verdict
+    assert check_convergence(3, 0, 0, 0, size, 10.0 * size, changed, 1e-3, rate, MotionStatistics()) == verdict
 
 
 @pytest.fixture
@@ -113,7 +115,7 @@ def test_the_change_of_the_acceleration_counts_as_what_it_changes_in_positions(s
     model, _ = bow_let_go()
     motion = bf.simulate(model, 0.04, 2e-3, bf.GeneralizedAlpha(1.0))
     changed = np.abs(motion.a[-1] - motion.a[-2]) / system_of(model, static=False).scale
-    assert steps_taken[-1]._statistics[CHANGE] == pytest.approx(0.25 * 2e-3**2 * changed.max(), rel=1e-9)
+    assert steps_taken[-1]._statistics.change == pytest.approx(0.25 * 2e-3**2 * changed.max(), rel=1e-9)
 
 
 @pytest.mark.parametrize(("begins", "order"), [(None, -1.0), (0.019, 0.0)], ids=["first", "tenth"])
@@ -124,8 +126,8 @@ def test_a_step_that_fails_starts_anew_from_what_was_nearer(begins, order, steps
     loads = [bf.PointMoment(beam.end, 0.2, **sudden), bf.Gravity((0.0, -0.1))]
     bf.simulate(bf.Model([beam], [bf.Clamp(beam.start)], loads), begins or 2e-3, 2e-3)
     steps = steps_taken[-1]
-    assert steps._statistics[TANGENTS] > 3.0
-    assert steps._space.arrays[record.RULE][ORDER] == order
+    assert steps._statistics.tangents > 3
+    assert steps._space.solver.rule.order == order
 
 
 @pytest.mark.parametrize(("begins", "order"), [(None, 0.0), (0.095, -1.0)], ids=["first", "tenth"])
@@ -136,4 +138,4 @@ def test_a_step_that_fails_again_starts_from_the_other_guess(begins, order, step
     loads = [bf.PointMoment(beam.end, 5.0, **sudden), bf.Gravity((0.0, -0.1))]
     with pytest.raises(bf.ConvergenceError, match="did not converge"):
         bf.simulate(bf.Model([beam], [bf.Clamp(beam.start)], loads), begins or 1e-2, 1e-2)
-    assert steps_taken[-1]._space.arrays[record.RULE][ORDER] == order
+    assert steps_taken[-1]._space.solver.rule.order == order

@@ -1,5 +1,6 @@
 """Emission of LLVM instructions: memory access, calls, and conversions between kinds of values."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from llvmlite import ir
@@ -8,6 +9,7 @@ from beamfem.kernels.compiler.bounds_checks import CHECKED
 from beamfem.kernels.compiler.value_types import (
     FLAG,
     LANES,
+    NOTHING,
     NUMBER,
     PAIR,
     PAIRS,
@@ -18,6 +20,7 @@ from beamfem.kernels.compiler.value_types import (
     WIDTH,
     Extent,
     Kind,
+    Signature,
     Value,
 )
 
@@ -66,6 +69,18 @@ class Build:
         callee = self.declared(name, ir.FunctionType(types[0], types))
         arguments = [each.llvm for each in (value, *others)]
         return Value(value.kind, self.builder.call(callee, arguments, fastmath=self.flags))
+
+    def call_at(self, address: ir.Value, signature: Signature, arguments: Sequence[Value]) -> Value | None:
+        """Call a function in C convention by its address, an integer."""
+        for each in arguments:
+            self.pass_on(each)
+        kinds, result = signature
+        values = [self.converted(value, kind) for value, kind in zip(arguments, kinds, strict=True)]
+        outer = ir.VoidType() if result is None else result.llvm
+        function = ir.FunctionType(outer, [kind.llvm for kind in kinds]).as_pointer()
+        returned = self.builder.call(self.builder.inttoptr(address, function), values)
+        self.end_if_ended()
+        return None if result is None else Value(result, returned)
 
     def declared(self, name: str, kind: ir.FunctionType) -> ir.Function:
         """Return a function of LLVM or of the C library."""
@@ -155,6 +170,10 @@ class Build:
         """Convert a value to another kind; raise TypeError if that would lose information."""
         if value.kind is kind or (value.kind in _TO_NUMBERS and kind in _TO_NUMBERS):
             return value.llvm
+        if value.kind.fields and kind.fields and kind.fields.items() <= value.kind.fields.items():
+            return value.llvm  # it has all fields of that record, at the same places
+        if value.kind is NOTHING and kind.points:
+            return ir.Constant(kind.llvm, None)
         if value.kind is FLAG and kind is WHOLE:
             return self.builder.zext(value.llvm, WHOLE.llvm)
         if value.kind in (FLAG, WHOLE) and kind in (NUMBER, LANES):
@@ -172,10 +191,44 @@ class Build:
             return self.builder.icmp_signed("!=", value.llvm, WHOLE.llvm(0))
         raise TypeError(f"a {value.kind.name} is neither true nor false")
 
-    def place(self, pointer: Value, index: Value) -> ir.Value:
-        """Return the address of an entry of a pointer."""
+    def _whole(self, index: Value) -> ir.Value:
         if index.kind is not WHOLE:
             raise TypeError(f"a {index.kind.name} is no place in memory")
+        return index.llvm
+
+    def _field(self, record: Value, name: str) -> tuple[Kind, ir.Value]:
+        """Return the kind of a field of a record and the address of its slot."""
+        fields = record.kind.fields
+        if fields is None or name not in fields:
+            raise TypeError(f"a {record.kind.name} has no {name}")
+        place, kind = fields[name]
+        self.check(record, WHOLE.llvm(place), WHOLE.llvm(1))
+        return kind, self.builder.gep(record.llvm, [WHOLE.llvm(place)], inbounds=True)
+
+    def _in_slot(self, kind: Kind, slot: ir.Value) -> Value:
+        if kind is NUMBER:
+            return Value(kind, self.builder.load(self.builder.bitcast(slot, kind.llvm.as_pointer())))
+        content = self.builder.load(slot)
+        if not kind.points:
+            return Value(kind, content)
+        pointer = Value(kind, self.builder.inttoptr(content, kind.llvm))
+        return pointer._replace(extent=self.extent(pointer)) if CHECKED else pointer
+
+    def get_field(self, record: Value, name: str) -> Value:
+        """Return a field of a record."""
+        return self._in_slot(*self._field(record, name))
+
+    def set_field(self, record: Value, name: str, value: Value) -> None:
+        """Set a field of a record."""
+        kind, slot = self._field(record, name)
+        content = self.converted(value, kind)
+        if kind is NUMBER:
+            slot = self.builder.bitcast(slot, kind.llvm.as_pointer())
+        self.builder.store(self.builder.ptrtoint(content, WHOLE.llvm) if kind.points else content, slot)
+
+    def place(self, pointer: Value, index: Value) -> ir.Value:
+        """Return the address of an entry of a pointer."""
+        self._whole(index)
         self.check(pointer, index.llvm, WHOLE.llvm(getattr(_entry(pointer).llvm, "count", 1)))
         address = self.builder.gep(pointer.llvm, [index.llvm], inbounds=True)
         several = pointer.kind.entry if pointer.kind.entry in (LANES, PAIR) else None
@@ -184,6 +237,11 @@ class Build:
     def read(self, pointer: Value, index: Value) -> Value:
         """Return an entry of a pointer."""
         kind = _entry(pointer)
+        if pointer.kind.stored is None:
+            first = self.builder.mul(self._whole(index), WHOLE.llvm(len(kind.fields or ())), flags=("nsw",))
+            return pointer._replace(kind=kind, llvm=self.builder.gep(pointer.llvm, [first], inbounds=True))
+        if kind.points:
+            return self._in_slot(kind, self.place(pointer, index))
         align = 8 if kind in (LANES, PAIR) else None
         entry = self.builder.load(self.place(pointer, index), align=align)
         return Value(kind, self.builder.sext(entry, WHOLE.llvm) if pointer.kind.stored != kind.llvm else entry)
@@ -191,14 +249,14 @@ class Build:
     def write(self, pointer: Value, index: Value, value: Value) -> None:
         """Set an entry of a pointer."""
         kind = _entry(pointer)
-        if pointer.kind.stored != kind.llvm:
+        if pointer.kind.stored != kind.llvm:  # slots of fewer bits, records and addresses of records
             raise TypeError(f"a {pointer.kind.name} is only read")
         align = 8 if kind in (LANES, PAIR) else None
         self.builder.store(self.converted(value, kind), self.place(pointer, index), align=align)
 
 
 def _has_extent(value: Value) -> bool:
-    return CHECKED and value.kind.entry is not None
+    return CHECKED and value.kind.points
 
 
 def _entry(pointer: Value) -> Kind:

@@ -4,10 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from beamfem.kernels.compiler.value_types import NUMBER, WHOLE, Kind, Value
-
-# Results of functions that are called by their address: nothing, an integer or a floating-point number.
-RESULTS: dict[str, Kind | None] = {"": None, "i": WHOLE, "d": NUMBER}
+from beamfem.kernels.compiler.value_types import Value
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from llvmlite import ir
 from beamfem.kernels.compiler.arithmetic import FUNCTIONS, combined, compared, negative
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import Inlined, Operation
-from beamfem.kernels.compiler.value_types import FLAG, NUMBER, WHOLE, Value
+from beamfem.kernels.compiler.value_types import FLAG, NOTHING, NUMBER, WHOLE, Value
 
 # what an operand of a comparison must not contain where Python might not evaluate it
 _MAY_FAIL = (ast.Call, ast.Subscript, ast.FloorDiv, ast.Mod)
@@ -74,6 +74,8 @@ def values(scope: Scope, node: ast.expr) -> Value | list[Value]:
             if name not in scope.assigned:
                 raise TypeError(f"{name} may have no value here")
             return build.get(scope.variables[name])
+        case ast.Attribute(value=record, attr=name) if _is_field(scope, node):
+            return build.get_field(one_value(scope, record), name)
         case ast.Constant() | ast.Name() | ast.Attribute():
             return _constant(object_of(scope, node))
         case ast.Subscript(value=pointer, slice=index):
@@ -91,11 +93,25 @@ def values(scope: Scope, node: ast.expr) -> Value | list[Value]:
         case ast.IfExp(test=test, body=body, orelse=other):
             return _either(build, truth(scope, test), lambda: one_value(scope, body), lambda: one_value(scope, other))
         case ast.Call(func=function, args=arguments, keywords=[]):
-            return _called(scope, object_of(scope, function), [one_value(scope, each) for each in arguments])
+            called = one_value(scope, function) if _is_field(scope, function) else object_of(scope, function)
+            return _called(scope, called, [one_value(scope, each) for each in arguments])
     raise TypeError(f"{ast.unparse(node)} is not known to compiled code")
 
 
+def _is_outside(scope: Scope, node: ast.expr) -> bool:
+    """Return whether an expression is a name from outside the function, or an attribute of one."""
+    while isinstance(node, ast.Attribute):
+        node = node.value
+    return isinstance(node, ast.Name) and node.id in scope.outside
+
+
+def _is_field(scope: Scope, node: ast.expr) -> bool:
+    return isinstance(node, ast.Attribute) and not _is_outside(scope, node)
+
+
 def _constant(found: Any) -> Value:
+    if found is None:
+        return Value(NOTHING, ir.Constant(NOTHING.llvm, None))
     for kind, python_type in ((FLAG, bool), (WHOLE, int), (NUMBER, float)):
         if isinstance(found, python_type):
             return Value(kind, ir.Constant(kind.llvm, found))
@@ -103,6 +119,10 @@ def _constant(found: Any) -> Value:
 
 
 def _called(scope: Scope, function: Any, arguments: list[Value]) -> Value | list[Value]:
+    if isinstance(function, Value):
+        if function.kind.signature is None:
+            raise TypeError(f"a {function.kind.name} cannot be called")
+        return scope.build.call_at(function.llvm, function.kind.signature(), arguments) or []
     if isinstance(function, Operation):
         return function.emit(scope.build, *arguments) or []
     if isinstance(function, Inlined):

@@ -4,7 +4,8 @@ Kernels are functions of integers, floating-point numbers and pointers. A variab
 first assignment; a floating-point variable can be assigned integers, and outside of loops and branches a name can be
 assigned a value of another kind. The statements are `for` over `range` with a constant step, `while`, `if`, `break`,
 `continue`, `return`, calls, and assignments, also of tuples, to names and entries of pointers. A function that is
-called is an `Operation`, an `Inlined` function or one of `arithmetic.FUNCTIONS`. Names from outside the function stand
+called is an `Operation`, an `Inlined` function, one of `arithmetic.FUNCTIONS`, or a field of a record that has its
+address. Fields of records (see `records`) have the kinds that they declare. Names from outside the function stand
 for numbers, modules or such functions. Anything else raises TypeError with the line.
 
 Integers have 64 bits, and are converted in operations with floating-point numbers. What differs from Python:
@@ -28,26 +29,25 @@ from llvmlite import ir
 
 from beamfem.kernels.compiler.arithmetic import combined
 from beamfem.kernels.compiler.build import Build
-from beamfem.kernels.compiler.callables import RESULTS, Inlined
+from beamfem.kernels.compiler.callables import Inlined
 from beamfem.kernels.compiler.expressions import Scope, index_of, object_of, one_value, truth, values
 from beamfem.kernels.compiler.source import definition, outside
-from beamfem.kernels.compiler.value_types import KINDS, WHOLE, Value
+from beamfem.kernels.compiler.value_types import WHOLE, Signature, Value
 
 
 def translate(
-    function: Callable[..., Any], kinds: str, returns: str, flags: Sequence[str], fixed: Mapping[str, int], name: str
+    function: Callable[..., Any], signature: Signature, flags: Sequence[str], fixed: Mapping[str, int], name: str
 ) -> ir.Module:
     """Return a module with one function in C calling convention.
 
-    kinds: letters of `kinds.KINDS`, one per argument; returns: a letter of `callables.RESULTS`; flags: see `Build`;
-    fixed: integers by name that replace arguments.
+    flags: see `Build`; fixed: integers by name that replace arguments.
     """
-    module, result = ir.Module(name), RESULTS[returns]
+    module, (kinds, result) = ir.Module(name), signature
     outer = ir.VoidType() if result is None else result.llvm
-    llvm_function = ir.Function(module, ir.FunctionType(outer, [KINDS[kind].llvm for kind in kinds]), name)
+    llvm_function = ir.Function(module, ir.FunctionType(outer, [kind.llvm for kind in kinds]), name)
     llvm_function.attributes.add("nounwind")
     builder = ir.IRBuilder(llvm_function.append_basic_block("entry"))
-    arguments = [Value(KINDS[kind], argument) for kind, argument in zip(kinds, llvm_function.args, strict=True)]
+    arguments = [Value(kind, argument) for kind, argument in zip(kinds, llvm_function.args, strict=True)]
     for index, argument in enumerate(definition(function).args.args):
         if argument.arg in fixed:
             arguments[index] = Value(WHOLE, WHOLE.llvm(fixed[argument.arg]))
@@ -163,6 +163,8 @@ class _Body:
                 self._set(name, value)
             case ast.Subscript(value=pointer, slice=index), Value():
                 self._build.write(one_value(self._scope, pointer), index_of(self._scope, index), value)
+            case ast.Attribute(value=record, attr=name), Value():
+                self._build.set_field(one_value(self._scope, record), name, value)
             case _:
                 raise TypeError(f"{ast.unparse(target)} cannot be assigned this in compiled code")
 

@@ -1,6 +1,8 @@
 """Kinds of values in compiled code."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import NamedTuple
 
 from llvmlite import ir
@@ -14,7 +16,9 @@ class Kind:
     """A kind of values.
 
     name: used in error messages; llvm: type in LLVM; rank: in an operation with a value of higher rank, values are
-    converted to that kind, -1 for pointers; entry: kind of the entries of a pointer, whose type in memory is `stored`.
+    converted to that kind, -1 for pointers; entry: kind of the entries of a pointer, whose type in memory is `stored`,
+    or None if the entries are records side by side; fields: place and kind by name, of a pointer to a record;
+    signature: of the address of a function.
     """
 
     name: str
@@ -22,6 +26,20 @@ class Kind:
     rank: int = -1
     entry: "Kind | None" = None
     stored: ir.Type | None = None
+    fields: "dict[str, tuple[int, Kind]] | None" = None
+    signature: "Callable[[], Signature] | None" = None
+
+    @property
+    def points(self) -> bool:
+        """Whether values are pointers."""
+        return isinstance(self.llvm, ir.PointerType)
+
+
+class Signature(NamedTuple):
+    """Kinds of the arguments of a function and of its result, if it has one."""
+
+    arguments: Sequence[Kind]
+    result: Kind | None
 
 
 class Extent(NamedTuple):
@@ -51,5 +69,35 @@ PAIRS = Kind("pointer to pairs", _DOUBLE.as_pointer(), entry=PAIR, stored=PAIR.l
 WHOLES = Kind("pointer to whole numbers", _INTEGER.as_pointer(), entry=WHOLE, stored=_INTEGER)
 SLOTS = Kind("pointer to 32-bit whole numbers", ir.IntType(32).as_pointer(), entry=WHOLE, stored=ir.IntType(32))
 
+NOTHING = Kind("None", _INTEGER.as_pointer())
+
+
+def record_kind(name: str, fields: dict[str, tuple[int, Kind]]) -> Kind:
+    """Return the kind of pointers to records with these fields, whose places count slots of 8 bytes."""
+    return Kind(name, _INTEGER.as_pointer(), fields=fields)
+
+
+@cache
+def addresses_of(entry: Kind) -> Kind:
+    """Return the kind of pointers to a table of addresses."""
+    return Kind(f"table of addresses of {entry.name}", _INTEGER.as_pointer(), entry=entry, stored=_INTEGER)
+
+
+@cache
+def side_by_side(entry: Kind) -> Kind:
+    """Return the kind of pointers to records side by side."""
+    return Kind(f"pointer to several {entry.name}", _INTEGER.as_pointer(), entry=entry)
+
+
+def address_of_function(signature: Callable[[], Signature]) -> Kind:
+    """Return the kind of addresses of functions, whose signature is asked for when one is called."""
+    return Kind("function", _INTEGER, signature=signature)
+
+
 # Kinds of arguments by letter.
 KINDS = {"r": REALS, "v": ROWS, "n": WHOLES, "s": SLOTS, "i": WHOLE, "d": NUMBER}
+
+
+def signature_of(arguments: str, result: str = "") -> Signature:
+    """Return a signature from letters."""
+    return Signature([KINDS[kind] for kind in arguments], KINDS[result] if result else None)

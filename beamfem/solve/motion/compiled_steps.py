@@ -5,9 +5,7 @@ import numpy as np
 from beamfem.assembly.callbacks import Deferred
 from beamfem.assembly.motion_workspace import MotionWorkspace
 from beamfem.assembly.system import System
-from beamfem.kernels import record
-from beamfem.kernels.motion_record import CORRECTION, TIME_STEP, MotionLimits
-from beamfem.kernels.pointers import address_of
+from beamfem.kernels.motion_record import MotionLimits, MotionStatistics, Rule
 from beamfem.kernels.time_loop import march
 from beamfem.solve.motion.coupled_stages import CoupledStages, is_weak
 from beamfem.solve.motion.stored_states import Saving
@@ -17,10 +15,10 @@ SPARSE = MotionLimits(most=24, many=16, slow=0.5)  # a factorisation costs as mu
 BORDERED = MotionLimits(most=12, many=6, slow=0.2)  # with the tangents of connectors, as much as four
 
 
-def not_converged(statistics: np.ndarray, limits: MotionLimits) -> str:
-    """Return why a step has failed; statistics: see `kernels.motion_record`."""
+def not_converged(statistics: MotionStatistics, limits: MotionLimits) -> str:
+    """Return why a step has failed."""
     return (
-        f"the last correction was {statistics[CORRECTION]:.2e} of the model after {limits.iterations} iterations at "
+        f"the last correction was {statistics.correction:.2e} of the model after {limits.iterations} iterations at "
         "most. A smaller step may help"
     )
 
@@ -28,21 +26,23 @@ def not_converged(statistics: np.ndarray, limits: MotionLimits) -> str:
 class CompiledSteps:
     """Marches through time steps; keeps tangent and differences of the acceleration between calls.
 
-    space: its own workspace; rule: step, alpha_m, alpha_f, gamma, beta; statistics: see
-    `kernels.motion_record`.
+    space: its own workspace; rule: step, alpha_m, alpha_f, gamma, beta.
     """
 
-    def __init__(self, system: System, space: MotionWorkspace, rule: np.ndarray, statistics: np.ndarray) -> None:
-        self._system, self._space, self._statistics, self._step = system, space, statistics, float(rule[TIME_STEP])
+    def __init__(self, system: System, space: MotionWorkspace, rule: np.ndarray, statistics: MotionStatistics) -> None:
+        h, alpha_m, alpha_f, gamma, beta = map(float, rule)
+        self._system, self._space, self._statistics, self._step = system, space, statistics, h
         sparse, connected = system.unknowns.pattern is not None, bool(system.called.items)
         bordered = system.unknowns.border_size > 0
         self._limits = SPARSE if sparse else BORDERED if connected or bordered else BAND
-        h, alpha_m, alpha_f, gamma, beta = rule
-        space.arrays[record.RULE][: len(rule)], space.arrays[record.LIMITS][:] = rule, self._limits
-        space.arrays[record.DIFFERENCES][:] = 0.0
+        space.solver.fill(
+            rule=Rule(time_step=h, alpha_m=alpha_m, alpha_f=alpha_f, gamma=gamma, beta=beta),
+            limits=self._limits,
+            statistics=statistics,
+        )
+        space.solver.differences[:] = 0.0
         space.assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))), self._step)
         space.assembler.require("tangent", "prediction")
-        space.solver[record.STATISTICS] = address_of(statistics)
         self._coupled = CoupledStages(system, space) if sparse or connected else None
         self._untried = bordered and self._coupled is None
         self._deferred: Deferred | None = None
@@ -80,49 +80,34 @@ class CompiledSteps:
             weak = is_weak(self._system, (p, v, a), float(times[0]), space.assembler.weights, self._step)
             self._coupled = CoupledStages(self._system, space) if weak else None
         body, values, imposing = _sample_loads(self._system, times)
-        varying = len(body) > 1
         assembler, solver = space.assembler, space.solver
-        places = assembler.load(body, values)
-        natural = np.array(assembler.impose(imposing), dtype=np.int64)
-        load_addresses = np.array(places[1:], dtype=np.int64)
-        n, address = state.shape[1], address_of(state)
-        states = address, address + 8 * n, address + 16 * n
-        assembler.place_at(states, space.residual, space.rows, space.arrays[record.ROWS].size)
-        arrays = {
-            record.PRESCRIBED_VALUES: prescribed,
-            record.SAVED: saving.states,
-            record.ROTATION_TABLE: saving.pairs,
-            record.ROTATED_BY: saving.rotations,
-            record.SAVED_ROTATIONS: saving.saved_rotations,
-            record.LOAD_VALUES: load_addresses,
-            record.NATURALS: natural,
-        }
-        if not all(array.flags.c_contiguous for array in arrays.values()):
-            raise ValueError("compiled code takes contiguous arrays")
-        numbers = {
-            record.STATE: address,
-            record.BODIES: places[0],
-            record.BODY_STRIDE: body[0].size if varying else 0,
-            record.LOADS_VARY: int(varying),
-            record.NATURALS_VARY: int(varying),
-            record.STEPS: len(prescribed),
-            record.FIRST_STEP: saving.first,
-            record.EVERY: saving.every,
-            record.ROTATION_COUNT: len(saving.pairs),
+        assembler.load(body, values, imposing)
+        assembler.place(state[0], state[1], state[2], space.residual, solver.rows)
+        solver.fill(
+            state=state,
+            steps=len(prescribed),
+            prescribed_values=prescribed,
+            varies=len(body) > 1,
+            body_size=body[0].size,
+            bodies=body,
+            first_step=saving.first,
+            every=saving.every,
+            saved=saving.states,
+            rotation_count=len(saving.pairs),
+            rotation_table=saving.pairs,
+            rotated_by=saving.rotations,
+            saved_rotations=saving.saved_rotations,
             # stages in Python factorise the border themselves
-            record.EDGE: len(unknowns.border) if self._coupled is None else 0,
-            record.CONDITIONS: unknowns.border_size - len(unknowns.border) if self._coupled is None else 0,
-        }
-        for field, value in (numbers | {field: address_of(array) for field, array in arrays.items()}).items():
-            solver[field] = value
-        calls = self._system.solver_table.routines(moving=True)
+            edge=len(unknowns.border) if self._coupled is None else 0,
+            conditions=unknowns.border_size - len(unknowns.border) if self._coupled is None else 0,
+        )
         if self._coupled is None and not assembler.calls_python:
-            return int(march(assembler.address, solver, calls))
+            return int(march(assembler.record, solver))
         with Deferred() as self._deferred:
             if self._coupled is None:
-                completed = int(march(assembler.address, solver, calls))
+                completed = int(march(assembler.record, solver))
             else:
-                completed = self._coupled.march(assembler.address, solver, state, times, self._deferred)
+                completed = self._coupled.march(state, times, self._deferred)
         errors = () if self._coupled is None else (self._coupled.take_error(),)
         self._error = next((error for error in (*errors, assembler.take_error()) if error is not None), None)
         return completed if self._deferred.lost is None else 0

@@ -11,7 +11,7 @@ from beamfem.assembly.callbacks import Deferred, KeptErrors
 from beamfem.assembly.equations import linearise, tangent_of
 from beamfem.assembly.motion_workspace import MotionWorkspace
 from beamfem.assembly.system import System
-from beamfem.kernels import motion_stages, record, rollers
+from beamfem.kernels import motion_stages, motion_steps, rollers
 from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.time_loop import march
@@ -107,9 +107,10 @@ class BandFactorisation:
         self._routines.solve.compiled(self._size, self._half, self._rows, address_of(x))
 
 
-_Stage = CFUNCTYPE(c_double, *(c_int64,) * 3)
+_Assemble = CFUNCTYPE(None, *(c_int64,) * 2)
 _Factor = CFUNCTYPE(c_double, *(c_int64,) * 2, *(c_void_p,) * 3)
 _Solve = CFUNCTYPE(None, *(c_int64,) * 2, *(c_void_p,) * 2)
+_Correct = CFUNCTYPE(c_double, *(c_int64,) * 2)
 
 
 class CoupledStages:
@@ -122,28 +123,30 @@ class CoupledStages:
     def __init__(self, system: System, space: MotionWorkspace) -> None:
         self.system, self._errors = system, KeptErrors()
         self._state, self._times, self._deferred = np.empty((4, 0)), np.empty(0), Deferred()
-        self._residual, self._right = space.arrays["residual"], space.arrays[record.RIGHT]
-        self._matrix, self._solver, self._table = space.arrays[record.ROWS], space.solver, space.assembler.table
+        self._equations, self._solver = space.assembler.record, space.solver
         self._weights = space.assembler.weights
         self._coupled: list[np.ndarray] | None = []
         factorisation = BandFactorisation if system.unknowns.pattern is None else SparseFactorisation
-        self._factorised = factorisation(system, self._matrix)
+        self._factorised = factorisation(system, space.solver.rows)
         self._factors: CoupledFactors | None = None
         self._functions = {
-            record.ASSEMBLE: _Stage(self._guarded(self._assemble)),
-            record.FACTOR_BOTH: _Factor(self._guarded(self._factor)),
-            record.SOLVE_BOTH: _Solve(self._guarded(self._solve)),
-            record.CORRECT: _Stage(self._guarded(self._correct)),
+            "assemble": _Assemble(self._guarded(self._assemble)),
+            "factor": _Factor(self._guarded(self._factor)),
+            "solve_both": _Solve(self._guarded(self._solve)),
+            "correct": _Correct(self._guarded(self._correct)),
         }
-        self._routines = system.solver_table.routines(moving=True).copy()
-        self._routines[record.CONSTRAIN_NORMALS] = rollers.constrain_nothing.address
-        for number, function in self._functions.items():
-            self._routines[number] = cast(function, c_void_p).value
+        self._routines = space.solver.routines.copy()
+        self._routines.constrain_normals = rollers.constrain_nothing
+        self._routines.fill(**{name: cast(each, c_void_p).value for name, each in self._functions.items()})
 
-    def march(self, system: int, solver: np.ndarray, state: np.ndarray, times: np.ndarray, deferred: Deferred) -> int:
+    def march(self, state: np.ndarray, times: np.ndarray, deferred: Deferred) -> int:
         """March p, p', p'' and the auxiliary acceleration (4, n) to times (steps,) [s]; see `time_loop.march`."""
         self._state, self._times, self._deferred = state, times, deferred
-        return int(march(system, solver, self._routines))
+        usual, self._solver.routines = self._solver.routines, self._routines
+        try:
+            return int(march(self._equations, self._solver))
+        finally:
+            self._solver.routines = usual
 
     def take_error(self) -> BaseException | None:
         """Return the first error since the last call, if there is one."""
@@ -160,22 +163,21 @@ class CoupledStages:
                 self._factors = None
             except BaseException as error:
                 self._errors.keep(error)
-            self._right[:] = np.nan
+            self._solver.right[:] = np.nan
             return np.nan
 
         return guarded
 
-    def _assemble(self, system: int, solver: int, calls: int) -> float:
+    def _assemble(self, system: int, solver: int) -> None:
         """See `motion_stages.assemble`."""
-        motion_stages.assemble.compiled(system, solver, calls)
+        motion_stages.assemble.compiled(system, solver)
         connectors, (p, v, a, _) = self.system.called, self._state
         if connectors.items:
-            time = float(self._times[self._solver[record.NOW]])
-            connectors.add_forces(self._residual, (p, v, a), time)
-            if self._table[record.TANGENT]:
+            time = float(self._times[self._solver.now])
+            connectors.add_forces(self._equations.residual, (p, v, a), time)
+            if self._equations.tangent:
                 self._coupled = None  # if the tangents cannot be formed
                 self._coupled = connectors.tangents((p, v, a), time, self._weights)
-        return 0.0
 
     def _factor(self, unknown: int, half: int, reach: int, rows: int, space: int) -> float:
         """Factorise the tangent; return 1, or 0 if it is singular."""
@@ -191,10 +193,10 @@ class CoupledStages:
         """Replace the right-hand side by the solution, nan if the tangent is singular."""
         if self._factors is None:
             raise LinAlgError("the tangent is singular")
-        self._factors.solve_in_place(self._right)
+        self._factors.solve_in_place(self._solver.right)
 
-    def _correct(self, system: int, solver: int, calls: int) -> float:
-        """See `motion_stages.correct`."""
-        size = motion_stages.correct.compiled(system, solver, calls)
+    def _correct(self, system: int, solver: int) -> float:
+        """See `motion_steps.correct`."""
+        size = motion_steps.correct.compiled(system, solver)
         self._state[1:3, self.system.connectors.multipliers] = 0.0  # multipliers have no rates
         return float(size)

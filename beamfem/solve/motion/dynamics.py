@@ -9,7 +9,7 @@ from beamfem.assembly.compilation_notice import announce_compilation
 from beamfem.assembly.rigid_velocity import RigidVelocity
 from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, EnergyWarning, InputError, warn
-from beamfem.kernels.motion_record import ITERATIONS
+from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.model.model import Model
 from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.full_turns import first_turns
@@ -22,7 +22,7 @@ from beamfem.solve.motion.initial_velocity import put_onto_supports, require_on_
 from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, is_scheme, require_rule
 from beamfem.solve.motion.period_error import detuned
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
-from beamfem.solve.motion.time_marching import Last, Record, initial_acceleration, march, new_statistics
+from beamfem.solve.motion.time_marching import Last, Record, initial_acceleration, march
 from beamfem.solve.motion.time_steps import SIDE, stretches
 from beamfem.solve.start.functions_of_time import functions_of_time, name_unresolved
 from beamfem.solve.start.partial_results import kept
@@ -126,7 +126,7 @@ def simulate(
     state[3] = state[2]
     rows, pairs = -(-(len(times) - 1) // save_every) + 1, model.numbered.rotation_pairs
     table = np.empty((rows, 3, model.size))
-    record = Record(table, save_every, new_statistics(), pairs, np.empty((rows, len(pairs))))
+    record = Record(table, save_every, MotionStatistics(), pairs, np.empty((rows, len(pairs))))
     near = transferred_turns(start, model, "start")
     record.states[0], record.rotations[0] = state[:3], first_turns(model, state[0], near)
     further = len(ends) - len(times)
@@ -168,6 +168,6 @@ def _solution(
     for name in unresolved:
         ended += f"; the {name} varies within steps, which do not resolve it"
     status = Status.COMPLETED if done == len(times) - 1 else Status.STOPPED
-    summary = Statistics(int(record.statistics[ITERATIONS]), done, 0, ended, status, rule=rule)
+    summary = Statistics(record.statistics.iterations, done, 0, ended, status, rule=rule)
     p, v, a = states.swapaxes(0, 1)
     return Solution(system.model, False, times[stored_steps], p, v, a, summary, turned=rotations)

@@ -6,7 +6,6 @@ from typing import Protocol, TypeGuard
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.kernels.motion_record import ALPHA_F, ALPHA_M, BETA, GAMMA, TIME_STEP
 from beamfem.validation import convert, finite, shown
 
 
@@ -46,8 +45,8 @@ def require_rule(scheme: Scheme, step: float) -> tuple[float, ...]:
         rule = np.array(given, dtype=float)
     except (TypeError, ValueError):
         rule = np.empty(0)
-    implicit = rule.shape == (5,) and np.isfinite(rule).all() and rule[TIME_STEP] == step
-    if not implicit or not (max(rule[ALPHA_M], rule[ALPHA_F]) < 1.0 and min(rule[GAMMA], rule[BETA]) > 0.0):
+    implicit = rule.shape == (5,) and np.isfinite(rule).all() and rule[0] == step
+    if not implicit or not (max(rule[1:3]) < 1.0 and min(rule[3:]) > 0.0):
         raise InputError(
             f"rule of {type(scheme).__name__} must return (step, alpha_m, alpha_f, gamma, beta) with alpha_m and "
             f"alpha_f below 1, and gamma and beta above 0, got {shown(given)}"

@@ -6,7 +6,6 @@ import numpy as np
 
 from beamfem.assembly.system import System, system_of
 from beamfem.errors import TimeStepWarning, warn
-from beamfem.kernels.motion_record import ALPHA_F, ALPHA_M, BETA, GAMMA, TIME_STEP
 from beamfem.model.beam import retardation_time
 from beamfem.results.solution import Solution
 from beamfem.solve.start.functions_of_time import FunctionOfTime
@@ -30,8 +29,8 @@ def period_error(rule: Sequence[float], frequency: float) -> float:
 
     The principal roots of the method for x'' + w^2 x = 0 turn by an angle a in a step h; the ratio is w h / a - 1.
     """
-    alpha_m, alpha_f, gamma, beta = (rule[number] for number in (ALPHA_M, ALPHA_F, GAMMA, BETA))
-    turn = 2.0 * np.pi * frequency * rule[TIME_STEP]
+    step, alpha_m, alpha_f, gamma, beta = rule
+    turn = 2.0 * np.pi * frequency * step
     stiffness = turn**2
     # in x, h x' and h^2 a
     after = [[1.0, 0.0, -beta], [0.0, 1.0, -gamma], [(1.0 - alpha_f) * stiffness, 0.0, 1.0 - alpha_m]]
@@ -83,7 +82,7 @@ def detuned(solution: Solution, system: System, functions: list[FunctionOfTime])
     else:
         damped = not system.connectors.keep_energy or any(block.damping.any() for block in system.blocks)
         # steps do not show at which frequency they drive a vibration of less than two of them
-        unknown = damped or system.history.laws or frequency * solution.statistics.rule[TIME_STEP] > 0.5
+        unknown = damped or system.history.laws or frequency * solution.statistics.rule[0] > 0.5
         drives = [] if unknown else [_frequency_of(function, solution) / frequency for function in functions]
         # between the period with steps and without; over some periods, those within 1 of as many resonate
         resonant = any(1.0 / (1.0 + error) - 1.0 / cycles < drive < 1.0 + 1.0 / cycles for drive in drives)
@@ -117,7 +116,7 @@ def _frequency_of(function: FunctionOfTime, solution: Solution) -> float:
 
     Those of a sine of angular frequency w are -4 sin^2(w h / 2) times its values.
     """
-    last, step = float(solution.at[-1]), solution.statistics.rule[TIME_STEP]
+    last, step = float(solution.at[-1]), solution.statistics.rule[0]
     values = np.array([function.at(time) for time in np.arange(0.5 * last, last, step).tolist()])
     values = values - values.mean()
     square = float(values @ values)

@@ -14,7 +14,7 @@ from beamfem.assembly.equations import INERTIA, linearise, residual
 from beamfem.assembly.motion_workspace import motion_workspace
 from beamfem.assembly.system import System
 from beamfem.assembly.viscosity import viscous_tangent
-from beamfem.kernels.motion_record import ALPHA_M, GAMMA, ITERATIONS, OF_EQUAL_STEPS, TIME_STEP, MotionStatistics
+from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.progress import progress
 from beamfem.solve.motion.compiled_steps import CompiledSteps
@@ -34,20 +34,15 @@ _NEGLIGIBLE = 0.1  # of the inertia forces at the start: those that depend on th
 class Record:
     """Stored states (rows, 3, n) of every n-th whole step, and of the last one in the row after them.
 
-    statistics: see `kernels.motion_record`; pairs (m, 2): see `full_turns.rotation_pairs`; rotations (rows, m) [rad]:
+    pairs (m, 2): see `full_turns.rotation_pairs`; rotations (rows, m) [rad]:
     of the stored states.
     """
 
     states: np.ndarray
     every: int
-    statistics: np.ndarray
+    statistics: MotionStatistics
     pairs: np.ndarray
     rotations: np.ndarray
-
-
-def new_statistics() -> np.ndarray:
-    """Return the statistics of a motion that has not begun."""
-    return np.array(MotionStatistics())
 
 
 @dataclass
@@ -88,8 +83,7 @@ def march(
     prescribed (m + 1, 3, nh): see `prescribed_motion`, at the ends of all steps; last: updated after each step. Return
     where and why it failed, or None.
     """
-    statistics, begun_anew = record.statistics, new_statistics()
-    done, row, failed = 0, 0, None
+    statistics, done, row, failed = record.statistics, 0, 0, None
     damped = any(block.damping.any() for block in system.blocks) or bool(system.connectors.items)
     # see initial_acceleration; laws with history know rates by differences only
     relaxed = is_scheme(integrator) and (bool(system.history.laws) or (damped and not _keeps_rates(integrator)))
@@ -105,7 +99,7 @@ def march(
                 if is_scheme(integrator):
                     _keep_momentum(integrator.rule(parts[number - 1].step), state)
                 _begin_anew(system, part, state, _kept(record, done, part))
-                statistics[OF_EQUAL_STEPS] = begun_anew[OF_EQUAL_STEPS]
+                statistics.begin_anew()
             if relaxed:
                 state[2] = state[3] = initial_acceleration(system, state, part.loads_from, part.step)
             if is_scheme(integrator):
@@ -148,12 +142,15 @@ def _kept(record: Record, done: int, part: Stretch) -> np.ndarray | None:
 
 @contextmanager
 def _steps(
-    system: System, integrator: Scheme | Integrator, part: Stretch, statistics: np.ndarray
+    system: System, integrator: Scheme | Integrator, part: Stretch, statistics: MotionStatistics
 ) -> Iterator[CompiledSteps | OwnSteps]:
     """Provide the object that takes the steps of a stretch."""
     if not is_scheme(integrator):
-        counted = statistics[ITERATIONS : ITERATIONS + 1]
-        yield OwnSteps(system, cast("Integrator", integrator), part.loads_from, counted)
+        solved = np.zeros(1, dtype=np.int64)
+        try:
+            yield OwnSteps(system, cast("Integrator", integrator), part.loads_from, solved)
+        finally:
+            statistics.iterations += int(solved[0])
         return
     with motion_workspace(system) as space:
         yield CompiledSteps(system, space, integrator.rule(part.step), statistics)
@@ -172,7 +169,8 @@ def _keep_momentum(rule: np.ndarray, state: np.ndarray) -> None:
     arithmetic one in methods of second order. With this correction the same holds across stretches, and momentum is
     conserved.
     """
-    state[1] += rule[TIME_STEP] * (1.0 - rule[ALPHA_M] - rule[GAMMA]) * (state[3] - state[2])
+    step, alpha_m, _, gamma, _ = rule
+    state[1] += step * (1.0 - alpha_m - gamma) * (state[3] - state[2])
 
 
 def _begin_anew(system: System, part: Stretch, state: np.ndarray, kept: np.ndarray | None) -> None:

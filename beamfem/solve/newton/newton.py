@@ -12,7 +12,6 @@ from beamfem.assembly.equations import STATICS, linearise, linearise_after, pred
 from beamfem.assembly.system import Proven, System
 from beamfem.cached_properties import cached_property
 from beamfem.kernels import newton_loop
-from beamfem.kernels import newton_record as r
 from beamfem.linalg.tangent import SMALLEST_PIVOT, Factorised, Stresses
 from beamfem.precision.roundoff import ENOUGH, digits_of, load_size, loses_digits, remainder
 from beamfem.solve.newton.iteration import (
@@ -82,24 +81,22 @@ class BandProblem:
         loads, space = system.loads_at(load_factor), self.space
         self.load = load_size(system, loads)
         space.begin(loads, load_factor)
-        space.p[:], space.step[:], space.found[:] = start, 0.0, 0.0
-        space.found[r.CORRECTION] = space.found[r.CORRECTION_BEFORE] = np.inf
-        space.prescribed_step[:], space.prescribed_force[:] = step.step, step.force
-        limits = space.limits
-        limits[r.TOLERANCE], limits[r.STAGNANT], limits[r.DIVERGENT] = newton.tolerance, STAGNANT, LARGEST
-        limits[r.PIVOT_RATIO], limits[r.MOST_ITERATIONS] = SMALLEST_PIVOT, newton.iterations
-        limits[r.PREDICTED_RESULTANTS] = newton.independent_stresses
-        limits[r.REQUIRED_NEGATIVE_PIVOTS] = -1 if keep is None else keep
+        own = space.solver
+        space.p[:], own.step[:], own.prescribed_step[:], own.prescribed_force[:] = start, 0.0, step.step, step.force
+        own.tolerance, own.stagnant, own.divergent = newton.tolerance, STAGNANT, LARGEST
+        own.pivot_ratio, own.most_iterations = SMALLEST_PIVOT, newton.iterations
+        own.predicted_resultants = newton.independent_stresses
+        own.required_negative_pivots = -1 if keep is None else keep
+        own.iterations, own.correction, own.correction_before = 0, np.inf, np.inf
 
     def correct(self) -> Correction:
         """Take corrections until one is small or stagnant. Raises LinAlgError if pivoting is needed."""
-        space, found = self.space, self.space.found
+        space, found = self.space, self.space.solver
         factorised = space.call(newton_loop.iterate.compiled)
         if not factorised:
             raise LinAlgError("a pivot is tiny")
-        space.prescribed_step[:] = space.prescribed_force[:] = 0.0
-        negative = int(found[r.NEGATIVE_PIVOTS])
-        return Correction(int(found[r.ITERATIONS]), found[r.CORRECTION], found[r.CORRECTION_BEFORE], negative)
+        found.prescribed_step[:] = found.prescribed_force[:] = 0.0
+        return Correction(found.iterations, found.correction, found.correction_before, found.negative_pivots)
 
     @property
     def state(self) -> np.ndarray:
@@ -108,19 +105,19 @@ class BandProblem:
 
     def balance(self) -> Balance:
         """Return the balance of forces in the state reached."""
-        space, found = self.space, self.space.found
-        force = max(found[r.FORCE], self.load)
-        return Balance(space.p, space.residual, found[r.UNBALANCED], force, found[r.JACOBIAN] <= 0.0)
+        space, found = self.space, self.space.solver
+        force = max(found.force, self.load)
+        return Balance(space.p, space.residual, found.unbalanced, force, found.jacobian <= 0.0)
 
     def after_first(self) -> tuple[float, int]:
         """Return the size of the first correction and the negative pivots of the second tangent."""
-        found = self.space.found
-        return float(found[r.FIRST_CORRECTION]), int(found[r.NEGATIVE_PIVOTS_AFTER_FIRST])
+        found = self.space.solver
+        return found.first_correction, found.negative_pivots_after_first
 
     def count_after_linear(self) -> int:
         """Return the negative pivots at the start with the stresses of a linear step; overwrites the state reached."""
         space = self.space
-        space.step[:] = space.linear - self.start
+        space.solver.step[:] = space.solver.linear - self.start
         space.p[:] = self.start
         return int(space.call(newton_loop.count_after_step.compiled))
 

@@ -51,12 +51,6 @@ def _negative(unknown, signs):
     return negative
 
 
-@inlined
-def stagnates(number, size, before, below):
-    """Return whether the corrections of Newton's method have stopped decreasing, below a size: that is round-off."""
-    return number > 2 and size > 0.25 * before and size < below
-
-
 @routine()
 def iterate(system: System, solver: NewtonSolver) -> int:
     """Iterate from p (n,), changed in place; return 1 if every tangent could be factorised without pivots, else 0.
@@ -135,7 +129,11 @@ def iterate(system: System, solver: NewtonSolver) -> int:
             solver.first_correction = solver.correction
         if not solver.correction <= solver.divergent:
             return 1
-        stagnant = stagnates(solver.iterations, solver.correction, solver.correction_before, solver.stagnant)
+        stagnant = (
+            solver.iterations > 2
+            and solver.correction > 0.25 * solver.correction_before
+            and solver.correction < solver.stagnant
+        )
         done = solver.correction <= solver.tolerance or stagnant or not solver.iterations < solver.most_iterations
     solver.force = _largest_product(n, residual, scale)
     for i in range(unknown):

@@ -12,7 +12,6 @@ from scipy.linalg import LinAlgError
 from beamfem.assembly.equations import STATICS, residual
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
-from beamfem.kernels.newton_loop import stagnates
 from beamfem.precision.roundoff import MOST_DIGITS, load_size, row_floors
 from beamfem.validation import convert, count, flag, positive, shown
 
@@ -132,7 +131,7 @@ class Correction(NamedTuple):
 
     @property
     def stagnates(self) -> bool:
-        return bool(stagnates(self.number, self.size, self.before, STAGNANT))
+        return self.number > 2 and self.size > 0.25 * self.before and self.size < STAGNANT
 
     def is_small(self, newton: Newton) -> bool:
         return self.size <= newton.tolerance or self.stagnates

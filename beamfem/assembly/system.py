@@ -266,6 +266,11 @@ class System:
         """Whether all loads are proportional to the load factor of statics."""
         return self.static and all(load.scale and load.amplitude is None for load in self.model.loads)
 
+    @property
+    def steady(self) -> bool:
+        """Whether no function of time or of the load factor acts."""
+        return self.proportional and not self.moved
+
     @shared_table
     def springs(self) -> Springs:
         """Springs of single coordinates to the ground."""

@@ -1,7 +1,7 @@
 """Newton's iterations for an equilibrium at fixed loads, of models whose tangent is a band, in one compiled call."""
 
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.newton_record import NewtonSolver
+from beamfem.kernels.newton_record import STALLED, NewtonSolver
 from beamfem.kernels.pointers import at
 from beamfem.kernels.record import System
 from beamfem.kernels.simd import WIDTH, as_rows, larger, largest, zeros
@@ -131,7 +131,7 @@ def iterate(system: System, solver: NewtonSolver) -> int:
             return 1
         stagnant = (
             solver.iterations > 2
-            and solver.correction > 0.25 * solver.correction_before
+            and solver.correction > STALLED * solver.correction_before
             and solver.correction < solver.stagnant
         )
         done = solver.correction <= solver.tolerance or stagnant or not solver.iterations < solver.most_iterations

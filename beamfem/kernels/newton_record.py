@@ -5,6 +5,8 @@ from typing import Annotated
 from beamfem.kernels.record import Solver
 from beamfem.kernels.records import Reals, Record, calls
 
+STALLED = 0.25  # of the correction before: a larger one no longer decreases, and if it is small it is round-off
+
 
 class NewtonRoutines(Record):
     """The compiled functions that the iteration calls."""

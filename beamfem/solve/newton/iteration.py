@@ -12,6 +12,7 @@ from scipy.linalg import LinAlgError
 from beamfem.assembly.equations import STATICS, residual
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
+from beamfem.kernels.newton_record import STALLED
 from beamfem.precision.roundoff import MOST_DIGITS, load_size, row_floors
 from beamfem.validation import convert, count, flag, positive, shown
 
@@ -131,7 +132,7 @@ class Correction(NamedTuple):
 
     @property
     def stagnates(self) -> bool:
-        return self.number > 2 and self.size > 0.25 * self.before and self.size < STAGNANT
+        return self.number > 2 and self.size > STALLED * self.before and self.size < STAGNANT
 
     def is_small(self, newton: Newton) -> bool:
         return self.size <= newton.tolerance or self.stagnates

@@ -87,7 +87,7 @@ class FunctionOfTime:
 
 def functions_of_time(system: System) -> list[FunctionOfTime]:
     """Return every function of time that acts on the model of a system, each once."""
-    if system.proportional and not system.moved:
+    if system.steady:
         return []
     model = system.model
     by_id: dict[int, FunctionOfTime] = {}

@@ -180,10 +180,10 @@ def solve_through(
             "let them scale",
             record.solution(),
         )
-    functions = functions_of_time(system)
+    functions = [] if system.steady else functions_of_time(system)
     with kept(record.solution):
         try:
-            jumps = jumps_between(functions, 0.0, end) if end > 0.0 else []
+            jumps = jumps_between(functions, 0.0, end) if functions and end > 0.0 else []
             if functions:
                 kinks = kinks_and_turning_points(functions, 0.0, end)
                 stops = [*stops, *(at for at in kinks if all(abs(at - jump.after) > NEAR for jump in jumps))]

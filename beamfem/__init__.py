@@ -28,7 +28,7 @@ Contents; see help(bf.Beam), for example, for details.
                       ContinuumMechanics SplitContinuum ElasticLine Structural
     Supports          Clamp Pin Roller Spring Foundation Prescribed
     Joints            Rigid Hinge
-    Masses, springs   PointMass RigidBody SpringDamper TorsionSpring Bushing
+    Masses, springs   PointMass RigidBody SpringDamper TorsionSpring Bushing Cable
                       Link Slider Gear Drag
     Loads             PointForce PointMoment DistributedLoad Pressure Gravity Actuation Temperature
     Time functions    Interpolated Piecewise

@@ -72,6 +72,7 @@ from .model.time_functions import Piecewise as Piecewise
 from .parts.actuation import Actuation as Actuation
 from .parts.at_points import PartAtPoints as PartAtPoints
 from .parts.bushing import Bushing as Bushing
+from .parts.cable import Cable as Cable
 from .parts.clamp import Clamp as Clamp
 from .parts.distributed_load import DistributedLoad as DistributedLoad
 from .parts.drag import Drag as Drag

@@ -98,10 +98,11 @@ class Disc:
 
 @dataclass(frozen=True, eq=False)
 class Coil:
-    """A straight spring from a point to another one, or to a place (2,) [m] on the ground."""
+    """A spring, or straight line, from a point to another one, or to a place (2,) [m] on the ground."""
 
     a: Point
     b: Point | tuple[float, float]
+    straight: bool = False
 
 
 @dataclass(frozen=True, eq=False)

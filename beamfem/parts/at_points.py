@@ -11,7 +11,7 @@ from beamfem.model.load_shapes import ConnectorShape
 from beamfem.physics.compiled_connections import in_python
 from beamfem.physics.connections import Connection, Functions
 
-_ANALYTIC = Functions(np.sqrt, np.cos, np.sin)  # of complex numbers as well
+_ANALYTIC = Functions(np.sqrt, np.cos, np.sin, lambda x: x if np.real(x) > 0.0 else 0.0 * x)  # of complex numbers too
 
 
 class PartAtPoints:

@@ -15,6 +15,7 @@ from beamfem.parts.hinge import Hinge as Hinge
 from beamfem.parts.link import Link as Link
 from beamfem.parts.slider import Slider as Slider
 from beamfem.parts.gear import Gear as Gear
+from beamfem.parts.cable import Cable as Cable
 from beamfem.parts.bushing import Bushing as Bushing
 from beamfem.parts.drag import Drag as Drag
 from beamfem.parts.spring_damper import SpringDamper as SpringDamper

@@ -56,7 +56,7 @@ def passes_of(connection: Connection) -> Passes:
     except Exception as error:
         raise InputError(
             f"force and tangent of {connection.name} cannot be derived from its energies: {error}. Write them with "
-            "+, -, *, /, whole powers and f.sqrt, and f.cos and f.sin of rotations"
+            "+, -, *, /, whole powers, f.sqrt and f.positive, and f.cos and f.sin of rotations"
         ) from error
     file = f"<{connection.name} of {id(connection)}>"
     linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)

@@ -39,13 +39,17 @@ class Printer(PythonCodePrinter):
     _print_cos = _print_sin = _print_exp = _print_Function
 
 
+def _positive(x: Any) -> Any:
+    return sympy.Piecewise((x, x > 0), (0, True))
+
+
 def connection_source(connection: Connection) -> str:
     """Return the source of two functions of a part at points: its force, and ck df/dq + cv df/dv + ca df/da."""
     size, count, k = connection.coordinates, connection.points * connection.coordinates, connection.multipliers
     q, v, a = (sympy.symbols([f"{letter}{i}" for i in range(count)], real=True) for letter in "qva")
     own, data = sympy.symbols(f"own:{k}", real=True), sympy.symbols(connection.data, real=True)
     gravity, zero = sympy.symbols("gx gy", real=True), sympy.Integer(0)
-    functions = Functions(sympy.sqrt, sympy.cos, sympy.sin)
+    functions = Functions(sympy.sqrt, sympy.cos, sympy.sin, _positive)
     at, rates = ([tuple(x[size * i : size * (i + 1)]) for i in range(connection.points)] for x in (q, v))
     kinetic = connection.kinetic(at, rates, data, functions) if connection.kinetic else zero
     potential = connection.potential(at, data, gravity, functions) if connection.potential else zero

@@ -15,11 +15,12 @@ Function = Callable[..., Number]
 
 
 class Functions(NamedTuple):
-    """Square root, cosine and sine, for numbers or symbols."""
+    """Square root, cosine, sine, and max(x, 0), for numbers or symbols."""
 
     sqrt: Function
     cos: Function
     sin: Function
+    positive: Function
 
 
 class Connection(NamedTuple):
@@ -37,7 +38,7 @@ class Connection(NamedTuple):
         Names of the numbers that a part has, see `PartAtPoints.data`.
     kinetic : callable, optional
         Kinetic energy T(q, v, data, f) [J]; q and v are lists with the coordinates of each point and their rates, and f
-        has sqrt, cos and sin.
+        has sqrt, cos, sin and positive, which is max(x, 0).
     potential : callable, optional
         Potential V(q, data, gravity, f) [J].
     dissipation : callable, optional
@@ -142,6 +143,16 @@ def _link_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Numbe
     return ((x * x + y * y - data[0] * data[0]) / (2 * data[0]),)
 
 
+def _cable_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
+    """Return k max(l - l0, 0)^2 / 2."""
+    elongation = f.positive(_length(q, f) - data[1])
+    return data[0] * elongation * elongation / 2
+
+
+def _grounded_cable_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
+    return _cable_potential([q[0], data[2:4]], data, gravity, f)
+
+
 def _in_frame(q: list[Vector], f: Functions) -> Vector:
     """Return r_b - r_a along and across axes that turn with a."""
     c, s = f.cos(q[0][2]), f.sin(q[0][2])
@@ -196,8 +207,11 @@ TORSION_SPRING = Connection(
 )
 LINK = Connection("link", 2, 2, ("length",), None, None, None, _link_conditions, 1)
 DRAG = Connection("drag", 1, 2, ("coefficient",), None, None, _drag_dissipation)
+CABLE = Connection("cable", 2, 2, ("stiffness", "length"), None, _cable_potential)
+GROUNDED_CABLE = Connection("grounded_cable", 1, 2, ("stiffness", "length", "x", "y"), None, _grounded_cable_potential)
 _BUSHING = ("kx", "ky", "kt", "cx", "cy", "ct", "x", "y")
 BUSHING = Connection("bushing", 2, 3, _BUSHING, None, _bushing_potential, _bushing_dissipation)
 SLIDER = Connection("slider", 2, 3, ("nx", "ny", "offset"), None, None, None, _slider_conditions, 2)
 GEAR = Connection("gear", 2, 3, ("ratio",), None, None, None, _gear_conditions, 1)
-CONNECTIONS = (MASS, BODY, SPRING, GROUNDED_SPRING, TORSION_SPRING, BUSHING, LINK, SLIDER, GEAR, DRAG)
+_SPRINGS = SPRING, GROUNDED_SPRING, TORSION_SPRING, CABLE, GROUNDED_CABLE, BUSHING
+CONNECTIONS = MASS, BODY, *_SPRINGS, LINK, SLIDER, GEAR, DRAG

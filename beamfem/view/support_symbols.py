@@ -136,7 +136,9 @@ def _draw_connectors(axes: Any, solution: "Solution", row: int) -> list[Any]:
                     end = only.position(shape.b)[0] if isinstance(shape.b, Point) else np.asarray(shape.b)
                     if not isinstance(shape.b, Point):
                         _stamp(stamps, symbols.GROUND, end, end - only.position(shape.a)[0])
-                    artists += axes.plot(*symbols.coil(only.position(shape.a)[0], end).T, linewidth=1.0, **line)
+                    start = only.position(shape.a)[0]
+                    outline = np.array([start, end]) if shape.straight else symbols.coil(start, end)
+                    artists += axes.plot(*outline.T, linewidth=1.0, **line)
                 case Bar():
                     x, y = np.array([only.position(point)[0] for point in (shape.a, shape.b)]).T
                     artists += axes.plot(x, y, linewidth=2.5, marker="o", markersize=5.0, **line)

@@ -51,6 +51,8 @@ def parts(one, two):
         "preloaded": (bf.SpringDamper(one.end, two.at(0.5), 150.0, 3.0, 0.3), None),
         "grounded": (bf.SpringDamper(one.end, (1.0, 0.3), 150.0, 3.0), None),
         "torsion": (bf.TorsionSpring(one.end, two.end, 5.0, 0.2), None),
+        "cable": (bf.Cable(one.end, two.end, 200.0, 5.0), None),
+        "guy": (bf.Cable(one.end, (1.0, 0.3), 200.0, 5.0), None),
         "bushing": (bf.Bushing(one.end, two.end, (90.0, 40.0, 3.0), (1.0, 2.0, 0.1)), None),
         "slider": (bf.Slider(one.end, two.end, (1.0, 2.0)), None),
         "gear": (bf.Gear(one.end, two.end, -1.5), None),
@@ -371,6 +373,54 @@ def test_two_geared_flywheels_swing_as_one():
     model = bf.Model([one, two], supports, connectors=[bf.Gear(one.start, two.start, 3.0)], masses=wheels)
     frequency = bf.solve_modes(model, 1).frequencies[0]
     assert frequency == pytest.approx(np.sqrt(40.0 / (0.2 + 9.0 * 0.05)) / (2 * np.pi), rel=1e-6)
+
+
+@pytest.mark.parametrize(("force", "taut"), [(-40.0, True), (40.0, False)])
+def test_a_cable_pulls_and_does_not_push(force, taut):
+    """A stay above the tip of a cantilever: down it carries k (l - l0), up it is as if it were not there."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(3), SQUARE, STEEL)
+    stay = bf.Cable(beam.end, (1.0, 0.5), 2e3)
+    load = [bf.PointForce(beam.end, (0.0, force))]
+    stayed = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], load, connectors=[stay]))
+    alone = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], load))
+    pull = stayed.connector_force(stay)[-1, 0, :2]
+    if not taut:
+        assert not pull.any()
+        np.testing.assert_allclose(stayed.displacement(beam.end), alone.displacement(beam.end), rtol=1e-9, atol=1e-12)
+        return
+    along = np.array([1.0, 0.5]) - stayed.position(beam.end)[-1]
+    length = np.hypot(*along)
+    np.testing.assert_allclose(pull, 2e3 * (length - 0.5) * along / length, rtol=1e-9)
+    assert 0.0 > stayed.displacement(beam.end)[-1, 1] > 0.5 * alone.displacement(beam.end)[-1, 1]
+
+
+def test_guys_with_pretension_hold_a_mast_until_one_is_slack():
+    """Two guys share a small horizontal force by their stiffness; the pretension only presses on the mast."""
+    mast = bf.Beam(bf.Line((0, 0), (0, 1)), 4, bf.CRBF(3), SQUARE, STEEL)
+    guys = [bf.Cable(mast.end, (x, 0.0), 5e4, 50.0) for x in (-1.0, 1.0)]
+    model = bf.Model([mast], [bf.Clamp(mast.start)], [bf.PointForce(mast.end, (20.0, 0.0))], connectors=guys)
+    solution = bf.solve_static(model)
+    tension = [np.hypot(*solution.connector_force(guy)[-1, 0, :2]) for guy in guys]
+    bending = 3 * 2.1e11 * 1e-8 / 12
+    share = 20.0 * 5e4 / (5e4 + bending)  # two guys at 45 degrees have the stiffness k along x
+    assert tension[0] - tension[1] == pytest.approx(share * np.sqrt(2.0), rel=2e-2)
+    assert tension[0] > 50.0 > tension[1] > 0.0
+    assert solution.reaction(mast.start)[-1, 1] == pytest.approx(sum(tension) / np.sqrt(2.0), rel=1e-2)
+
+
+def test_a_mass_bounces_on_a_cable_without_losing_energy():
+    """It is thrown up, falls, stretches the cable and is thrown up again: slack and taut by turns."""
+    rod = bf.Beam(bf.Line((0, 0), (1, 0)), 1, bf.CRBF(1), SQUARE, bf.Material(1e7, 0.3, 1.0))
+    cable = bf.Cable(rod.end, (1.0, 1.0), 400.0)
+    supports = [bf.Pin(rod.start)]
+    masses, gravity = [bf.PointMass(rod.end, 0.5)], [bf.Gravity((0.0, -9.81))]
+    model = bf.Model([rod], supports, gravity, connectors=[cable], masses=masses)
+    motion = bf.simulate(model, 0.6, 5e-4)
+    tension = np.linalg.norm(motion.connector_force(cable)[:, 0, :2], axis=1)
+    assert (tension == 0.0).any()
+    assert tension.max() > 8.0
+    energy = motion.energy()
+    assert np.ptp(energy.total) < 1e-2 * energy.kinetic.max()
 
 
 @pytest.mark.parametrize("part", ["link", "slider", "gear"])

@@ -319,6 +319,131 @@ def torsion_spring_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out)
 
 
 @routine("rrrrrrrr")
+def cable_force(q, v, a, own, turned, data, gravity, out):
+    """Fill the force of `CABLE`."""
+    q0 = q[0]
+    q1 = q[1]
+    q2 = q[2]
+    q3 = q[3]
+    stiffness = data[0]
+    length = data[1]
+    x0 = q0 - q2
+    x1 = q1 - q3
+    x2 = math.sqrt((x0 * x0) + (x1 * x1))
+    x3 = length - x2
+    x4 = 2.0 * x3 / x2
+    x5 = x0 * x4
+    x6 = x3 < 0.0
+    x7 = (0.5) * stiffness
+    x8 = x1 * x4
+    out[0] = x7 * ((-x5) if x6 else (0.0))
+    out[1] = x7 * ((-x8) if x6 else (0.0))
+    out[2] = x7 * ((x5) if x6 else (0.0))
+    out[3] = x7 * ((x8) if x6 else (0.0))
+
+
+@routine("rrrrrrrdddr")
+def cable_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
+    """Fill ck df/dq + cv df/dv + ca df/da of `CABLE`, row by row."""
+    q0 = q[0]
+    q1 = q[1]
+    q2 = q[2]
+    q3 = q[3]
+    stiffness = data[0]
+    length = data[1]
+    x0 = q0 - q2
+    x1 = x0 * x0
+    x2 = q1 - q3
+    x3 = x2 * x2
+    x4 = x1 + x3
+    x5 = 1.0 / x4
+    x6 = x1 * x5
+    x7 = math.sqrt(x4)
+    x8 = 1.0 / x7
+    x9 = length - x7
+    x10 = -x8 * x9
+    x11 = 1.0 / (x4 * math.sqrt(x4))
+    x12 = x11 * x9
+    x13 = x9 < 0.0
+    x14 = (0.5) * ck * stiffness
+    x15 = x14 * ((2.0 * x1 * x12 + 2.0 * x10 + 2.0 * x6) if x13 else (0.0))
+    x16 = 2.0 * x0 * x2
+    x17 = x14 * ((x16 * (x12 + x5)) if x13 else (0.0))
+    x18 = length - math.sqrt((x0 * x0) + (x2 * x2))
+    x19 = -x18 * x8
+    x20 = x11 * x18
+    x21 = x14 * ((-2.0 * x1 * x20 - 2.0 * x19 - 2.0 * x6) if x13 else (0.0))
+    x22 = x14 * ((-x16 * (x20 + x5)) if x13 else (0.0))
+    x23 = x3 * x5
+    x24 = x14 * ((2.0 * x10 + 2.0 * x12 * x3 + 2.0 * x23) if x13 else (0.0))
+    x25 = x14 * ((-2.0 * x19 - 2.0 * x20 * x3 - 2.0 * x23) if x13 else (0.0))
+    out[0] = x15
+    out[1] = x17
+    out[2] = x21
+    out[3] = x22
+    out[4] = x17
+    out[5] = x24
+    out[6] = x22
+    out[7] = x25
+    out[8] = x21
+    out[9] = x22
+    out[10] = x15
+    out[11] = x17
+    out[12] = x22
+    out[13] = x25
+    out[14] = x17
+    out[15] = x24
+
+
+@routine("rrrrrrrr")
+def grounded_cable_force(q, v, a, own, turned, data, gravity, out):
+    """Fill the force of `GROUNDED_CABLE`."""
+    q0 = q[0]
+    q1 = q[1]
+    stiffness = data[0]
+    length = data[1]
+    x = data[2]
+    y = data[3]
+    x0 = q0 - x
+    x1 = q1 - y
+    x2 = math.sqrt((x0 * x0) + (x1 * x1))
+    x3 = length - x2
+    x4 = 2.0 * x3 / x2
+    x5 = x3 < 0.0
+    x6 = (0.5) * stiffness
+    out[0] = x6 * ((-x0 * x4) if x5 else (0.0))
+    out[1] = x6 * ((-x1 * x4) if x5 else (0.0))
+
+
+@routine("rrrrrrrdddr")
+def grounded_cable_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
+    """Fill ck df/dq + cv df/dv + ca df/da of `GROUNDED_CABLE`, row by row."""
+    q0 = q[0]
+    q1 = q[1]
+    stiffness = data[0]
+    length = data[1]
+    x = data[2]
+    y = data[3]
+    x0 = q0 - x
+    x1 = x0 * x0
+    x2 = q1 - y
+    x3 = x2 * x2
+    x4 = x1 + x3
+    x5 = 1.0 / x4
+    x6 = math.sqrt(x4)
+    x7 = length - x6
+    x8 = -x7 / x6
+    x9 = x7 / (x4 * math.sqrt(x4))
+    x10 = x7 < 0.0
+    x11 = (0.5) * ck * stiffness
+    x12 = x11 * ((2.0 * x0 * x2 * (x5 + x9)) if x10 else (0.0))
+    out[0] = x11 * ((2.0 * x1 * x5 + 2.0 * x1 * x9 + 2.0 * x8) if x10 else (0.0))
+    out[1] = x12
+    out[2] = x12
+    out[3] = x11 * ((2.0 * x3 * x5 + 2.0 * x3 * x9 + 2.0 * x8) if x10 else (0.0))
+
+
+@routine("rrrrrrrr")
 def bushing_force(q, v, a, own, turned, data, gravity, out):
     """Fill the force of `BUSHING`."""
     q0 = q[0]

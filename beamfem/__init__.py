@@ -39,11 +39,12 @@ Contents; see help(bf.Beam), for example, for details.
     Along beams       SectionForces BeamStress Fields FieldOnBasis field_on_basis
     Studies           sweep converge
     User-defined      PointLoad LineLoad BodyLoad ImposedStrain PointSupport LineSupport Joint
-                      Contribution At PartAtPoints Connection Remembering RememberingLaw
+                      Contribution At PartAtPoints PartAlongBeam Connection Remembering RememberingLaw
                       Scheme Integrator EquationsOfMotion
     Errors            BeamfemError InputError UnknownPointError FreeMotionError ConvergenceError
                       LimitPointError FileError MissingPackageError
-    Warnings          UnstableWarning RoundOffWarning LockingWarning LargeStrainWarning EnergyWarning TimeStepWarning
+    Warnings          UnstableWarning RoundOffWarning LockingWarning LargeStrainWarning CuspWarning EnergyWarning
+                      TimeStepWarning
                       UnitsWarning SeveralTurnsWarning UnknownStressWarning
                       NotJoinedWarning NotReadWarning NotStoredWarning ChangedCodeWarning
 """

@@ -29,6 +29,7 @@ from .element.presets import ShearRigid as ShearRigid
 from .errors import BeamfemError as BeamfemError
 from .errors import ChangedCodeWarning as ChangedCodeWarning
 from .errors import ConvergenceError as ConvergenceError
+from .errors import CuspWarning as CuspWarning
 from .errors import EnergyWarning as EnergyWarning
 from .errors import FileError as FileError
 from .errors import FreeMotionError as FreeMotionError
@@ -70,6 +71,7 @@ from .model.supports import PointSupport as PointSupport
 from .model.time_functions import Interpolated as Interpolated
 from .model.time_functions import Piecewise as Piecewise
 from .parts.actuation import Actuation as Actuation
+from .parts.at_points import PartAlongBeam as PartAlongBeam
 from .parts.at_points import PartAtPoints as PartAtPoints
 from .parts.bushing import Bushing as Bushing
 from .parts.cable import Cable as Cable

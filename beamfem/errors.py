@@ -112,6 +112,10 @@ class LargeStrainWarning(UserWarning):
     """Strains beyond the range of a linear law, or a utilisation of the strength above 1."""
 
 
+class CuspWarning(UserWarning):
+    """The axis of a beam turns back on itself: an equilibrium, but not the one that the loads lead to."""
+
+
 class EnergyWarning(UserWarning):
     """The energy of a motion rises or falls by more than work and damping explain."""
 

@@ -468,8 +468,13 @@ def _with_nodes(given: Contribution, model: Model) -> list[tuple[Contribution, l
     if not isinstance(given, PartAlongBeam):
         places = [(model.mesh_of(point), point.fraction) for point in given.points]
         return [(given, [(mesh, mesh.node_at(fraction)) for mesh, fraction in places])]
-    mesh = model.mesh_of(given.beam.start)
-    xi, weights = rule_of(given.beam.element.field)
+    mesh, element = model.mesh_of(given.beam.start), given.beam.element
+    if given.rotations and any("theta" not in mesh.coordinates_of(node) for node in range(mesh.nodes)):
+        raise InputError(
+            f"{type(given).__name__} acts on rotations along a beam, and the nodes of {element.name} have none; take "
+            "an element with rotations, such as CRBF"
+        )
+    xi, weights = rule_of(element.field)
     lengths, arcs = np.zeros(len(mesh.position)), np.zeros(len(mesh.position))
     np.add.at(lengths, mesh.node, mesh.lengths[:, None] * weights)
     elements = np.repeat(np.arange(mesh.elements), len(xi))

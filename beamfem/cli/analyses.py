@@ -86,7 +86,9 @@ def _static(
     model: Model, asked: Sequence[float], steps: int = 1, newton: Any = None, at: Any = None, **keys: Any
 ) -> Solution:
     if at is None:
-        return warned(solve_through(model, asked, steps, newton, **keys))
+        equal = [k / steps for k in range(1, count("steps", steps))]
+        further = [value for value in asked if all(abs(value - other) > SAME for other in equal)]
+        return warned(solve_through(model, sorted([*equal, *further]), steps, newton, resolved=True, **keys))
     further = [value for value in asked if all(abs(value - other) > SAME for other in at)]
     return solve_static(model, steps, newton, at=sorted([*at, *further]) if further else at, **keys)
 

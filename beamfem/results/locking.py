@@ -127,9 +127,20 @@ def locking(solution: "Solution") -> tuple[Finding, ...]:
 
 
 def frequency_locking(state: "State", shapes: np.ndarray) -> tuple[Finding, ...]:
-    """Return a warning if locking changes a frequency, from the Rayleigh quotient with locking-free strains.
+    """Return a warning if locking changes a frequency, see `_stiffness_locking`."""
+    return _stiffness_locking(state, shapes, 0.5, "a frequency")
 
-    state: the state about which the modes were found; shapes (m, n): over all coordinates.
+
+def critical_load_locking(state: "State", shapes: np.ndarray) -> tuple[Finding, ...]:
+    """Return a warning if locking changes a critical load factor, see `_stiffness_locking`."""
+    return _stiffness_locking(state, shapes, 1.0, "a critical load factor")
+
+
+def _stiffness_locking(state: "State", shapes: np.ndarray, power: float, what: str) -> tuple[Finding, ...]:
+    """Return a warning if locking changes a result, from the Rayleigh quotient with locking-free strains.
+
+    state: the state about which the shapes (m, n), over all coordinates, were found; power: of their stiffness, with
+    which the result grows.
     """
     if not _unlocked(state.model):
         return ()
@@ -144,9 +155,9 @@ def frequency_locking(state: "State", shapes: np.ndarray) -> tuple[Finding, ...]
     change, work = 0.0, zeros.copy()
     for shape in np.real(shapes[:, free]):
         excess, stiffness = shape * ((before - after) @ shape), float(shape @ (before @ shape))
-        if stiffness > 0.0 and (found := 0.5 * abs(float(excess.sum())) / stiffness) > change:
+        if stiffness > 0.0 and (found := power * abs(float(excess.sum())) / stiffness) > change:
             change, work[free] = found, excess
-    return _found(state.model, change, work, "a frequency")
+    return _found(state.model, change, work, what)
 
 
 def weights(system: System) -> np.ndarray:

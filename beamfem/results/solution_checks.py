@@ -9,8 +9,9 @@ import numpy as np
 
 from beamfem.assembly.system import System
 from beamfem.curves import Line
-from beamfem.errors import EnergyWarning, InputError, LargeStrainWarning, warn
-from beamfem.kernels.block import GREEN_LAGRANGE, STRUCTURAL
+from beamfem.element.element import Element
+from beamfem.errors import CuspWarning, EnergyWarning, InputError, LargeStrainWarning, warn
+from beamfem.kernels.block import ELASTIC_LINE, GREEN_LAGRANGE, STRUCTURAL
 from beamfem.kernels.neighbouring_nodes import LOCKED, STRAINED, exceeds
 from beamfem.kernels.pointers import address_of
 from beamfem.material import Material
@@ -72,6 +73,36 @@ def unjoined_warnings(solution: "Solution") -> tuple[str, ...]:
 
 
 _LARGE = 0.2  # strain beyond which no material is linear
+
+
+def may_turn_back(element: Element) -> bool:
+    """Return whether r_x is a coordinate and the curvature comes from r_xx: r_x may then jump at joints and corners."""
+    return element.forces.code == ELASTIC_LINE and "r_x" in element.field.vectors
+
+
+def turned_back(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
+    """Return r_x at both ends of each element times the chord (steps, ne, 2) for p (steps, n); negative at a cusp."""
+    e = nodal_vectors(mesh, p)
+    r, slope = (e[:, mesh.node[:, [0, -1]], mesh.vectors.index(name)] for name in ("r", "r_x"))
+    return np.asarray(np.einsum("sec,senc->sen", r[:, :, 1] - r[:, :, 0], slope))
+
+
+def cusps(solution: "Solution") -> tuple[Finding, ...]:
+    """Return a warning of the worst node whose r_x points away from the next node, where the axis has a cusp."""
+    for number, mesh in enumerate(solution.model.meshes):
+        if not may_turn_back(mesh.beam.element):
+            continue
+        rows = rows_looked_at(solution)
+        along = turned_back(mesh, solution.p[rows])
+        if along.min(initial=1.0) < 0.0:
+            row, element, end = np.unravel_index(np.argmin(along), along.shape)
+            place = _where(solution, number, float(mesh.vertices[element + end]), range(len(solution))[rows][row])
+            sentence = (
+                f"the axis turns back on itself {place}: this equilibrium has a cusp, and is not the one that the "
+                "loads lead to. Take more steps, or more elements"
+            )
+            return (Finding(sentence, CuspWarning),)
+    return ()
 
 
 def large_strains(solution: "Solution") -> tuple[Finding, ...]:
@@ -185,6 +216,7 @@ def findings(solution: "Solution") -> tuple[Finding, ...]:
     checks: tuple[_Check, ...] = (
         lambda solution: solution.computed(locking.locking),
         lambda solution: solution.computed(large_strains),
+        lambda solution: solution.computed(cusps),
         lambda solution: (Finding(sentence, EnergyWarning) for sentence in solution.computed(energy_warnings)),
         lambda solution: map(Finding, unjoined_warnings(solution)),
     )
@@ -193,6 +225,7 @@ def findings(solution: "Solution") -> tuple[Finding, ...]:
 
 def warned(solution: _Solution) -> _Solution:
     """Return a solution that has just been found, after Python warnings of what is wrong with it by 1 % and more."""
+    warn_of(solution.computed(cusps))
     found = _found(loading(solution)[0], solution.p[rows_looked_at(solution)])
     if found & LOCKED:
         warn_of(solution.computed(locking.locking))

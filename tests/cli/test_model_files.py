@@ -335,3 +335,9 @@ def test_the_same_results_as_python_saves(tmp_path):
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(3), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
     model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0, 100))])
     np.testing.assert_array_equal(bf.load(tmp_path / "a.h5").p, bf.solve_static(model).p)
+
+
+@pytest.mark.parametrize("steps", [4, 10])
+def test_steps_of_a_static_analysis_are_rows(steps, tmp_path):
+    run(f'{ARM}\n[analysis]\nkind = "static"\nsteps = {steps}\n', tmp_path, "--out", str(tmp_path / "a.h5"))
+    np.testing.assert_allclose(bf.load(tmp_path / "a.h5").load_factor, np.linspace(0, 1, steps + 1), atol=1e-12)

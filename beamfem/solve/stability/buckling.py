@@ -11,8 +11,9 @@ from beamfem.errors import ConvergenceError, InputError, RoundOffWarning, warn
 from beamfem.linalg.eigenpairs import digits_for
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
+from beamfem.results.locking import critical_load_locking
 from beamfem.results.solution import Solution, State
-from beamfem.results.solution_checks import advice
+from beamfem.results.solution_checks import advice, may_lock, warn_of
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.stability.linearised import linear_reach, linear_solution, linearised_loads
@@ -208,6 +209,8 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     -----
     RoundOffWarning
         If a load factor has less than four reliable digits.
+    LockingWarning
+        If locking changes a critical load factor by 1 % or more.
 
     Examples
     --------
@@ -243,6 +246,10 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         message = f"round-off leaves few digits of critical load factors, relative errors are up to {errors}"
         warn(message, RoundOffWarning)
     shapes = [point.mode / largest_translation(model, point.p, point.mode) for point in criticals]
+    if may_lock(system, p) and shapes:
+        warn_of(
+            critical_load_locking(State(p, np.zeros_like(p), np.zeros_like(p), load_factor, model), np.array(shapes))
+        )
     return Buckling(
         model,
         np.array([point.load_factor for point in criticals]),

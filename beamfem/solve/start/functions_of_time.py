@@ -276,13 +276,16 @@ def name_unresolved(functions: list[FunctionOfTime], ends: np.ndarray, side: flo
     return names
 
 
-def warn_between_rows(functions: list[FunctionOfTime], rows: np.ndarray, side: float) -> None:
-    """Warn of every function that varies more between two load factors of rows (m,) than at them."""
-    for function, first, _ in _unresolved(functions, rows, side):
-        warn(
-            f"the {function.name} varies more between load factors {rows[first]:.6g} and {rows[first + 1]:.6g} than at "
-            "them, where the solve takes it. Take more steps, or let it declare its kinks, as Piecewise does",
-        )
+def warn_between_rows(functions: list[FunctionOfTime], rows: np.ndarray, side: float) -> tuple[str, ...]:
+    """Warn of functions that vary more between load factors of rows (m,) than at them; return the sentences."""
+    sentences = tuple(
+        f"the {function.name} varies more between load factors {rows[first]:.6g} and {rows[first + 1]:.6g} than at "
+        "them, where the solve takes it. Take more steps, or let it declare its kinks, as Piecewise does"
+        for function, first, _ in _unresolved(functions, rows, side)
+    )
+    for sentence in sentences:
+        warn(sentence)
+    return sentences
 
 
 def _unresolved(

@@ -11,7 +11,7 @@ from beamfem.assembly.system import Proven, System
 from beamfem.errors import ConvergenceError, LimitPointError
 from beamfem.precision.roundoff import ENOUGH, digits_of, largest_force
 from beamfem.progress import progress
-from beamfem.results.solution_checks import advice
+from beamfem.results.solution_checks import advice, may_turn_back, turned_back
 from beamfem.solve.continuation.steps import leaves_arc
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
@@ -249,7 +249,16 @@ def _attempt(system: System, done: StaticRecord, target: float, newton: Newton) 
         same = again.ended.good and again.negative_pivots == done.negative_pivots
         if same and is_short(system, done, target, again.state):
             return again, True
-    return result, result.ended.good and not skips_limit_points(system, done, target, result, newton)
+    good = result.ended.good and not _turns_back(system, result.state)
+    return result, good and not skips_limit_points(system, done, target, result, newton)
+
+
+def _turns_back(system: System, p: np.ndarray) -> bool:
+    """Return whether the axis of a beam has a cusp in a state p (n,), to which only too long a step leads."""
+    if not any(map(may_turn_back, system.model.groups)):
+        return False
+    meshes = (mesh for mesh in system.model.meshes if may_turn_back(mesh.beam.element))
+    return any(turned_back(mesh, p[None]).min() < 0.0 for mesh in meshes)
 
 
 def _with_digits_of_path(system: System, done: StaticRecord, target: float, result: NewtonResult) -> NewtonResult:

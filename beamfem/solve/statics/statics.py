@@ -194,6 +194,9 @@ def solve_through(
             reach(system, record, 1.0 / steps, newton, snap, stops, end)
         except LinAlgError as error:
             raise ConvergenceError(f"beyond load factor {record.reached:.6g}: {error}", record.solution()) from error
+    solution = record.solution(complete=True)
     if resolved and functions:
-        warn_between_rows(functions, np.unique([at for at, *_ in record.rows]), _SIDE)
-    return record.solution(complete=True)
+        found = warn_between_rows(functions, np.unique([at for at, *_ in record.rows]), _SIDE)
+        statistics = replace(solution.statistics, warnings=(*solution.statistics.warnings, *found))
+        return replace(solution, statistics=statistics)
+    return solution

@@ -220,7 +220,7 @@ def _of_rows(
             "upper": along[..., -1],
             "tension": along.max(axis=-1),
             "compression": along.min(axis=-1),
-            "shear": np.abs(sheared).max(axis=-1),
+            "shear": _largest_of_parabola(sheared),
             # without a known width there is no shear stress inside: the faces, free of shear stress, still count
             "von_mises": np.fmax.reduce(equivalent, axis=-1),
             "utilisation": np.fmax.reduce(equivalent / strength, axis=-1),
@@ -228,6 +228,23 @@ def _of_rows(
         # missing layers of a section coincide with its upper face
         extremes = {name: _joined(name, extremes[name], stresses[name]) for name in stresses} if extremes else stresses
     return extremes
+
+
+_PARABOLIC = 1e-9  # of the largest stress: deviation from a parabola through three heights
+
+
+def _largest_of_parabola(stress: np.ndarray) -> np.ndarray:
+    """Return the largest magnitude (...,) over `HEIGHTS` (..., heights), also between them if it is a parabola."""
+    largest = np.abs(stress).max(axis=-1)
+    first, middle, last = stress[..., 0], stress[..., len(HEIGHTS) // 2], stress[..., -1]
+    bend, slope = 2.0 * (first + last - 2.0 * middle), 4.0 * middle - 3.0 * first - last
+    with np.errstate(divide="ignore", invalid="ignore"):
+        place = -slope / (2.0 * bend)
+        vertex = np.abs(first - slope**2 / (4.0 * bend))
+    parabola = first[..., None] + HEIGHTS * (slope[..., None] + HEIGHTS * bend[..., None])
+    fits = np.abs(stress - parabola).max(axis=-1) <= _PARABOLIC * largest
+    inside = (place > 0.0) & (place < 1.0) & fits
+    return np.where(inside, np.fmax(largest, vertex), largest)
 
 
 def _layers(

@@ -10,13 +10,13 @@ import numpy as np
 from beamfem.assembly.system import System
 from beamfem.curves import Line
 from beamfem.element.element import Element
-from beamfem.errors import CuspWarning, EnergyWarning, InputError, LargeStrainWarning, warn
+from beamfem.errors import CuspWarning, EnergyWarning, InputError, LargeStrainWarning, LockingWarning, warn
 from beamfem.kernels.block import ELASTIC_LINE, GREEN_LAGRANGE, STRUCTURAL
 from beamfem.kernels.neighbouring_nodes import LOCKED, STRAINED, exceeds
 from beamfem.kernels.pointers import address_of
 from beamfem.material import Material
 from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.mesh.reference import energy_points, energy_stiffness_at
+from beamfem.mesh.reference import energy_points, energy_stiffness_at, reference_axis
 from beamfem.mesh.section_stress import layers
 from beamfem.model.beam import beam_in_words
 from beamfem.model.missing_joints import in_words, unjoined_ends
@@ -103,6 +103,33 @@ def cusps(solution: "Solution") -> tuple[Finding, ...]:
             )
             return (Finding(sentence, CuspWarning),)
     return ()
+
+
+# of a section: shortening of interpolated ones above which `warnings` has a sentence, and there is a Python warning
+_SHORT, _MUCH_SHORTER = 0.001 / 3.0, 0.01 / 3.0  # bending stiffness goes with the third power
+
+
+def short_sections(solution: "Solution") -> tuple[Finding, ...]:
+    """Return a warning of the curved beam whose interpolated reference has the shortest sections between its nodes.
+
+    Continuum forces and their mass fill the interpolated body, which is lighter and softer then, without locking.
+    """
+    worst, where = 0.0, 0
+    for number, mesh in enumerate(solution.model.meshes):
+        if mesh.beam.element.forces.fills_body and not mesh.straight:
+            element, xi, weight = energy_points(mesh)
+            sizes = np.linalg.norm(reference_axis(mesh, element, xi).d, axis=-1)
+            short = 1.0 - float(weight @ sizes / weight.sum())
+            if short > worst:
+                worst, where = short, number
+    if worst <= _SHORT:
+        return ()
+    beam = beam_in_words(solution.model.beams, where)
+    sentence = (
+        f"sections of {beam} are {100.0 * worst:.2g} % too short between the nodes of its curved elements, which are "
+        "too light by as much and too soft by three times that. Use more elements, or structural forces"
+    )
+    return (Finding(sentence, LockingWarning if worst > _MUCH_SHORTER else None),)
 
 
 def large_strains(solution: "Solution") -> tuple[Finding, ...]:
@@ -217,6 +244,7 @@ def findings(solution: "Solution") -> tuple[Finding, ...]:
         lambda solution: solution.computed(locking.locking),
         lambda solution: solution.computed(large_strains),
         lambda solution: solution.computed(cusps),
+        lambda solution: solution.computed(short_sections),
         lambda solution: (Finding(sentence, EnergyWarning) for sentence in solution.computed(energy_warnings)),
         lambda solution: map(Finding, unjoined_warnings(solution)),
     )
@@ -225,7 +253,7 @@ def findings(solution: "Solution") -> tuple[Finding, ...]:
 
 def warned(solution: _Solution) -> _Solution:
     """Return a solution that has just been found, after Python warnings of what is wrong with it by 1 % and more."""
-    warn_of(solution.computed(cusps))
+    warn_of((*solution.computed(cusps), *solution.computed(short_sections)))
     found = _found(loading(solution)[0], solution.p[rows_looked_at(solution)])
     if found & LOCKED:
         warn_of(solution.computed(locking.locking))

@@ -1,4 +1,4 @@
-"""Elastic lines whose r_x may jump: long steps must not end in equilibria with a cusp at a joint or a corner."""
+"""What was wrong without a word: cusps, buckling loads of locking elements, light rings, lost rows and warnings."""
 
 from dataclasses import replace
 
@@ -65,3 +65,28 @@ def test_warnings_of_amplitudes_between_rows_are_kept():
     with pytest.warns(UserWarning, match="varies more between load factors"):
         solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [load]))
     assert any("varies more between load factors" in sentence for sentence in solution.warnings)
+
+
+@pytest.mark.parametrize(("elements", "error"), [(4, True), (8, True), (32, False)])
+def test_curved_bodies_with_short_sections_are_warned_of(elements, error):
+    """Directors between unit vectors that differ by an angle are shorter; half a ring of 4 elements weighs 5 % less."""
+    ring = bf.Beam(
+        bf.Arc((0, 0), 1, 0, np.pi), elements, bf.ANCF(bf.SplitContinuum(), integration="lobatto"), SQUARE, STEEL
+    )
+    model = bf.Model([ring], [bf.Clamp(ring.start)], [bf.Gravity((0, -9.81))])
+    if error:
+        with pytest.warns(bf.LockingWarning, match="too short between the nodes of its curved elements"):
+            solution = bf.solve_static(model)
+    else:
+        solution = bf.solve_static(model)
+    missing = 1.0 - solution.reaction(ring.start)[-1, 1] / (7800.0 * 1e-4 * 9.81 * np.pi)
+    assert (missing > 0.01) == error
+
+
+@pytest.mark.parametrize("first", [0.0003, 0.001, 0.0019])
+def test_the_peak_shear_stress_of_layers_is_that_of_the_whole(first):
+    """1.5 V / A, at the neutral axis inside a layer."""
+    layers = [bf.Layer(STEEL, first), bf.Layer(STEEL, 0.004 - first)]
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(3), bf.Layered(layers, width=0.01))
+    solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0, -1e-3))]))
+    assert solution.stresses(beam).peak("shear").value == pytest.approx(1.5 * 1e-3 / 4e-5, rel=1e-9)

@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 
 from beamfem.assembly.system import system_of
-from beamfem.errors import ConvergenceError, InputError, RoundOffWarning, warn
+from beamfem.errors import ConvergenceError, InputError, RoundOffWarning
 from beamfem.linalg.eigenpairs import digits_for
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
+from beamfem.results.finding import Finding
 from beamfem.results.locking import critical_load_locking
 from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import advice, may_lock, warn_of
@@ -61,6 +62,8 @@ class Buckling:
     status : Status
         STOPPED if there may be more: the path was lost, the beam would be turned inside out, or the search ended at its
         limits of movement, load or length.
+    warnings : tuple of str
+        Warnings to heed before using the load factors, in sentences.
 
     Examples
     --------
@@ -78,6 +81,7 @@ class Buckling:
     uncertainty: np.ndarray
     ended: str
     status: Status = Status.COMPLETED
+    warnings: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         points = list(zip(self.kinds, self.load_factors, strict=True))
@@ -240,16 +244,16 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
             + advice(model, path.points[-1].y[:-1]),
             path.solution(),
         )
-    uncertainty = np.array([point.uncertainty for point in criticals])
+    uncertainty, found = np.array([point.uncertainty for point in criticals]), list[Finding]()
     if np.any(uncertainty > _UNCERTAIN):
         errors = ", ".join(f"{value:.0e}" for value in uncertainty)
         message = f"round-off leaves few digits of critical load factors, relative errors are up to {errors}"
-        warn(message, RoundOffWarning)
+        found.append(Finding(message, RoundOffWarning))
     shapes = [point.mode / largest_translation(model, point.p, point.mode) for point in criticals]
     if may_lock(system, p) and shapes:
-        warn_of(
-            critical_load_locking(State(p, np.zeros_like(p), np.zeros_like(p), load_factor, model), np.array(shapes))
-        )
+        at_start = State(p, np.zeros_like(p), np.zeros_like(p), load_factor, model)
+        found += critical_load_locking(at_start, np.array(shapes))
+    warn_of(found)
     return Buckling(
         model,
         np.array([point.load_factor for point in criticals]),
@@ -260,6 +264,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         uncertainty,
         ended,
         status,
+        tuple(finding.sentence for finding in found),
     )
 
 

@@ -44,7 +44,7 @@ def numbers(line):
 
 
 def test_examples_are_short():
-    assert len(NAMES) == 12
+    assert len(NAMES) == 13
     assert all(len((FOLDER / f"{name}.py").read_text().splitlines()) < 40 for name in NAMES)
 
 
@@ -192,3 +192,22 @@ def test_the_fishing_rod_is_an_elastica_and_keeps_its_energy(printed):
     stored = 8.0 * sag[-1] - simpson @ np.array(sag)  # all of F u but what is under the curve u(F)
     assert numbers(lines[1])[0] == pytest.approx(stored, rel=1e-5)
     assert numbers(lines[2])[0] < 1e-3
+
+
+def test_the_mast_sways_as_a_beam_column_with_the_stiffness_of_its_guys(printed):
+    """The guys shorten the mast until its thrust is P; it then has the stiffness P / L / (tan(q) / q - 1) with
+    q^2 = P L^2 / EI, and shear in series. Each guy of length l adds k c^2 + T s^2 / l; 33 / 140 of the mast sways."""
+    lines, _ = printed("stayed_mast")
+    section, aluminium = bf.Tube(diameter=0.06, thickness=0.003), bf.Material(7e10, 0.33, 2700.0)
+    rigidity, mass = section.rigidity(aluminium), section.inertia(aluminium).mass
+    height, length, stiffness, c, s = 6.0, 7.5, 1.5e4, 0.6, 0.8
+    down = 2.0 * 400.0 * s / (rigidity.axial / height + 2.0 * (stiffness * s**2 + 400.0 / length * c**2))
+    tension = 400.0 - stiffness * s * down
+    thrust = 2.0 * tension * s
+    q = np.sqrt(thrust / rigidity.bending) * height
+    bent = 1.0 / (height * (np.tan(q) / q - 1.0) / thrust + height / rigidity.shear)
+    total = bent + 2.0 * (stiffness * c**2 + tension / length * s**2)
+    frequency = np.sqrt(total / (300.0 + 33.0 / 140.0 * mass * height)) / (2.0 * np.pi)
+    assert numbers(lines[0]) == pytest.approx([frequency], abs=2e-4)
+    share = 150.0 / total * stiffness * c
+    assert numbers(lines[1]) == pytest.approx([tension + share, tension - share], abs=0.2)

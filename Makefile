@@ -24,6 +24,8 @@ CHECKED := tests/kernels/test_compiler.py \
 	tests/equations/test_statics.py \
 	tests/solvers/test_dynamics.py \
 	tests/equations/test_section_laws.py \
+	tests/equations/test_bordered.py \
+	tests/physics/test_connections.py \
 	tests/solvers/test_motion_on_rollers.py
 
 verify: $(VENV)/.ready

@@ -1,15 +1,18 @@
 """What parts at points have in common: force and energy from the definition of their connection."""
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from beamfem.model.beam import Beam, Point
+from beamfem.errors import InputError
+from beamfem.model.beam import Beam, Point, require_point_of
 from beamfem.model.contribution import At
 from beamfem.model.load_shapes import ConnectorShape
 from beamfem.physics.compiled_connections import in_python
 from beamfem.physics.connections import Connection, Functions
+from beamfem.validation import convert, vector
 
 _ANALYTIC = Functions(np.sqrt, np.cos, np.sin, lambda x: x if np.real(x) > 0.0 else 0.0 * x)  # of complex numbers too
 
@@ -76,6 +79,56 @@ class PartAtPoints:
         kinetic = connection.kinetic(q, v, data, _ANALYTIC) if connection.kinetic else 0.0
         potential = connection.potential(q, data, at.gravity, _ANALYTIC) if connection.potential else 0.0
         return kinetic, potential
+
+
+class BetweenPlaces(PartAtPoints):
+    """A part between the points a and b of beams; with `may_end_on_ground`, b may be a place on the ground."""
+
+    __slots__ = ()
+    may_end_on_ground: ClassVar[bool] = False
+
+    if TYPE_CHECKING:
+
+        @property
+        def a(self) -> Point:
+            """Its first point."""
+            ...
+
+        @property
+        def b(self) -> Point | tuple[float, float]:
+            """Its second point, or the place on the ground [m]."""
+            ...
+
+    def __post_init__(self) -> None:
+        require_point_of(self, "a")
+        if isinstance(self.b, Point) or not self.may_end_on_ground:
+            require_point_of(self, "b")
+        else:
+            convert(self, vector, "b")
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """Its points on beams."""
+        return (self.a, self.b) if isinstance(self.b, Point) else (self.a,)
+
+    @property
+    def ground(self) -> tuple[float, ...]:
+        """The place on the ground (2,) [m] where it ends, or nothing (0,)."""
+        return () if isinstance(self.b, Point) else (float(self.b[0]), float(self.b[1]))
+
+    @property
+    def distance(self) -> float:
+        """Distance of a and b in the reference [m]."""
+        x, y = self.a.reference - (self.b.reference if isinstance(self.b, Point) else self.b)
+        return math.hypot(x, y)
+
+    def require_apart(self) -> None:
+        """Raise `InputError` unless a and b are apart in the reference."""
+        if self.distance == 0.0:
+            raise InputError(
+                f"{type(self).__name__} needs two places that are apart, but a and b are both at {self.a}; "
+                "a Hinge or a Rigid joins them"
+            )
 
 
 class PartAlongBeam:

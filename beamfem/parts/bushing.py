@@ -5,16 +5,16 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.model.beam import Point, require_point_of
+from beamfem.model.beam import Point
 from beamfem.model.load_shapes import Spiral
 from beamfem.model.part_units import UNIT
-from beamfem.parts.at_points import PartAtPoints
+from beamfem.parts.at_points import BetweenPlaces
 from beamfem.physics.connections import BUSHING, Connection
 from beamfem.validation import items, not_negative, shown
 
 
 @dataclass(frozen=True, slots=True)
-class Bushing(PartAtPoints):
+class Bushing(BetweenPlaces):
     """Springs and dampers between two sections, in axes that turn with the first, free of force in the reference.
 
     Potential (kx u^2 + ky v^2 + kt (tb - ta)^2) / 2, with the displacement (u, v) of b relative to a in axes that are x
@@ -47,19 +47,13 @@ class Bushing(PartAtPoints):
     damping: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0), metadata={UNIT: "N s/m, N s/m, N m s/rad"})
 
     def __post_init__(self) -> None:
-        require_point_of(self, "a")
-        require_point_of(self, "b")
+        BetweenPlaces.__post_init__(self)
         for name in ("stiffness", "damping"):
             what, given = f"{name} of Bushing", getattr(self, name)
             numbers = tuple(not_negative(what, value) for value in items(what, given))
             if len(numbers) != 3:
                 raise InputError(f"{what} must be three numbers, along x, y and against rotation, got {shown(given)}")
             object.__setattr__(self, name, numbers)
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """Both points."""
-        return self.a, self.b
 
     @property
     def connection(self) -> Connection:

@@ -1,21 +1,21 @@
 """A cable, which only pulls."""
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.model.beam import Point, require_point_of
+from beamfem.model.beam import Point
 from beamfem.model.load_shapes import Coil
 from beamfem.model.part_units import UNIT
-from beamfem.parts.at_points import PartAtPoints
-from beamfem.parts.distance import reference_distance
+from beamfem.parts.at_points import BetweenPlaces
 from beamfem.physics.connections import CABLE, GROUNDED_CABLE, Connection
-from beamfem.validation import convert, not_negative, positive, vector
+from beamfem.validation import convert, not_negative, positive
 
 
 @dataclass(frozen=True, slots=True)
-class Cable(PartAtPoints):
+class Cable(BetweenPlaces):
     """A straight, massless cable between two points: its tension is k max(l - l0, 0).
 
     Parameters
@@ -40,30 +40,23 @@ class Cable(PartAtPoints):
     >>> mast = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0, -1e4))], connectors=[stay])
     """
 
+    may_end_on_ground: ClassVar[bool] = True
+
     a: Point
     b: Point | tuple[float, float]
     stiffness: float = field(metadata={UNIT: "N/m"})
     pretension: float = field(default=0.0, metadata={UNIT: "N"})
 
     def __post_init__(self) -> None:
-        require_point_of(self, "a")
-        if not isinstance(self.b, Point):
-            convert(self, vector, "b")
+        BetweenPlaces.__post_init__(self)
         convert(self, positive, "stiffness")
         convert(self, not_negative, "pretension")
-        distance = reference_distance(self.a, self.b)
-        if distance == 0.0:
-            raise InputError(f"Cable needs two places that are apart, but a and b are both at {self.a}")
-        if self.pretension >= self.stiffness * distance:
-            most = self.stiffness * distance
+        self.require_apart()
+        most = self.stiffness * self.distance
+        if self.pretension >= most:
             raise InputError(
                 f"pretension of Cable must be below its stiffness times its length, {most:g}, got {self.pretension:g}"
             )
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """Its points on beams."""
-        return (self.a, self.b) if isinstance(self.b, Point) else (self.a,)
 
     @property
     def connection(self) -> Connection:
@@ -72,9 +65,9 @@ class Cable(PartAtPoints):
 
     def data(self, reference: np.ndarray) -> tuple[float, ...]:
         """Return stiffness and free length, and the place on the ground if it ends there."""
-        length = reference_distance(self.a, self.b) - self.pretension / self.stiffness
+        length = self.distance - self.pretension / self.stiffness
         own = self.stiffness, length
-        return own if isinstance(self.b, Point) else (*own, *map(float, self.b))
+        return (*own, *self.ground)
 
     def shapes(self) -> tuple[Coil, ...]:
         """Return the shape to draw."""

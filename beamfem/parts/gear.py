@@ -5,14 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.model.beam import Point, require_point_of
-from beamfem.parts.at_points import PartAtPoints
+from beamfem.model.beam import Point
+from beamfem.parts.at_points import BetweenPlaces
 from beamfem.physics.connections import GEAR, Connection
 from beamfem.validation import convert, finite
 
 
 @dataclass(frozen=True, slots=True)
-class Gear(PartAtPoints):
+class Gear(BetweenPlaces):
     """A gear between two sections: the rotation of b from the reference is `ratio` times that of a.
 
     Its condition is t_b - ratio t_a = 0, its multiplier the moment on b [N m].
@@ -42,16 +42,10 @@ class Gear(PartAtPoints):
     ratio: float
 
     def __post_init__(self) -> None:
-        require_point_of(self, "a")
-        require_point_of(self, "b")
+        BetweenPlaces.__post_init__(self)
         convert(self, finite, "ratio")
         if self.ratio == 0.0:
             raise InputError("the ratio of a Gear must not be zero")
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """Both points."""
-        return self.a, self.b
 
     @property
     def connection(self) -> Connection:

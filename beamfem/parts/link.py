@@ -4,16 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.errors import InputError
-from beamfem.model.beam import Point, require_point_of
+from beamfem.model.beam import Point
 from beamfem.model.load_shapes import Bar
-from beamfem.parts.at_points import PartAtPoints
-from beamfem.parts.distance import reference_distance
+from beamfem.parts.at_points import BetweenPlaces
 from beamfem.physics.connections import LINK, Connection
 
 
 @dataclass(frozen=True, slots=True)
-class Link(PartAtPoints):
+class Link(BetweenPlaces):
     """A rigid, massless link hinged at two points, which keep the distance l0 that they have in the reference.
 
     Its condition is (l^2 - l0^2) / (2 l0) = 0, its multiplier the tension [N].
@@ -40,15 +38,8 @@ class Link(PartAtPoints):
     b: Point
 
     def __post_init__(self) -> None:
-        require_point_of(self, "a")
-        require_point_of(self, "b")
-        if reference_distance(self.a, self.b) == 0.0:
-            raise InputError(f"Link needs two points that are apart, but both are at {self.a}; a Hinge joins them")
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """Both points."""
-        return self.a, self.b
+        BetweenPlaces.__post_init__(self)
+        self.require_apart()
 
     @property
     def connection(self) -> Connection:
@@ -57,7 +48,7 @@ class Link(PartAtPoints):
 
     def data(self, reference: np.ndarray) -> tuple[float, ...]:
         """Return the length."""
-        return (reference_distance(self.a, self.b),)
+        return (self.distance,)
 
     def shapes(self) -> tuple[Bar, ...]:
         """Return the shape to draw."""

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.model.beam import Point, require_point_of
-from beamfem.parts.at_points import PartAtPoints
+from beamfem.model.beam import Point
+from beamfem.parts.at_points import BetweenPlaces
 from beamfem.physics.connections import SLIDER, Connection
 from beamfem.validation import convert, squared, vector
 
 
 @dataclass(frozen=True, slots=True)
-class Slider(PartAtPoints):
+class Slider(BetweenPlaces):
     """A prismatic joint: b slides along an axis that turns with a, and keeps its angle to a.
 
     Its conditions are (r_b - r_a) . n = constant, with the normal n of the axis, and t_b - t_a = 0; its multipliers are
@@ -42,16 +42,10 @@ class Slider(PartAtPoints):
     axis: tuple[float, float]
 
     def __post_init__(self) -> None:
-        require_point_of(self, "a")
-        require_point_of(self, "b")
+        BetweenPlaces.__post_init__(self)
         convert(self, squared(vector), "axis")
         if not any(self.axis):
             raise InputError("the axis of a Slider must not be zero")
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """Both points."""
-        return self.a, self.b
 
     @property
     def connection(self) -> Connection:

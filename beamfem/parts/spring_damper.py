@@ -1,21 +1,20 @@
 """A spring with a damper, straight between two points or from a point to the ground."""
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
-from beamfem.errors import InputError
-from beamfem.model.beam import Point, require_point_of
+from beamfem.model.beam import Point
 from beamfem.model.load_shapes import Coil
 from beamfem.model.part_units import UNIT
-from beamfem.parts.at_points import PartAtPoints
-from beamfem.parts.distance import reference_distance
+from beamfem.parts.at_points import BetweenPlaces
 from beamfem.physics.connections import GROUNDED_SPRING, SPRING, Connection
-from beamfem.validation import convert, not_negative, optional, vector
+from beamfem.validation import convert, not_negative, optional
 
 
 @dataclass(frozen=True, slots=True)
-class SpringDamper(PartAtPoints):
+class SpringDamper(BetweenPlaces):
     """A straight spring and damper between two points: its force is k (l - l0) + c dl/dt along the line between them.
 
     Parameters
@@ -42,6 +41,8 @@ class SpringDamper(PartAtPoints):
     >>> stayed = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0, -1e4))], connectors=[stay])
     """
 
+    may_end_on_ground: ClassVar[bool] = True
+
     a: Point
     b: Point | tuple[float, float]
     stiffness: float = field(metadata={UNIT: "N/m"})
@@ -49,18 +50,10 @@ class SpringDamper(PartAtPoints):
     length: float | None = field(default=None, metadata={UNIT: "m"})
 
     def __post_init__(self) -> None:
-        require_point_of(self, "a")
-        if not isinstance(self.b, Point):
-            convert(self, vector, "b")
+        BetweenPlaces.__post_init__(self)
         convert(self, not_negative, "stiffness", "damping")
         convert(self, optional(not_negative), "length")
-        if reference_distance(self.a, self.b) == 0.0:
-            raise InputError(f"SpringDamper needs two places that are apart, but a and b are both at {self.a}")
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """Its points on beams."""
-        return (self.a, self.b) if isinstance(self.b, Point) else (self.a,)
+        self.require_apart()
 
     @property
     def connection(self) -> Connection:
@@ -69,9 +62,9 @@ class SpringDamper(PartAtPoints):
 
     def data(self, reference: np.ndarray) -> tuple[float, ...]:
         """Return stiffness, damping and free length, and the place on the ground if it ends there."""
-        length = reference_distance(self.a, self.b) if self.length is None else self.length
+        length = self.distance if self.length is None else self.length
         own = self.stiffness, self.damping, length
-        return own if isinstance(self.b, Point) else (*own, *map(float, self.b))
+        return (*own, *self.ground)
 
     def shapes(self) -> tuple[Coil, ...]:
         """Return the shape to draw."""

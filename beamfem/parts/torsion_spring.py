@@ -4,16 +4,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from beamfem.model.beam import Point, require_point_of
+from beamfem.model.beam import Point
 from beamfem.model.load_shapes import Spiral
 from beamfem.model.part_units import UNIT
-from beamfem.parts.at_points import PartAtPoints
+from beamfem.parts.at_points import BetweenPlaces
 from beamfem.physics.connections import TORSION_SPRING, Connection
 from beamfem.validation import convert, not_negative
 
 
 @dataclass(frozen=True, slots=True)
-class TorsionSpring(PartAtPoints):
+class TorsionSpring(BetweenPlaces):
     """A torsion spring and damper between two sections, such as those of a `Hinge`.
 
     Its moment is k (tb - ta) + c d(tb - ta)/dt, with the rotations ta and tb from the reference.
@@ -46,14 +46,8 @@ class TorsionSpring(PartAtPoints):
     damping: float = field(default=0.0, metadata={UNIT: "N m s/rad"})
 
     def __post_init__(self) -> None:
-        require_point_of(self, "a")
-        require_point_of(self, "b")
+        BetweenPlaces.__post_init__(self)
         convert(self, not_negative, "stiffness", "damping")
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """Both points."""
-        return self.a, self.b
 
     @property
     def connection(self) -> Connection:

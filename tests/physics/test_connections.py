@@ -231,11 +231,11 @@ def test_a_preloaded_stay_pulls_before_anything_acts():
         (lambda p, q: bf.PointMass(p, 1.0, -1.0), "inertia of PointMass must not be negative"),
         (lambda p, q: bf.RigidBody(p, 1.0, 1.0, (1.0,)), "offset of RigidBody must be two finite numbers"),
         (lambda p, q: bf.SpringDamper(p, q, -1.0), "stiffness of SpringDamper must not be negative"),
-        (lambda p, q: bf.SpringDamper(p, p, 1.0), "needs two places that are apart"),
+        (lambda p, q: bf.SpringDamper(p, p, 1.0), "needs two places that are apart, .*; a Hinge or a Rigid joins them"),
         (lambda p, q: bf.SpringDamper(p, q, 1.0, length=-1.0), "length of SpringDamper must not be negative"),
         (lambda p, q: bf.SpringDamper(p, "wall", 1.0), "b of SpringDamper must be two"),
         (lambda p, q: bf.TorsionSpring(p, q, float("nan")), "stiffness of TorsionSpring must be finite"),
-        (lambda p, q: bf.Link(p, p), "a Hinge joins them"),
+        (lambda p, q: bf.Link(p, p), "a Hinge or a Rigid joins them"),
         (lambda p, q: bf.Link(p, (1.0, 0.0)), "b of Link"),
     ],
 )

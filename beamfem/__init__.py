@@ -23,6 +23,7 @@ Contents; see help(bf.Beam), for example, for details.
     Axes              Line Arc Polyline Chain BSpline Parametric Curve
                       elliptic_arc spline_through_hermite without_removable_knots
     Sections          Rectangle Circle Tube Section Layered Layer SectionLaw
+                      Fibres ElasticPlastic RambergOsgood Maxwell
     Elements          ANCF CRBF ANCFCRBF BilinearANCF BilinearCRBF ShearRigid Element
     Element parts     Cubic Lagrange Gradients Rotation ShearFree
                       ContinuumMechanics SplitContinuum ElasticLine Structural
@@ -40,6 +41,7 @@ Contents; see help(bf.Beam), for example, for details.
     Studies           sweep converge
     User-defined      PointLoad LineLoad BodyLoad ImposedStrain PointSupport LineSupport Joint
                       Contribution At PartAtPoints PartAlongBeam Connection Remembering RememberingLaw
+                      FibreLaw FibreLawWithHistory
                       Scheme Integrator EquationsOfMotion
     Errors            BeamfemError InputError UnknownPointError FreeMotionError ConvergenceError
                       LimitPointError FileError MissingPackageError

@@ -110,8 +110,14 @@ from .results.solution import Solution as Solution
 from .results.solution import State as State
 from .results.status import Status as Status
 from .section import Circle as Circle
+from .section import ElasticPlastic as ElasticPlastic
+from .section import FibreLaw as FibreLaw
+from .section import FibreLawWithHistory as FibreLawWithHistory
+from .section import Fibres as Fibres
 from .section import Layer as Layer
 from .section import Layered as Layered
+from .section import Maxwell as Maxwell
+from .section import RambergOsgood as RambergOsgood
 from .section import Rectangle as Rectangle
 from .section import RememberingLaw as RememberingLaw
 from .section import Section as Section

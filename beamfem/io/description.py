@@ -22,7 +22,18 @@ from beamfem.model.model import Model
 from beamfem.model.sampled_functions import Sampled, SampledAlong, SampledSection
 from beamfem.model.time_functions import Interpolated
 from beamfem.parts.parts_registry import listed_parts
-from beamfem.section import Layer, Layered, Section, ShapedSection, StiffnessSection
+from beamfem.section import (
+    ElasticFibreSection,
+    ElasticPlastic,
+    Layer,
+    Layered,
+    Maxwell,
+    RambergOsgood,
+    RememberingFibreSection,
+    Section,
+    ShapedSection,
+    StiffnessSection,
+)
 from beamfem.section.outline import RectangleOutline, TubeOutline
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import function_value
@@ -42,6 +53,11 @@ _CLASSES = {
         Layer,
         Layered,
         StiffnessSection,
+        ElasticFibreSection,
+        RememberingFibreSection,
+        ElasticPlastic,
+        RambergOsgood,
+        Maxwell,
         SampledSection,
         Material,
         Element,

@@ -9,6 +9,7 @@ from beamfem.model.beam import Beam, Point, names
 from beamfem.model.model import Model
 from beamfem.model.part_units import field_units
 from beamfem.section import Layered, Section, ShapedSection, StiffnessSection
+from beamfem.section.fibres import FibreSection
 from beamfem.section.outline import RectangleOutline, TubeOutline
 
 Unit = Callable[[str], str]  # as `Model.unit`
@@ -47,6 +48,9 @@ def section_in_words(section: Any, unit: Unit) -> str:
         case Layered():
             layers = ", ".join(f"{layer.thickness:g}" for layer in section.layers)
             return f"layers of {layers} {metre} from below, {section.width:g} {metre} wide"
+        case FibreSection():
+            law = type(section.law).__name__
+            return f"{section_in_words(section.shape, unit)} of {len(section.fibres[0])} fibres, {law}"
         case StiffnessSection():
             forces = f"E A = {section.axial:g} {unit('N')}, k_s G A = {section.shear:g} {unit('N')}"
             return f"{forces}, E I = {section.bending:g} {unit('N m^2')}"

@@ -1,5 +1,7 @@
 """Cross-sections, given by area moments, shape, layers or stiffness."""
 
+from beamfem.section.fibre_laws import ElasticPlastic, FibreLaw, FibreLawWithHistory, Maxwell, RambergOsgood
+from beamfem.section.fibres import ElasticFibreSection, Fibres, RememberingFibreSection
 from beamfem.section.law import RememberingLaw, SectionLaw
 from beamfem.section.layered import Layer, Layered
 from beamfem.section.moments import Section
@@ -8,9 +10,17 @@ from beamfem.section.section_stiffness import StiffnessSection
 
 __all__ = [
     "Circle",
+    "ElasticFibreSection",
+    "ElasticPlastic",
+    "FibreLaw",
+    "FibreLawWithHistory",
+    "Fibres",
     "Layer",
     "Layered",
+    "Maxwell",
+    "RambergOsgood",
     "Rectangle",
+    "RememberingFibreSection",
     "RememberingLaw",
     "Section",
     "SectionLaw",

@@ -30,7 +30,7 @@ Contents; see help(bf.Beam), for example, for details.
     Supports          Clamp Pin Roller Spring Foundation Prescribed
     Joints            Rigid Hinge
     Masses, springs   PointMass RigidBody SpringDamper TorsionSpring Bushing Cable
-                      Link Slider Gear Drag
+                      Link Slider Gear Drag Stop
     Loads             PointForce PointMoment DistributedLoad Pressure Gravity Actuation Temperature
     Time functions    Interpolated Piecewise
     From files        read_mesh LineMesh Frame read_dxf load

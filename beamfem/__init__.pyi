@@ -95,6 +95,7 @@ from .parts.roller import Roller as Roller
 from .parts.slider import Slider as Slider
 from .parts.spring import Spring as Spring
 from .parts.spring_damper import SpringDamper as SpringDamper
+from .parts.stop import Stop as Stop
 from .parts.temperature import Temperature as Temperature
 from .parts.torsion_spring import TorsionSpring as TorsionSpring
 from .physics.connections import Connection as Connection

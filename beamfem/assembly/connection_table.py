@@ -29,6 +29,8 @@ def records_of(parts: Iterable[tuple[Connector, np.ndarray]]) -> list[Parts]:
             numbers=np.array([item.all for item, _ in alike], dtype=np.int64),
             data_size=len(first.data),
             data=np.array([item.data for item, _ in alike], dtype=float),
+            history_size=len(first.memory),
+            history=np.array([item.memory for item, _ in alike], dtype=np.int64),
             places=np.array([places for _, places in alike], dtype=np.int64),
             force=force,
             tangent=tangent,

@@ -68,6 +68,12 @@ class Connector:
         """The definition by which compiled code evaluates it, None for a user-defined contribution."""
         return self.item.connection if isinstance(self.item, PartAtPoints) else None
 
+    @property
+    def dissipated(self) -> np.ndarray:
+        """Number (1,) of the history variable with the energy [J] that it has dissipated, if it has one (0,)."""
+        names = self.compiled.memory if self.compiled is not None else ()
+        return self.memory[[name == "dissipated" for name in names]] if names else self.memory[:0]
+
     @cached_property
     def data(self) -> np.ndarray:
         """Numbers of a compiled part, see `physics.connections`."""
@@ -148,8 +154,9 @@ class Connector:
 
     def remember(self, at: At) -> np.ndarray:
         """Return the history variables (h,) after an accepted step. Raises InputError for an invalid result."""
-        if not isinstance(self.item, Remembering):
+        if not len(self.memory):
             return np.empty(0)
+        assert isinstance(self.item, Remembering)
         history = np.asarray(called(f"remember of {self.name}", self.item.remember, at))
         if history.shape != self.memory.shape or history.dtype.kind not in "fi" or not np.isfinite(history).all():
             raise InputError(f"remember of {self.name} must return {len(self.memory)} finite numbers, got {history}")
@@ -217,12 +224,22 @@ class Connector:
         q, v, a = (values[self.dofs] for values in motion)
         angles = q[2::3] if self.per_point == 3 else np.zeros(len(self.reference))
         turned = np.column_stack([np.cos(angles), np.sin(angles)])
-        return q, v, a, motion[0][self.own], turned, self.data, gravity
+        past = motion[0][self.memory]
+        return (
+            q,
+            v,
+            a,
+            motion[0][self.own],
+            turned,
+            np.concatenate([self.data, past]) if len(past) else self.data,
+            gravity,
+        )
 
 
 WIDTH = 1e-7  # of the central differences to which complex steps are compared, relative to the natural units
 _NEAR = 1e-3  # distance from the reference at which a force is checked, and rates per second, in the same units
 AGREE = 1e-4
+_PLACES, _FAR = 32, 4.0  # places at which a dissipation function is evaluated, and their distance in natural units
 ROUND_OFF = 16.0 * float(np.finfo(float).eps)  # of the terms of a force
 _GRAVITY = np.array([0.3, -0.7])  # arbitrary, of the size of the beams per s^2
 TIMES = (0.5, 0.0, 0.813)
@@ -241,7 +258,7 @@ def resists_rates(item: Connector) -> bool:
     """
     alone, gravity = item.alone, gravity_of(item)
     if not _by_rates(item, somewhere_near(alone)).any():
-        return False
+        return _dissipates_elsewhere(item)
     if damps_at_rest(item) or not item.item.conservative:
         return True
     (p, v, a), number = somewhere_near(alone), len(alone.dofs)
@@ -255,6 +272,19 @@ def resists_rates(item: Connector) -> bool:
     round_off = ROUND_OFF * float((np.abs(forces[0]) + np.abs(forces[1])) @ np.abs(v[alone.dofs]))
     round_off += ROUND_OFF * abs(after) / (WIDTH / _NEAR)
     return abs(power - gained) > AGREE * max(abs(power), abs(gained)) + round_off
+
+
+def _dissipates_elsewhere(item: Connector) -> bool:
+    """Return whether a part dissipates somewhere, such as at a wall that it may hit."""
+    if item.compiled is None or item.compiled.dissipation is None:
+        return False
+    rng, (start, _, _) = np.random.default_rng(7), somewhere_near(item.alone)
+    for _ in range(_PLACES):
+        p, v = start.copy(), rng.standard_normal(len(start))
+        p[item.alone.dofs] += rng.uniform(-_FAR, _FAR, len(item.dofs)) * item.units
+        if _by_rates(item, (p, v, 0.0 * v)).any():
+            return True
+    return False
 
 
 def follows_time(item: Connector) -> tuple[bool, bool]:

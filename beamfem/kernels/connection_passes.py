@@ -6,6 +6,7 @@ from beamfem.kernels.pointers import at, room
 from beamfem.kernels.record import System
 
 MOST = 8  # coordinates or multipliers of a part
+MOST_DATA = 24  # numbers and history variables of a part with history
 _ENTRIES = MOST * MOST
 
 
@@ -26,12 +27,20 @@ def add_parts(system: System) -> None:
     """Add the forces of all parts at points to the residual and, if needed, their tangents to the matrix."""
     p, residual, matrix = system.p, system.residual, system.matrix
     gravity = system.body  # of the first beam: gravity acts on all mass
+    recalled = room(MOST_DATA)
     q, v, a, own, turned, out = room(MOST), room(MOST), room(MOST), room(MOST), room(MOST), room(_ENTRIES)
     for kind in range(system.part_kinds):
         parts = system.parts[kind]
         size, unknowns = parts.coordinates, parts.unknowns
         for part in range(parts.count):
             numbers, data = at(parts.numbers, part * unknowns), at(parts.data, part * parts.data_size)
+            if parts.history_size > 0:
+                for i in range(parts.data_size):
+                    recalled[i] = data[i]
+                _gather(
+                    parts.history_size, at(parts.history, part * parts.history_size), p, at(recalled, parts.data_size)
+                )
+                data = recalled
             _gather(size, numbers, p, q)
             _gather(parts.multipliers, at(numbers, size), p, own)
             _clear(size, v)

@@ -170,6 +170,8 @@ class Parts(Record):
     numbers: Annotated[Wholes, "count", "unknowns"]
     data_size: int
     data: Annotated[Reals, "count", "data_size"]
+    history_size: int
+    history: Annotated[Wholes, "count", "history_size"]  # coordinates that are its history variables
     places: Annotated[Wholes, "count", "unknowns", "unknowns"]  # of the tangent's entries in the matrix, -1 for none
     force = calls("generated.connection_forces:mass_force")
     tangent = calls("generated.connection_forces:mass_tangent")

@@ -120,10 +120,18 @@ class Spiral:
     point: Point
 
 
+@dataclass(frozen=True, eq=False)
+class Wall:
+    """A wall through a place (2,) [m], with its normal (2,)."""
+
+    place: tuple[float, float]
+    normal: tuple[float, float]
+
+
 LoadShape = Force | Moment | ForcesAlong | Acceleration | Strains
 SupportShape = Constraint | Springs | SpringsAlong
 JointShape = Ring
-ConnectorShape = Disc | Coil | Bar | Spiral
+ConnectorShape = Disc | Coil | Bar | Spiral | Wall
 
 
 def drawn(part: Any, shapes: Iterable[_Shape], known: Any) -> tuple[_Shape, ...]:

@@ -57,9 +57,25 @@ class PartAtPoints:
         """Number of its multipliers."""
         return self.connection.multipliers
 
+    @property
+    def memory(self) -> tuple[float, ...]:
+        """Initial history variables, zero."""
+        return (0.0,) * len(self.connection.memory)
+
+    def remember(self, at: At) -> tuple[float, ...]:
+        """Return the history variables after an accepted step."""
+        connection = self.connection
+        if connection.remember is None:
+            return ()
+        q, v = (list(map(tuple, x[:, : connection.coordinates])) for x in (at.q, at.v))
+        return connection.remember(q, v, self._data(at), _ANALYTIC)
+
     def shapes(self) -> tuple[ConnectorShape, ...]:
         """Return the shapes to draw; without any, a dashed line connects its points."""
         return ()
+
+    def _data(self, at: At) -> tuple[float, ...]:
+        return (*self.data(at.reference), *at.memory)
 
     def force(self, at: At) -> np.ndarray:
         """Return the resisting forces fx, fy, moment at each point, then the conditions (3 m + k,)."""
@@ -67,14 +83,14 @@ class PartAtPoints:
         q, v, a = (np.asarray(x)[:, :size].ravel() for x in (at.q, at.v, at.a))
         turned = np.array([(np.cos(angle), np.sin(angle)) for angle in at.q[:, 2]]).ravel()
         result = np.zeros(size * count + self.unknowns, dtype=np.result_type(q, v, a, at.own, float))
-        in_python(self.connection)(q, v, a, at.own, turned, self.data(at.reference), at.gravity, result)
+        in_python(self.connection)(q, v, a, at.own, turned, self._data(at), at.gravity, result)
         forces = np.zeros((count, 3), dtype=result.dtype)
         forces[:, :size] = result[: size * count].reshape(count, size)
         return np.concatenate([forces.ravel(), result[size * count :]])
 
     def energy(self, at: At) -> tuple[float, float]:
         """Return the kinetic and the potential energy [J]."""
-        connection, data = self.connection, self.data(at.reference)
+        connection, data = self.connection, self._data(at)
         q, v = (list(map(tuple, x[:, : connection.coordinates])) for x in (at.q, at.v))
         kinetic = connection.kinetic(q, v, data, _ANALYTIC) if connection.kinetic else 0.0
         potential = connection.potential(q, data, at.gravity, _ANALYTIC) if connection.potential else 0.0

@@ -19,6 +19,7 @@ from beamfem.parts.cable import Cable as Cable
 from beamfem.parts.bushing import Bushing as Bushing
 from beamfem.parts.drag import Drag as Drag
 from beamfem.parts.spring_damper import SpringDamper as SpringDamper
+from beamfem.parts.stop import Stop as Stop
 from beamfem.parts.torsion_spring import TorsionSpring as TorsionSpring
 from beamfem.parts.point_mass import PointMass as PointMass
 from beamfem.parts.rigid_body import RigidBody as RigidBody

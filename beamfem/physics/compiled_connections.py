@@ -12,7 +12,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
 from beamfem.kernels.compiling import Routine
-from beamfem.kernels.connection_passes import MOST
+from beamfem.kernels.connection_passes import MOST, MOST_DATA
 from beamfem.kernels.generated import connection_forces
 from beamfem.kernels.pointers import address_of
 from beamfem.physics.connections import CONNECTIONS, Connection
@@ -47,6 +47,10 @@ def passes_of(connection: Connection) -> Passes:
         raise InputError(f"the name of a Connection must be one word of letters, digits and _, got {connection.name!r}")
     if max(connection.points * connection.coordinates, connection.multipliers) > MOST:
         raise InputError(f"{connection.name} has more than {MOST} coordinates or conditions; split it into parts")
+    if len(connection.data) + len(connection.memory) > MOST_DATA and connection.memory:
+        raise InputError(
+            f"{connection.name} has more than {MOST_DATA} numbers and history variables; split it into parts"
+        )
     if connection.compiled is not None:
         return Passes(Foreign(connection.compiled[0], 0), Foreign(connection.compiled[1], 3))
     with needed_for("a part defined by its energies"):

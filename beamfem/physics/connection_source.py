@@ -47,18 +47,19 @@ def connection_source(connection: Connection) -> str:
     """Return the source of two functions of a part at points: its force, and ck df/dq + cv df/dv + ca df/da."""
     size, count, k = connection.coordinates, connection.points * connection.coordinates, connection.multipliers
     q, v, a = (sympy.symbols([f"{letter}{i}" for i in range(count)], real=True) for letter in "qva")
-    own, data = sympy.symbols(f"own:{k}", real=True), sympy.symbols(connection.data, real=True)
+    own, data = sympy.symbols(f"own:{k}", real=True), sympy.symbols([*connection.data, *connection.memory], real=True)
     gravity, zero = sympy.symbols("gx gy", real=True), sympy.Integer(0)
     functions = Functions(sympy.sqrt, sympy.cos, sympy.sin, _positive)
     at, rates = ([tuple(x[size * i : size * (i + 1)]) for i in range(connection.points)] for x in (q, v))
     kinetic = connection.kinetic(at, rates, data, functions) if connection.kinetic else zero
     potential = connection.potential(at, data, gravity, functions) if connection.potential else zero
     lost = connection.dissipation(at, rates, data, functions) if connection.dissipation else zero
+    given = connection.force(at, rates, data, functions) if connection.force else [zero] * count
     conditions = list(connection.conditions(at, data, functions)) if connection.conditions else []
     momentum = sympy.Matrix([kinetic.diff(x) for x in v])
     force = momentum.jacobian(v) * sympy.Matrix(a) + momentum.jacobian(q) * sympy.Matrix(v)
-    for i, (x, rate) in enumerate(zip(q, v, strict=True)):
-        force[i] += (potential - kinetic).diff(x) + lost.diff(rate)
+    for i, (x, rate, direct) in enumerate(zip(q, v, given, strict=True)):
+        force[i] += (potential - kinetic).diff(x) + lost.diff(rate) + direct
         force[i] += sum((symbol * g.diff(x) for symbol, g in zip(own, conditions, strict=True)), zero)
     whole = sympy.Matrix([sympy.expand_trig(value) for value in [*force, *conditions]])
     weights = sympy.symbols("ck cv ca", real=True)

@@ -3,7 +3,7 @@
 A connection has m points with coordinates q: x, y and, if it depends on rotations, the angle from the reference. Its
 forces, with the sign of internal forces, are those of Lagrange's equations, d/dt dT/dv - dT/dq + dV/dq + dR/dv +
 (dg/dq)' l, with its kinetic energy T(q, v), potential V(q), dissipation function R(q, v), and conditions g(q) = 0 with
-their multipliers l; `generate` derives them with sympy.
+their multipliers l, and forces given directly; `generate` derives them with sympy.
 """
 
 from collections.abc import Callable
@@ -47,6 +47,12 @@ class Connection(NamedTuple):
         Conditions g(q, data, f), a tuple of k numbers that are zero.
     multipliers : int, default 0
         Number k of conditions.
+    memory : tuple of str, default ()
+        Names of its history variables, zero at the start; they follow the numbers in the data of all functions.
+    force : callable, optional
+        Resisting forces f(q, v, data, f) that have no energy, as of friction: a tuple with one for each coordinate.
+    remember : callable, optional
+        History variables after an accepted step, h(q, v, data, f), a tuple in the order of `memory`.
     compiled : (int, int), optional
         Addresses of C functions in place of what sympy derives: force(q, v, a, own, turned, data, gravity, out) and
         tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out). All but the weights are pointers to doubles; own:
@@ -63,6 +69,9 @@ class Connection(NamedTuple):
     dissipation: Function | None = None
     conditions: Callable[..., tuple[Number, ...]] | None = None
     multipliers: int = 0
+    memory: tuple[str, ...] = ()
+    force: Callable[..., tuple[Number, ...]] | None = None
+    remember: Callable[..., tuple[Number, ...]] | None = None
     compiled: tuple[int, int] | None = None
 
 
@@ -185,6 +194,42 @@ def _gear_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Numbe
     return (q[1][2] - data[0] * q[0][2],)
 
 
+def _penetration(q: list[Vector], data: Vector, f: Functions) -> Number:
+    """Return max(-gap, 0), with the gap to a wall through the place data[3:5] with the normal data[5:7]."""
+    return f.positive((data[3] - q[0][0]) * data[5] + (data[4] - q[0][1]) * data[6])
+
+
+def _stop_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
+    """Return k max(-gap, 0)^2 / 2."""
+    depth = _penetration(q, data, f)
+    return data[0] * depth * depth / 2
+
+
+def _stop_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
+    """Return k c max(-gap, 0) (dgap/dt)^2 / 2 (Hunt and Crossley 1975)."""
+    rate = v[0][0] * data[5] + v[0][1] * data[6]
+    return data[0] * data[1] * _penetration(q, data, f) * rate * rate / 2
+
+
+def _stop_slip(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, Number]:
+    """Return the friction along the wall, which is at most `friction` k max(-gap, 0), and the change of the slip."""
+    stiffness, limit = data[0], data[2] * data[0] * _penetration(q, data, f)
+    along = (q[0][1] - data[8]) * data[5] - (q[0][0] - data[7]) * data[6]
+    trial = stiffness * (along - data[9])
+    over = f.positive(trial - limit) - f.positive(-trial - limit)
+    return trial - over, over / stiffness
+
+
+def _stop_force(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
+    friction = _stop_slip(q, data, f)[0]
+    return -data[6] * friction, data[5] * friction
+
+
+def _stop_remember(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
+    friction, slipped = _stop_slip(q, data, f)
+    return data[9] + slipped, data[10] + friction * slipped
+
+
 _LEAST = 1e-300  # [m^2/s^2], so that the derivative of |v| v is zero at rest
 
 
@@ -213,5 +258,8 @@ _BUSHING = ("kx", "ky", "kt", "cx", "cy", "ct", "x", "y")
 BUSHING = Connection("bushing", 2, 3, _BUSHING, None, _bushing_potential, _bushing_dissipation)
 SLIDER = Connection("slider", 2, 3, ("nx", "ny", "offset"), None, None, None, _slider_conditions, 2)
 GEAR = Connection("gear", 2, 3, ("ratio",), None, None, None, _gear_conditions, 1)
+_STOP = ("stiffness", "damping", "friction", "x", "y", "nx", "ny", "x0", "y0")
+STOP = Connection("stop", 1, 2, _STOP, None, _stop_potential, _stop_dissipation)
+ROUGH_STOP = STOP._replace(name="rough_stop", memory=("slip", "dissipated"), force=_stop_force, remember=_stop_remember)
 _SPRINGS = SPRING, GROUNDED_SPRING, TORSION_SPRING, CABLE, GROUNDED_CABLE, BUSHING
-CONNECTIONS = MASS, BODY, *_SPRINGS, LINK, SLIDER, GEAR, DRAG
+CONNECTIONS = MASS, BODY, *_SPRINGS, LINK, SLIDER, GEAR, DRAG, STOP, ROUGH_STOP

@@ -33,8 +33,9 @@ class Energy:
         Potential of gravity, other constant dead loads, springs and foundations; follower forces and pressures have
         none.
     dissipated : array, [J], (steps,)
-        Energy dissipated since the start by sections with history; nan if something else may dissipate too, which is
-        not integrated: in motions a retardation time or a dashpot, and always a connector that is not conservative.
+        Energy dissipated since the start by sections and stops with history; nan if something else may dissipate too,
+        which is not integrated: in motions a retardation time or a dashpot, and always another connector that is not
+        conservative.
     unit : str
         Name of the model's unit of energy.
     """
@@ -76,9 +77,13 @@ def dissipated(solution: "Solution", by_sections: np.ndarray) -> np.ndarray:
     What resists rates has no history variable for it, and rows that are not saved cannot be integrated: nan.
     """
     system = loading(solution)[0]
+    items = system.connectors.items
     damped = system.connectors.damp or any(block.damping.any() for block in system.blocks)
-    known = system.connectors.conservative and (solution.static or not damped)
-    return by_sections if known else np.full(len(solution), np.nan)
+    recorded = [item.dissipated for item in items]
+    losing = any(not item.item.conservative and not len(own) for item, own in zip(items, recorded, strict=True))
+    if losing or (damped and not solution.static):
+        return np.full(len(solution), np.nan)
+    return by_sections + sum(solution.p[:, own].sum(axis=1) for own in recorded)
 
 
 def _of_loads(solution: "Solution", displaced: Displacements) -> np.ndarray:

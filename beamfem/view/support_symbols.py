@@ -17,6 +17,7 @@ from beamfem.model.load_shapes import (
     Springs,
     SpringsAlong,
     SupportShape,
+    Wall,
     drawn,
 )
 from beamfem.model.model import Model
@@ -144,15 +145,18 @@ def _draw_connectors(axes: Any, solution: "Solution", row: int) -> list[Any]:
                     artists += axes.plot(x, y, linewidth=2.5, marker="o", markersize=5.0, **line)
                 case Spiral():
                     _stamp(stamps, symbols.ROTATIONAL_SPRING, only.position(shape.point)[0], np.array([0.0, -1.0]))
+                case Wall():
+                    _stamp(stamps, symbols.GROUND, np.asarray(shape.place), -np.asarray(shape.normal))
                 case _:
                     assert_never(shape)
     return artists + stamps.draw(axes, layer=6.0)
 
 
 def grounds(model: Model) -> list[np.ndarray]:
-    """Return the places (2,) [m] on the ground at which springs of a model end."""
-    coils = (shape for item in model.at_points if isinstance(item, PartAtPoints) for shape in item.shapes())
-    return [np.asarray(coil.b) for coil in coils if isinstance(coil, Coil) and not isinstance(coil.b, Point)]
+    """Return the places (2,) [m] on the ground at which springs of a model end, and of walls."""
+    shapes = [shape for item in model.at_points if isinstance(item, PartAtPoints) for shape in item.shapes()]
+    ends = [coil.b for coil in shapes if isinstance(coil, Coil) and not isinstance(coil.b, Point)]
+    return [np.asarray(place) for place in [*ends, *(wall.place for wall in shapes if isinstance(wall, Wall))]]
 
 
 def _centre(only: "Solution", disc: Disc) -> np.ndarray:

@@ -931,3 +931,163 @@ def drag_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
     out[1] = x5
     out[2] = x5
     out[3] = x4 * (x1 * x3 + x2)
+
+
+@routine("rrrrrrrr")
+def stop_force(q, v, a, own, turned, data, gravity, out):
+    """Fill the force of `STOP`."""
+    q0 = q[0]
+    q1 = q[1]
+    v0 = v[0]
+    v1 = v[1]
+    stiffness = data[0]
+    damping = data[1]
+    x = data[3]
+    y = data[4]
+    nx = data[5]
+    ny = data[6]
+    x0 = nx * (q0 - x) + ny * (q1 - y)
+    x1 = 2.0 * x0
+    x2 = x0 < 0.0
+    x3 = damping * (nx * v0 + ny * v1) * ((-x0) if x2 else (0.0))
+    out[0] = stiffness * (nx * x3 + (0.5) * ((nx * x1) if x2 else (0.0)))
+    out[1] = stiffness * (ny * x3 + (0.5) * ((ny * x1) if x2 else (0.0)))
+
+
+@routine("rrrrrrrdddr")
+def stop_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
+    """Fill ck df/dq + cv df/dv + ca df/da of `STOP`, row by row."""
+    q0 = q[0]
+    q1 = q[1]
+    v0 = v[0]
+    v1 = v[1]
+    stiffness = data[0]
+    damping = data[1]
+    x = data[3]
+    y = data[4]
+    nx = data[5]
+    ny = data[6]
+    x0 = nx * nx
+    x1 = nx * (q0 - x) + ny * (q1 - y)
+    x2 = x1 < 0.0
+    x3 = cv * damping * ((-x1) if x2 else (0.0))
+    x4 = (-nx) if x2 else (0.0)
+    x5 = 2.0 * nx
+    x6 = damping * (nx * v0 + ny * v1)
+    x7 = x5 * x6
+    x8 = (0.5) * ck
+    x9 = nx * ny * x3
+    x10 = (ny * x5) if x2 else (0.0)
+    x11 = (-ny) if x2 else (0.0)
+    x12 = 2.0 * ny * x6
+    x13 = ny * ny
+    out[0] = stiffness * (x0 * x3 + x8 * (x4 * x7 + ((2.0 * x0) if x2 else (0.0))))
+    out[1] = stiffness * (x8 * (x10 + x11 * x7) + x9)
+    out[2] = stiffness * (x8 * (x10 + x12 * x4) + x9)
+    out[3] = stiffness * (x13 * x3 + x8 * (x11 * x12 + ((2.0 * x13) if x2 else (0.0))))
+
+
+@routine("rrrrrrrr")
+def rough_stop_force(q, v, a, own, turned, data, gravity, out):
+    """Fill the force of `ROUGH_STOP`."""
+    q0 = q[0]
+    q1 = q[1]
+    v0 = v[0]
+    v1 = v[1]
+    stiffness = data[0]
+    damping = data[1]
+    friction = data[2]
+    x = data[3]
+    y = data[4]
+    nx = data[5]
+    ny = data[6]
+    x0 = data[7]
+    y0 = data[8]
+    slip = data[9]
+    x1 = q0 - x
+    x2 = q1 - y
+    x3 = nx * x1 + ny * x2
+    x4 = 2.0 * x3
+    x5 = x3 < 0.0
+    x6 = (0.5) * stiffness
+    x7 = damping * stiffness * (nx * v0 + ny * v1) * ((-x3) if x5 else (0.0))
+    x8 = ny * (q0 - x0)
+    x9 = nx * (q1 - y0)
+    x10 = slip + x8 - x9
+    x11 = stiffness * x10
+    x12 = -nx * x1 - ny * x2
+    x13 = friction * ((x12) if (x12 > 0.0) else (0.0))
+    x14 = friction * x3
+    x15 = -slip - x8 + x9
+    x16 = (
+        x11
+        + ((stiffness * (-x10 - x13)) if ((stiffness * (-x14 - x15) < 0.0) if x5 else (x11 < 0.0)) else (0.0))
+        - ((-stiffness * (x13 + x15)) if ((stiffness * (x10 + x14) > 0.0) if x5 else (x11 > 0.0)) else (0.0))
+    )
+    out[0] = nx * x7 + ny * x16 + x6 * ((nx * x4) if x5 else (0.0))
+    out[1] = -nx * x16 + ny * x7 + x6 * ((ny * x4) if x5 else (0.0))
+
+
+@routine("rrrrrrrdddr")
+def rough_stop_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
+    """Fill ck df/dq + cv df/dv + ca df/da of `ROUGH_STOP`, row by row."""
+    q0 = q[0]
+    q1 = q[1]
+    v0 = v[0]
+    v1 = v[1]
+    stiffness = data[0]
+    damping = data[1]
+    friction = data[2]
+    x = data[3]
+    y = data[4]
+    nx = data[5]
+    ny = data[6]
+    x0 = data[7]
+    y0 = data[8]
+    slip = data[9]
+    x1 = nx * nx
+    x2 = q0 - x
+    x3 = q1 - y
+    x4 = nx * x2 + ny * x3
+    x5 = x4 < 0.0
+    x6 = cv * damping * ((-x4) if x5 else (0.0))
+    x7 = stiffness * x6
+    x8 = -nx
+    x9 = (x8) if x5 else (0.0)
+    x10 = nx * stiffness
+    x11 = 2.0 * damping * (nx * v0 + ny * v1)
+    x12 = x10 * x11
+    x13 = ny * stiffness
+    x14 = friction * ((x8) if (nx * x2 + ny * x3 < 0.0) else (0.0))
+    x15 = nx * (q1 - y0)
+    x16 = q0 - x0
+    x17 = friction * x4
+    x18 = -ny * x16 - slip + x15 + x17
+    x19 = ny * x16 + slip - x15
+    x20 = stiffness * x19
+    x21 = x20 < 0.0
+    x22 = -ny
+    x23 = (stiffness * (x17 + x19) > 0.0) if x5 else (x20 > 0.0)
+    x24 = (
+        x13
+        + ((-stiffness * (ny + x14)) if ((stiffness * x18 > 0.0) if x5 else (x21)) else (0.0))
+        - ((stiffness * (-x14 - x22)) if x23 else (0.0))
+    )
+    x25 = 2.0 * ny
+    x26 = (0.5) * ck
+    x27 = nx * x13 * x6
+    x28 = stiffness * ((nx * x25) if x5 else (0.0))
+    x29 = (x22) if x5 else (0.0)
+    x30 = friction * x29
+    x31 = (
+        x10
+        + ((-stiffness * (nx + x30)) if x23 else (0.0))
+        - ((stiffness * (-x30 - x8)) if ((stiffness * x18 > 0.0) if x5 else (x21)) else (0.0))
+    )
+    x32 = x11 * x13
+    x33 = 2.0 * nx
+    x34 = ny * ny
+    out[0] = x1 * x7 + x26 * (stiffness * ((2.0 * x1) if x5 else (0.0)) + x12 * x9 + x24 * x25)
+    out[1] = x26 * (x12 * x29 - x25 * x31 + x28) + x27
+    out[2] = x26 * (-x24 * x33 + x28 + x32 * x9) + x27
+    out[3] = x26 * (stiffness * ((2.0 * x34) if x5 else (0.0)) + x29 * x32 + x31 * x33) + x34 * x7

@@ -35,7 +35,7 @@ Contents; see help(bf.Beam), for example, for details.
     Time functions    Interpolated Piecewise
     From files        read_mesh LineMesh Frame read_dxf load
     Solvers           solve_static trace_equilibrium solve_buckling solve_modes simulate
-    Solver settings   Newton GeneralizedAlpha RigidVelocity
+    Solver settings   Newton GeneralizedAlpha Gauss Radau RigidVelocity
     Results           Solution State Path PathState Bifurcation Modes Buckling Status
     Along beams       SectionForces BeamStress Fields FieldOnBasis field_on_basis
     Studies           sweep converge

@@ -126,6 +126,8 @@ from .section import SectionLaw as SectionLaw
 from .section import Tube as Tube
 from .solve.modes.modes import Modes as Modes
 from .solve.modes.modes import solve_modes as solve_modes
+from .solve.motion.collocation import Gauss as Gauss
+from .solve.motion.collocation import Radau as Radau
 from .solve.motion.dynamics import simulate as simulate
 from .solve.motion.equations_of_motion import EquationsOfMotion as EquationsOfMotion
 from .solve.motion.equations_of_motion import Integrator as Integrator

@@ -122,7 +122,7 @@ class BandTangent:
         """Return the matrix (n, n) with the normals of inclined rollers rotated to x and constrained there."""
         rows = _constrained(self.rows, rotated)
         half = rows.shape[1] // 2
-        return csr_array(dia_array((_diagonals(rows), np.arange(half, -half - 1, -1)), shape=(len(rows), len(rows))))
+        return csr_array(dia_array((diagonals(rows), np.arange(half, -half - 1, -1)), shape=(len(rows), len(rows))))
 
 
 @dataclass(frozen=True)
@@ -213,11 +213,11 @@ def rotation_to_normals(size: int, rotated: Rotated) -> csr_array:
     return csr_array(dia_array(([below, diagonal, above], [-1, 0, 1]), shape=(size, size)))
 
 
-def _diagonals(rows: np.ndarray) -> np.ndarray:
+def diagonals(rows: np.ndarray) -> np.ndarray:
     """Return the band (2 w + 1, n) in the storage scheme of SciPy: entry (w + i - j, j) is A[i, j]."""
     n, width = rows.shape
     half = width // 2
-    diagonals = np.zeros((width, n))
+    diagonals = np.zeros((width, n), dtype=rows.dtype)
     for offset in range(-half, half + 1):
         size = max(n - abs(offset), 0)
         first = max(-offset, 0)
@@ -227,7 +227,7 @@ def _diagonals(rows: np.ndarray) -> np.ndarray:
 
 def _solve_pivoted(rows: np.ndarray, right: np.ndarray) -> np.ndarray:
     half = rows.shape[1] // 2
-    x = solve_banded((half, half), _diagonals(rows), right)
+    x = solve_banded((half, half), diagonals(rows), right)
     if not np.isfinite(x).all():
         raise LinAlgError("the tangent is singular")
     return np.asarray(x)

@@ -50,7 +50,7 @@ def simulate(
         Time to simulate; the last step ends at or just after it.
     step : float, [s]
         Time step.
-    integrator : GeneralizedAlpha, Scheme or Integrator, optional
+    integrator : GeneralizedAlpha, Gauss, Radau, Scheme or Integrator, optional
         Time integration method, by default `GeneralizedAlpha()`; a user-defined one is a `Scheme` of the same family,
         such as Newmark's method, or any other `Integrator`.
     start : State or Solution, optional
@@ -94,7 +94,8 @@ def simulate(
         raise InputError(f"step ({step:g}) must not exceed duration ({duration:g})")
     integrator = GeneralizedAlpha() if integrator is None else integrator
     user_defined = not is_scheme(integrator)
-    if isinstance(integrator, type) or (user_defined and not callable(getattr(integrator, "step", None))):
+    steps = any(callable(getattr(integrator, name, None)) for name in ("step", "run"))
+    if isinstance(integrator, type) or (user_defined and not steps):
         raise InputError(
             "integrator must be a GeneralizedAlpha(rho_inf=...), an object with rule(step) as it has, or one with "
             f"step(motion, begin, end) as bf.Integrator describes it, got {shown(integrator)}"

@@ -154,18 +154,45 @@ class EquationsOfMotion:
             If the system is singular.
         """
         self.counted[0] += 1
-        stages, unknown = right.shape
+        return self.solver(csr_array(block_array(blocks)))(right.ravel()).reshape(right.shape)
+
+    def solver(self, matrix: csr_array) -> Callable[[np.ndarray], np.ndarray]:
+        """Factor a matrix that consists of tangents, and return a function that solves with it.
+
+        Parameters
+        ----------
+        matrix : csr_array, (s * unknown, s * unknown)
+            The matrix, real or complex.
+
+        Returns
+        -------
+        callable
+            Takes a right-hand side (s * unknown,) and returns the solution, which has no components along the normals
+            of inclined rollers.
+
+        Raises
+        ------
+        ConvergenceError
+            If the matrix is singular.
+        """
+        unknown = len(self.free)
+        stages = matrix.shape[0] // unknown
         kept = np.ones(unknown, dtype=bool)
         kept[self.system.rotated[0]] = False
         kept = np.tile(kept, stages)
         rotation = csr_array(block_diag([rotation_to_normals(unknown, self.system.rotated)] * stages))
-        matrix = csr_array(rotation @ block_array(blocks) @ rotation.T)[kept][:, kept]
-        solution = np.zeros(right.size)
         try:
-            solution[kept] = superlu(csc_array(matrix)).solve((rotation @ right.ravel())[kept])
+            factors = superlu(csc_array(csr_array(rotation @ matrix @ rotation.T)[kept][:, kept]))
         except LinAlgError as error:
             raise ConvergenceError("the tangent of a step is singular") from error
-        return np.asarray(rotation.T @ solution).reshape(right.shape)
+
+        def solve(right: np.ndarray) -> np.ndarray:
+            solution = np.zeros(len(kept), dtype=matrix.dtype)
+            rotated = (rotation @ (right if np.iscomplexobj(matrix) else right.real))[kept]
+            solution[kept] = factors.solve(rotated.astype(matrix.dtype))
+            return np.asarray(rotation.T @ solution)
+
+        return solve
 
     def iterate(
         self,

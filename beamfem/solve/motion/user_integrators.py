@@ -20,7 +20,9 @@ class OwnSteps:
     """
 
     def __init__(self, system: System, integrator: Integrator, begin: float, counted: np.ndarray) -> None:
-        self._system, self._integrator, self._time, self._counted = system, integrator, begin, counted
+        run = getattr(integrator, "run", None)
+        self._system, self._time, self._counted = system, begin, counted
+        self._integrator = run() if callable(run) else integrator
         moved = any(callable(item.value) for item in system.prescribed)
         self._solved = System(system.model, static=False, released=True) if moved else system
         self._at_rest = np.isin(system.prescribed_dofs, self._solved.prescribed_dofs)

@@ -1,0 +1,165 @@
+"""Gauss and Radau methods: their orders, what they keep, and stiff motions at steps that resolve no vibration."""
+
+import itertools
+
+import numpy as np
+import pytest
+from history_laws import SECTION as STIFFNESSES
+from history_laws import Creeping
+
+import beamfem as bf
+
+RUBBER = bf.Material(5e5, 0.0, 1000.0)
+DAMPED = bf.Material(5e5, 0.0, 1000.0, retardation_time=2e-3)
+DEEP = bf.Rectangle(0.02, 0.1)
+STEPS = (4e-3, 2e-3, 1e-3)
+GAUSS = [(bf.Gauss(stages), 2 * stages) for stages in (1, 2, 3)]
+RADAU = [(bf.Radau(stages), 2 * stages - 1) for stages in (1, 2, 3)]
+ids = {"ids": lambda item: f"{type(item).__name__}-{item.stages}" if hasattr(item, "stages") else None}
+
+
+def bump(time):
+    """A smooth start: what begins at once excites vibrations that no step resolves."""
+    return float(np.sin(40.0 * time) ** 8)
+
+
+def beam(element, start=(0, 0), end=(1, 0), material=RUBBER):
+    return bf.Beam(bf.Line(start, end), 1, element, DEEP, material)
+
+
+def pushed(*beams, joints=(), connectors=(), supports=None):
+    supports = supports or [bf.Clamp(each.start) for each in beams]
+    load = bf.PointForce(beams[0].end, (0.0, -60.0), amplitude=bump)
+    return beams[0], bf.Model(list(beams), supports, [load], joints=list(joints), connectors=list(connectors))
+
+
+def on_a_roller(element):
+    one = beam(element)
+    loads = [bf.PointMoment(one.end, 3.0, amplitude=bump), bf.PointForce(one.end, (0.0, -60.0), amplitude=bump)]
+    return one, bf.Model([one], [bf.Pin(one.start), bf.Roller(one.end, (1, 2))], loads)
+
+
+def driven(element):
+    one = beam(element)
+    turning = bf.Prescribed(one.start, ux=0.0, uy=0.0, rotation=lambda t: 0.5 * np.sin(20 * t) ** 8)
+    return one, bf.Model([one], [turning])
+
+
+def hinged(element):
+    one, other = beam(element), beam(element, (1, 0), (2, 0))
+    supports = [bf.Clamp(one.start), bf.Pin(other.end)]
+    return pushed(one, other, joints=[bf.Hinge(one.end, other.start)], supports=supports)
+
+
+def linked(element):
+    one, other = beam(element), beam(element, (0, 0.5), (1, 0.6))
+    return pushed(one, other, connectors=[bf.Link(one.end, other.end)])
+
+
+def sprung(element):
+    one, other = beam(element), beam(element, (0, 0.5), (1, 0.6))
+    return pushed(one, other, connectors=[bf.SpringDamper(one.end, other.end, 300.0, 2.0)])
+
+
+def errors(one, model, integrator):
+    exact = bf.simulate(model, 0.04, 2.5e-4, integrator=bf.Radau(5)).position(one.end)[-1]
+    motions = (bf.simulate(model, 0.04, step, integrator=integrator) for step in STEPS)
+    return np.array([np.linalg.norm(motion.position(one.end)[-1] - exact) for motion in motions])
+
+
+def order(found):
+    return float(np.log2(found[0] / found[-1]) / (len(found) - 1))
+
+
+@pytest.mark.parametrize("element", [bf.CRBF(2), bf.ANCF(integration="lobatto")], ids=lambda element: element.name)
+@pytest.mark.parametrize(("integrator", "expected"), GAUSS + RADAU, **ids)
+def test_order_of_each_method(integrator, expected, element):
+    assert order(errors(*pushed(beam(element)), integrator)) == pytest.approx(expected, abs=0.25)
+
+
+@pytest.mark.parametrize("make", [on_a_roller, hinged, linked, sprung])
+@pytest.mark.parametrize(("integrator", "expected"), [GAUSS[1], RADAU[1], RADAU[2]], **ids)
+def test_order_with_rollers_hinges_conditions_and_dampers(integrator, expected, make):
+    assert order(errors(*make(bf.CRBF(2)), integrator)) == pytest.approx(expected, abs=0.25)
+
+
+@pytest.mark.parametrize(("integrator", "expected"), [GAUSS[1], RADAU[1], RADAU[2]], **ids)
+def test_order_with_a_damped_material(integrator, expected):
+    assert order(errors(*pushed(beam(bf.CRBF(2), material=DAMPED)), integrator)) == pytest.approx(expected, abs=0.25)
+
+
+@pytest.mark.filterwarnings("ignore::beamfem.errors.EnergyWarning")  # of Gauss, which does not damp what it excites
+@pytest.mark.parametrize(("integrator", "expected"), [(bf.Gauss(2), 2), RADAU[1], RADAU[2]], **ids)
+def test_order_with_moved_supports_of_which_gauss_loses_half(integrator, expected):
+    assert order(errors(*driven(bf.CRBF(2)), integrator)) == pytest.approx(expected, abs=0.3)
+
+
+def test_gauss_is_symmetric_in_time_and_keeps_the_energy_of_a_soft_pendulum():
+    arm = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), DEEP, RUBBER)
+    model = bf.Model([arm], [bf.Pin(arm.start)], [bf.Gravity((0.0, -9.81))])
+    motion = bf.simulate(model, 0.5, 5e-3, integrator=bf.Gauss(3))
+    energy = motion.energy()
+    assert np.ptp(energy.total) < 1e-5 * np.ptp(energy.kinetic)
+    last = motion[-1:]
+    turned = bf.State(last.p[-1], -last.v[-1], last.a[-1], 0.0, model)
+    back = bf.simulate(model, 0.5, 5e-3, integrator=bf.Gauss(3), start=turned)
+    np.testing.assert_allclose(back.position(arm.end)[-1], motion.position(arm.end)[0], atol=1e-7)
+
+
+def test_accelerations_and_reactions_satisfy_the_equations_at_the_ends_of_gauss_steps():
+    one, model = pushed(beam(bf.CRBF(2)))
+    coarse, fine = (bf.simulate(model, 0.04, step, integrator=bf.Gauss(3)) for step in (2e-3, 5e-4))
+    np.testing.assert_allclose(coarse.reaction(one.start)[-1], fine.reaction(one.start)[-1], rtol=1e-6, atol=1e-6)
+
+
+def double_pendulum(element):
+    strips, aluminium = bf.Rectangle(0.02, 0.005), bf.Material(7e10, 0.3, 2700.0)
+    upper, lower = (bf.Beam(bf.Line((x, 0), (x + 0.5, 0)), 4, element, strips, aluminium) for x in (0.0, 0.5))
+    hinge = bf.Hinge(upper.end, lower.start)
+    return bf.Model([upper, lower], [bf.Pin(upper.start)], [bf.Gravity((0, -9.81))], joints=[hinge]), 5e-3, None
+
+
+def released_strip(element):
+    strip = bf.Beam(bf.Line((0, 0), (1, 0)), 8, element, bf.Rectangle(0.02, 0.002), bf.Material(2.1e11, 0.3, 7850.0))
+    stiffness = 2.1e11 * 0.02 * 0.002**3 / 12
+    bent = bf.solve_static(bf.Model([strip], [bf.Clamp(strip.start)], [bf.PointForce(strip.end, (0, 3 * stiffness))]))
+    return bf.Model([strip], [bf.Clamp(strip.start)]), 5e-3, bent
+
+
+def four_bar(element):
+    places = [(0, 0), (0.5, 1), (1.7, 1.2), (1.5, 0)]
+    section = bf.Section.from_stiffness(axial=1e6, shear=4e5, bending=50.0, mass=1.0, rotary_inertia=1e-3)
+    bars = [bf.Beam(bf.Line(*ends), 4, element, section) for ends in itertools.pairwise(places)]
+    hinges = [bf.Hinge(one.end, other.start) for one, other in itertools.pairwise(bars)]
+    supports = [bf.Pin(bars[0].start), bf.Pin(bars[-1].end)]
+    return bf.Model(bars, supports, [bf.Gravity((0, -9.81))], joints=hinges), 4e-3, None
+
+
+ELEMENTS = [bf.CRBF(1), bf.CRBF(2), bf.CRBF(3), bf.ANCF(bf.Structural()), bf.ANCFCRBF(bf.Structural()), bf.ShearRigid()]
+
+
+@pytest.mark.parametrize("element", ELEMENTS, ids=lambda element: element.name)
+@pytest.mark.parametrize("make", [double_pendulum, released_strip, four_bar])
+def test_radau_goes_on_where_steps_resolve_no_vibration_and_never_gains_energy(make, element):
+    model, step, start = make(element)
+    motion = bf.simulate(model, 40 * step, step, integrator=bf.Radau(3), start=start)
+    energy = motion.energy()
+    assert len(motion) == 41
+    assert np.max(energy.total - energy.total[0]) < 1e-6 * np.ptp(energy.kinetic)
+    assert np.min(energy.total - energy.total[0]) > -0.01 * np.ptp(energy.kinetic)
+
+
+def test_history_is_committed_once_a_step():
+    law = Creeping(**STIFFNESSES, relaxation=0.3)
+    rod = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(3), law)
+    load = bf.PointMoment(rod.end, 20.0, amplitude=lambda t: float(np.sin(10.0 * t) ** 4))
+    model = bf.Model([rod], [bf.Clamp(rod.start)], [load])
+    own, known = (bf.simulate(model, 0.2, 2e-4, integrator=each) for each in (bf.Radau(2), bf.GeneralizedAlpha(0.5)))
+    np.testing.assert_allclose(own.rotation(rod.end)[-1], known.rotation(rod.end)[-1], rtol=2e-3)
+
+
+@pytest.mark.parametrize(("make", "message"), [(bf.Gauss, "Gauss"), (bf.Radau, "Radau")])
+def test_number_of_stages_is_checked(make, message):
+    for stages in (0, 9, 1.5):
+        with pytest.raises(bf.InputError, match=f"stages of {message}"):
+            make(stages)

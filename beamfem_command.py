@@ -14,14 +14,14 @@ def main() -> None:
     if signal.getsignal(signal.SIGINT) is usual:  # it may be ignored, as under nohup
         signal.signal(signal.SIGINT, _end)
     import beamfem
-    from beamfem.cli.app import main as run
+    from beamfem.cli.app import app
 
     if not set(sys.argv[1:]) <= _TOLD_AT_ONCE:
         for name in beamfem.__all__:
             getattr(beamfem, name)  # imports it
     if signal.getsignal(signal.SIGINT) is _end:
         signal.signal(signal.SIGINT, usual)
-    run()
+    app(prog_name="beamfem")
 
 
 def _end(number: int, frame: FrameType | None) -> None:

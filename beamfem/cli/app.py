@@ -4,11 +4,9 @@ from typing import Annotated
 
 import typer
 
-from beamfem.cli import results_files
-from beamfem.cli.bundled_examples import examples, new
+from beamfem.cli.bundled import examples, new, study
+from beamfem.cli.commands import export, info, plot, run
 from beamfem.cli.doctor import doctor
-from beamfem.cli.run_command import run
-from beamfem.cli.studies import study
 
 app = typer.Typer(
     name="beamfem",
@@ -38,18 +36,6 @@ def _root(
     pass
 
 
-app.command()(new)
-app.command()(run)
-app.command(
-    context_settings={"allow_interspersed_args": False, "allow_extra_args": True, "ignore_unknown_options": True}
-)(study)
-app.command()(examples)
-app.command()(results_files.info)
-app.command()(results_files.export)
-app.command()(results_files.plot)
-app.command()(doctor)
-
-
-def main() -> None:
-    """Run the command with the arguments of the process."""
-    app(prog_name="beamfem")
+for command in (new, run, study, examples, info, export, plot, doctor):
+    own = {"allow_interspersed_args": False, "allow_extra_args": True, "ignore_unknown_options": True}
+    app.command(context_settings=own if command is study else None)(command)

@@ -2,93 +2,78 @@
 
 import platform
 import re
-import time
-from importlib.metadata import PackageNotFoundError, requires, version
+from importlib.metadata import distributions, requires
+from timeit import repeat
 from typing import Any
 
 import typer
 
-from beamfem.cli.report import FAILED, AsJson, print_json, reported, writable
+import beamfem as bf
+from beamfem.cli.report import FAILED, AsJson, reported, writable
+from beamfem.errors import MissingPackageError
 
 _TIP = 0.71385896416  # tip deflection over the length of the geometrically exact beam, P L^2 / (E I) = 5, L / h = 100
-_NO_EXTRAS = ("all", "test", "bench", "docs")
+_NO_EXTRAS = {"", "all", "test", "bench", "docs"}
 
 
 def doctor(as_json: AsJson = False) -> None:
     """Check the installation: versions, compiled kernels, a first solve, pictures of bodies and missing extras."""
-    with reported(as_json):
+    with reported(as_json) as show:
         from beamfem.kernels.cache import cache_folder, kept
+        from beamfem.view.rendering import ADVICE, can_render
 
-        folder = cache_folder()
-        needed = [re.match(r"([\w.-]+)(?:.*extra\s*==\s*['\"](\w+))?", line) for line in requires("beamfem") or ()]
-        packages = [(match[1], match[2]) for match in needed if match]
-        extras = sorted({extra for _, extra in packages if extra and extra not in _NO_EXTRAS})
-        report: dict[str, Any] = {
-            "versions": {
-                "python": platform.python_version(),
-                "system": platform.platform(),
-                **{name: _version(name) for name in ("beamfem", *(name for name, extra in packages if not extra))},
-            },
-            "cache": {
-                "folder": folder,
-                "writable": folder is not None and writable(folder),
-                "compiled_kernels": kept(),
-            },
-            "first_solve": _first_solve(),
-            "rendering": _rendering(),
-            "missing": {
-                extra: [name for name, of in packages if of == extra and _version(name) is None] for extra in extras
-            },
+        folder, needed = cache_folder(), "\n".join(requires("beamfem") or ())
+        required = re.findall(r"^([\w.-]+)(?:.*extra\s*==\s*['\"](\w+))?", needed, re.MULTILINE)
+        missing: dict[str, list[str]] = {extra: [] for extra in sorted({of for _, of in required} - _NO_EXTRAS)}
+        for name, extra in required:
+            if extra in missing and _version(name) is None:
+                missing[extra].append(name)
+        try:
+            rendering = "" if can_render() else f"VTK cannot render here; {ADVICE}"
+        except MissingPackageError as error:
+            rendering = str(error)
+        versions: dict[str, str | None] = {"python": platform.python_version(), "system": platform.platform()}
+        versions |= {name: _version(name) for name in ("beamfem", *(name for name, extra in required if not extra))}
+        kernels, writes = kept(), folder is not None and writable(folder)
+        solve = _first_solve()
+        where = folder or "nowhere: set BEAMFEM_CACHE_DIR to a folder that can be written to"
+        unwritten = "" if writes else ", which cannot be written to"
+        wrong = f"WRONG: tip deflection {solve['deflection']:.8f} instead of {_TIP:.8f}"
+        first, again = solve["seconds"]
+        lines = ["versions", *(f"  {name:14s} {version}" for name, version in versions.items())]
+        lines += [f"\n{kernels} kernels in {where}{unwritten}"]
+        lines += [f"first solve {first:.2f} s, again {1e3 * again:.1f} ms: {'right' if solve['right'] else wrong}"]
+        lines += [f"pictures of bodies: {rendering or 'work'}\n\nextras"]
+        for extra, packages in missing.items():
+            need = f'missing {", ".join(packages)}: pip install "beamfem[{extra}]"'
+            lines.append(f"  {extra:14s} {need if packages else 'installed'}")
+        cache = {"folder": folder, "writable": writes, "compiled_kernels": kernels}
+        report = {
+            "versions": versions,
+            "cache": cache,
+            "first_solve": solve,
+            "rendering": rendering,
+            "missing": missing,
         }
-        print_json(report) if as_json else _print(report)
-        if not report["first_solve"]["right"]:
+        show(report, "\n".join(lines))
+        if not solve["right"]:
             raise typer.Exit(FAILED)
 
 
 def _first_solve() -> dict[str, Any]:
     """Solve a cantilever twice: seconds of each solve, and whether the result is right."""
-    import beamfem as bf
-
     section, material = bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0)
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(4), section, material)
     force = 5.0 * material.youngs_modulus * section.second_moment
     model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, force))])
-    seconds = []
-    for _ in range(2):
-        start = time.perf_counter()
-        deflection = float(bf.solve_static(model).displacement(beam.end)[-1, 1])
-        seconds.append(time.perf_counter() - start)
-    return {"seconds": seconds, "deflection": deflection, "right": abs(deflection - _TIP) < 1e-6}
 
+    def deflection() -> float:
+        return float(bf.solve_static(model).displacement(beam.end)[-1, 1])
 
-def _rendering() -> str:
-    """Return why VTK cannot draw, empty if it can."""
-    from beamfem.errors import MissingPackageError
-    from beamfem.view.rendering import ADVICE, can_render
-
-    try:
-        return "" if can_render() else f"VTK cannot render here; {ADVICE}"
-    except MissingPackageError as error:
-        return str(error)
+    seconds = repeat(deflection, number=1, repeat=2)
+    tip = deflection()
+    return {"seconds": seconds, "deflection": tip, "right": abs(tip - _TIP) < 1e-6}
 
 
 def _version(name: str) -> str | None:
-    try:
-        return version(name)
-    except PackageNotFoundError:
-        return None
-
-
-def _print(found: dict[str, Any]) -> None:
-    cache, solve = found["cache"], found["first_solve"]
-    print("versions\n" + "\n".join(f"  {name:14s} {version}" for name, version in found["versions"].items()))
-    folder = cache["folder"] or "nowhere: set BEAMFEM_CACHE_DIR to a folder that can be written to"
-    writes = "" if cache["writable"] else ", which cannot be written to"
-    print(f"\n{cache['compiled_kernels']} kernels in {folder}{writes}")
-    verdict = "right" if solve["right"] else f"WRONG: tip deflection {solve['deflection']:.8f} instead of {_TIP:.8f}"
-    first, again = solve["seconds"]
-    print(f"first solve {first:.2f} s, again {1e3 * again:.1f} ms: {verdict}")
-    print(f"pictures of bodies: {found['rendering'] or 'work'}\n\nextras")
-    for extra, missing in found["missing"].items():
-        need = f'missing {", ".join(missing)}: pip install "beamfem[{extra}]"'
-        print(f"  {extra:14s} {need if missing else 'installed'}")
+    return next((found.version for found in distributions(name=name)), None)

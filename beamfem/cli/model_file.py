@@ -1,25 +1,39 @@
 """Model files: a model, an analysis and what to print, in TOML."""
 
-from collections.abc import Callable, Iterator, Sequence
+import sys
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, ValidationInfo
 
 from beamfem.assembly.system import System
-from beamfem.cli.analyses import ANALYSES, Analysis, Found
+from beamfem.cli.analyses import ANALYSES, CRITICAL, Analysis, Found
 from beamfem.cli.outputs import Output
-from beamfem.cli.part_kinds import ACTING, NAMED, TYPES, BeamTable, in_keys
-from beamfem.cli.schema import KeyFault, Kinds, Names, build, named_first, part, require_table, shown
-from beamfem.cli.toml_source import ModelFileError, Source, read_source
-from beamfem.errors import FileError, InputError
+from beamfem.cli.part_kinds import ACTING, NAMED, TYPES, in_keys
+from beamfem.cli.report import print_table, summary
+from beamfem.cli.schema import Keyed, KeyFault, Kinds, Names, build, fault_at, part, reader, require_table, shown
+from beamfem.cli.toml_source import Source, read_source
+from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
-from beamfem.validation import nearest
+from beamfem.results.path import Path as EquilibriumPath
+from beamfem.results.quantities import UNITS
+from beamfem.results.solution_checks import findings
+from beamfem.results.status import counted
 
-_TEXTS, _TABLES = ("title", "units"), ("beams", "analysis", "outputs")
+_TITLES = {  # of results whose name does not say it
+    "load_factors": "Critical load factors",
+    "linearised": "Linearised about the start",
+    "rigid": "Rigid motions",
+    "limit_points": "Limit points, load factor",
+    "bifurcations": "Bifurcations, load factor",
+}
 
 
 @dataclass(frozen=True)
@@ -34,45 +48,107 @@ class Job:
 
     def solve(self) -> Found:
         """Run the analysis and return what it finds. Raises ModelFileError, ConvergenceError."""
-        with _within(self.source, "analysis"):
+        with _located(self.source, "analysis"):
             return self.analysis.run(self.model, [at for output in self.outputs for at in output.asked])
+
+    def result(self, found: Found, seconds: float, written: Sequence[str]) -> dict[str, Any]:
+        """Return all that is printed."""
+        outputs = []
+        for output in self.outputs:
+            rows = output.rows(found.solution)
+            units = {name: self.model.unit(UNITS[name]) for name in rows[0] if name in UNITS}
+            critical = output.critical(found.solution) if isinstance(found.solution, EquilibriumPath) else {}
+            outputs.append({"name": output.name, "units": units, "rows": rows, **critical})
+        return {
+            "title": self.title,
+            "file": str(self.source.file),
+            "analysis": self.analysis.kind,
+            "beams": len(self.model.beams),
+            **summary(found.solution),
+            "seconds": seconds,
+            **found.values,
+            "warnings": [in_keys(warning) for warning in found.solution.warnings],
+            "outputs": outputs,
+            "written": written,
+        }
+
+    def print(self, result: dict[str, Any], found: Found) -> None:
+        """Print a result as tables, and on stderr what was found wrong with it but not warned of."""
+        statistics = found.solution.statistics
+        effort = f"{counted(statistics.iterations, 'iteration')}, " if statistics.iterations else ""
+        sizes = ", ".join(counted(result[f"{what}s"], what) for what in ("beam", "coordinate", "state"))
+        print(f"{self.title}\n{self.analysis.kind}: {sizes}, {effort}{result['seconds']:.2f} s; {statistics.outcome}")
+        for name, values in found.values.items():
+            unit = f" [{self.model.unit(UNITS[name])}]" if name in UNITS else ""
+            rows = [{"": number, name: value} for number, value in enumerate(values, 1)]
+            print_table(_TITLES.get(name, name.capitalize()) + unit, rows)
+        for output in result["outputs"]:
+            print_table(output["name"], output["rows"], output["units"])
+            for critical in CRITICAL:
+                title = f"{output['name']}, at {critical.replace('_', ' ')}"
+                print_table(title, output.get(critical, ()), output["units"])
+        for finding in findings(found.solution):
+            if finding.kind is None:
+                print(f"warning: {in_keys(finding.sentence)}", file=sys.stderr)
+        if result["written"]:
+            print("\n" + "\n".join(f"wrote {path}" for path in result["written"]))
 
 
 def read_model_file(path: str | PathLike[str]) -> Job:
     """Return the contents of a model file (TOML). Raises ModelFileError with file, line and key."""
-    source = read_source(Path(path))
-    known = [*_TEXTS, *NAMED, *_TABLES, *(name for name, kinds in ACTING.items() if kinds)]
-    for key in source.values:
-        if key not in known:
-            raise source.error(f"unknown key; {nearest(key, known)}", key)
-    names = Names(TYPES)
-    for section, kinds in NAMED.items():
-        names.parts[section] = {}
-        for name, table in _named_tables(source, section).items():
-            with _within(source, section, name):
-                names.parts[section][name] = part(kinds, table, names)
-    for name, table in _named_tables(source, "beams").items():
-        with _within(source, "beams", name):
-            names.beams[name] = build(BeamTable, table, names).beam(name)
-    if not names.beams:
-        raise source.error("a model needs at least one beam, a table headed [beams.NAME]")
-    acting = {
-        section: _tables(source, section, partial(_each_place, kinds, names)) for section, kinds in ACTING.items()
-    }
-    model = _model(source, list(names.beams.values()), acting)
-    if "units" in source.values:
-        with _within(source, "units"):
-            model = replace(model, units=_text(source, "units"))
-    with _within(source, "analysis"):
-        analysis = part(ANALYSES, source.values.get("analysis", {}), names, default="static")
-    outputs = _tables(source, "outputs", lambda table: build(Output, table, names))
-    for number, output in enumerate(outputs):
-        with _within(source, "outputs", number):
-            output.require(model, analysis)
-    return Job(source, _text(source, "title", source.file.stem), model, analysis, outputs)
+    source, names = read_source(Path(path)), Names(TYPES)
+    with _located(source):
+        for section in (*ACTING, "outputs"):
+            if not isinstance(tables := source.values.get(section, []), list):
+                raise KeyFault(f"must be an array of tables, each headed [[{section}]], got {shown(tables)}", section)
+        if not source.values.get("beams") and set(source.values) <= set(_FILE.keys):
+            raise InputError("a model needs at least one beam, a table headed [beams.NAME]")
+        given = build(_FILE, source.values, names)
+        with fault_at(table=given.keys() & {"units"}):
+            model = _model(list(names.parts["beams"].values()), given, source)
+        analysis = given.get("analysis", Analysis("static", {}))
+        for number, output in enumerate(outputs := given.get("outputs", [])):
+            with fault_at("outputs", number, table=source.values["outputs"][number]):
+                output.require(model, analysis)
+    return Job(source, given.get("title", source.file.stem), model, analysis, outputs)
 
 
-def _each_place(kinds: Kinds, names: Names, table: Any) -> list[Any]:
+@contextmanager
+def _located(source: Source, section: str = "") -> Iterator[None]:
+    """Raise what is wrong inside as a ModelFileError with its place; section: that of the keys that messages name."""
+    try:
+        with fault_at(table=source.values.get(section, ())):
+            yield
+    except ConvergenceError as error:
+        error.args, error.remedy = (in_keys(str(error)),), in_keys(error.remedy)
+        raise
+    except KeyFault as fault:
+        path = (section, *fault.path) if section and fault.path else fault.path
+        raise source.error(in_keys(str(fault)), *path) from fault
+
+
+def _model(beams: list[Beam], given: dict[str, Any], source: Source) -> Model:
+    """Return the model, or raise the error of the first part that it refuses."""
+
+    def made(**parts: Any) -> Model:
+        model = Model(beams, **parts)
+        system = System(Model(beams, model.supports, joints=model.joints), static=True)
+        _ = system.prescribed, system.inclined  # raise InputError for what two supports constrain
+        return model
+
+    acting = {section: given[section] for section in ACTING if section in given}
+    try:
+        units = {key: given[key] for key in ("units",) if key in given}
+        return made(**units, **{section: list(chain.from_iterable(parts)) for section, parts in acting.items()})
+    except InputError:
+        for section, parts in acting.items():
+            for number in range(len(parts)):
+                with fault_at(section, number, table=source.values[section][number]):
+                    made(**{section: list(chain.from_iterable(parts[: number + 1]))})
+        raise
+
+
+def _each_place(kinds: Kinds, table: Any, names: Names) -> list[Any]:
     """Return the part of a table, or one for each of its `points` or `beams`. Raises KeyFault."""
     require_table(table)
     for plural, single in (("points", "point"), ("beams", "beam")):
@@ -82,77 +158,32 @@ def _each_place(kinds: Kinds, names: Names, table: Any) -> list[Any]:
                 return [part(kinds, {**rest, single: (place := each)}, names) for each in places]
             except KeyFault as fault:
                 path = (plural, places.index(place), *fault.path[1:]) if fault.path[:1] == (single,) else fault.path
-                raise KeyFault(fault.message, *path) from None
+                raise KeyFault(str(fault), *path) from None
     return [part(kinds, table, names)]
 
 
-def _model(source: Source, beams: list[Beam], acting: dict[str, list[list[Any]]]) -> Model:
-    """Return the model, or raise the error of the first part that it refuses."""
-    items = {section: [item for found in parts for item in found] for section, parts in acting.items()}
-    try:
-        model = Model(
-            beams, items["supports"], items["loads"], items["joints"], items["connectors"], masses=items["masses"]
-        )
-        _require_compatible(model)
-    except InputError:
-        for section, parts in acting.items():
-            before: list[Any] = []
-            for number, found in enumerate(parts):
-                with _within(source, section, number):
-                    before += found
-                    alone = before if section == "supports" else found
-                    given: Any = {section: alone}
-                    _require_compatible(Model(beams, **given))
-        raise
-    return model
+def _named(section: str) -> Any:
+    """Return the type of the tables [section.NAME], whose parts are known by their names from there on."""
+
+    def register(tables: dict[str, Any], info: ValidationInfo) -> None:
+        names: Any = info.context
+        for name, table in tables.items():
+            with fault_at(name):
+                beam = section == "beams"
+                made = build(Beam, table, names, name=name) if beam else part(NAMED[section], table, names)
+                names.parts[section][name] = made
+
+    return Annotated[dict[str, Any], AfterValidator(register)]
 
 
-def _require_compatible(model: Model) -> None:
-    """Raise InputError for a support that constrains what another one constrains already."""
-    system = System(Model(model.beams, model.supports, joints=model.joints), static=True)
-    _ = system.prescribed, system.inclined
-
-
-@contextmanager
-def _within(source: Source, *path: str | int) -> Iterator[None]:
-    """Raise what is wrong with the value at a path as a ModelFileError with its place."""
-    try:
-        yield
-    except ModelFileError:
-        raise
-    except (KeyFault, InputError, FileError) as error:
-        if not isinstance(error, KeyFault):
-            value: Any = source.values
-            for key in path:
-                value = value[key] if isinstance(key, int) else value.get(key, {})
-            named = named_first(str(error), value) if isinstance(value, dict) else []
-            path = path if named or path != ("analysis",) else ()  # the model rather than a key of the analysis
-            error = KeyFault.of(error, *named)
-        raise source.error(in_keys(error.message), *path, *error.path) from error
-
-
-def _tables(source: Source, section: str, read: Callable[[Any], Any]) -> list[Any]:
-    """Return what is read from each of the tables [[section]]. Raises ModelFileError."""
-    tables = source.values.get(section, [])
-    if not isinstance(tables, list):
-        raise source.error(f"must be an array of tables, each headed [[{section}]], got {shown(tables)}", section)
-    found = []
-    for number, table in enumerate(tables):
-        with _within(source, section, number):
-            found.append(read(table))
-    return found
-
-
-def _named_tables(source: Source, section: str) -> dict[str, Any]:
-    """Return the tables [section.NAME] by name. Raises ModelFileError."""
-    tables = source.values.get(section, {})
-    if not isinstance(tables, dict):
-        raise source.error(f"must be tables with a name, each headed [{section}.NAME], got {shown(tables)}", section)
-    return tables
-
-
-def _text(source: Source, key: str, default: str = "") -> str:
-    value = source.values.get(key, default)
-    if not isinstance(value, str):
-        raise source.error(f"must be a text, got {shown(value)}", key)
-    return value
+_FILE = Keyed(
+    dict,
+    {
+        "title": (str, ""),
+        "units": (str, ""),
+        **{section: (_named(section), None) for section in (*NAMED, "beams")},
+        "analysis": (reader(partial(part, ANALYSES, default="static")), None),
+        "outputs": (list[reader(partial(build, Output))], None),  # type: ignore[misc]
+        **{section: (list[reader(partial(_each_place, kinds))], None) for section, kinds in ACTING.items()},  # type: ignore[misc]
+    },
+)

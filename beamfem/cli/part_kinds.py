@@ -1,15 +1,13 @@
 """The kinds of parts in model files, and how the keys of each type are read."""
 
 import re
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import wraps
-from inspect import signature
-from typing import Any, get_type_hints
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
+from skfem import MeshLine1
 
-from beamfem.cli.schema import Kinds, Names, in_braces, named, part, reader, shown
+from beamfem.cli.schema import Keyed, Kinds, Names, in_braces, keys_of, named, part, reader, shown
 from beamfem.curves import Arc, BSpline, Chain, Curve, Line, Polyline, elliptic_arc, spline_through_hermite
 from beamfem.element.element import Element
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
@@ -32,10 +30,7 @@ def _sine(frequency: float, size: float = 1.0, phase: float = 0.0, mean: float =
 
 
 def _smooth_ramp(duration: float, size: float = 1.0, start: float = 0.0) -> Callable[[float], float]:
-    """Return a function that rises from 0 to size with continuous acceleration.
-
-    size (10 s^3 - 15 s^4 + 6 s^5), s = (t - start) / duration within [0, 1].
-    """
+    """Return size (10 s^3 - 15 s^4 + 6 s^5) with s = (t - start) / duration within [0, 1]."""
     positive("duration", duration)
 
     def ramp(t: float) -> float:
@@ -48,7 +43,6 @@ def _smooth_ramp(duration: float, size: float = 1.0, start: float = 0.0) -> Call
 def _along(make: Callable[..., Any]) -> Callable[..., Any]:
     """Return a function that makes a section or a vector of numbers, some of which may vary with the arc length [m]."""
 
-    @wraps(make)
     def made(**numbers: Any) -> Any:
         if not any(map(callable, numbers.values())):
             return make(**numbers)
@@ -60,16 +54,14 @@ def _along(make: Callable[..., Any]) -> Callable[..., Any]:
         at(0.0)
         return at
 
-    hints = get_type_hints(make)
-    made.__annotations__ = {
-        name: float | Callable if hints.get(name) in (float, float | None) else hints.get(name)
-        for name in signature(make).parameters
-    }
-    return made
+    varying = dict.fromkeys((float, float | None), float | Callable)
+    return Keyed(made, {key: (varying.get(hint, hint), default) for key, (hint, default) in keys_of(make).items()})
 
 
-def _continuum(plane_stress: bool = False) -> ContinuumMechanics:
-    return ContinuumMechanics(plane_stress)
+def _kind_of(make: Callable[..., Any]) -> str:
+    """Return the name of a class in lower case with hyphens, without Point before it and Load after it."""
+    name = make.__name__.removeprefix("Point").removesuffix("Load")
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", "-", name).lower()
 
 
 CURVES: Kinds = {
@@ -82,9 +74,7 @@ CURVES: Kinds = {
     "chain": Chain,
 }
 SECTIONS: Kinds = {
-    "rectangle": _along(Rectangle),
-    "circle": _along(Circle),
-    "tube": _along(Tube),
+    **{_kind_of(make): _along(make) for make in (Rectangle, Circle, Tube)},
     "moments": _along(Section),
     "stiffness": _along(Section.from_stiffness),
     "layered": Layered,
@@ -92,39 +82,18 @@ SECTIONS: Kinds = {
 MATERIALS: Kinds = {"material": Material}
 FUNCTIONS: Kinds = {"table": Interpolated, "sine": _sine, "smooth-ramp": _smooth_ramp}
 ELEMENTS: Kinds = {preset.__name__: preset for preset in (ANCF, ANCFCRBF, BilinearANCF, BilinearCRBF, CRBF, ShearRigid)}
-FORCES: Kinds = {
-    "continuum": _continuum,
-    "split-continuum": lambda: SplitContinuum(),
-    "elastic-line": lambda: ElasticLine(),
-    "structural": lambda: Structural(),
-}
 
 
-def _kinds_of(name: str) -> Kinds:
-    """Return the parts of the package that a list of a `Model` takes, by their kinds.
-
-    A kind is the name of the class in lower case with hyphens, without Point before it and Load after it.
-    """
-    words = {make: re.findall(r"[A-Z][a-z0-9]*", make.__name__) for make in parts_in(name)}
-    return {
-        "-".join(word for word in found if word not in ("Point", "Load")).lower(): make for make, found in words.items()
-    }
-
-
-ACTING: dict[str, Kinds] = {name: _kinds_of(name) for name in ("supports", "joints", "connectors", "masses", "loads")}
+_ACTING = ("supports", "joints", "connectors", "masses", "loads")
+ACTING: dict[str, Kinds] = {name: {_kind_of(make): make for make in parts_in(name)} for name in _ACTING}
+FORCES: Kinds = {_kind_of(make): make for make in (SplitContinuum, ElasticLine, Structural)}
+FORCES = {"continuum": ContinuumMechanics, **FORCES}
 
 
 def _curve(value: Any, names: Names) -> Any:
     if isinstance(value, str) and value in CURVES:
         raise InputError(f"must be a table: {in_braces(value, CURVES[value])}")
     return part(CURVES, value, names)
-
-
-def _elements(value: Any, names: Names) -> Any:
-    """Return `elements` of a beam: a number, fractions, "knots" or a graded mesh."""
-    if isinstance(value, bool):
-        raise InputError(f"must be a number, an array or a text, got {shown(value)}")
-    return part({"graded": graded}, value, names) if isinstance(value, dict) else value
 
 
 def _number(value: Any, names: Names) -> Any:
@@ -137,51 +106,26 @@ def _number(value: Any, names: Names) -> Any:
 def _vector(value: Any, names: Names) -> Any:
     if not isinstance(value, list) or not any(isinstance(item, str | dict) for item in value):
         return value
-    return _along(lambda **parts: tuple(parts.values()))(
-        **{f"_{key}": _number(item, names) for key, item in enumerate(value)}
-    )
+    numbers = {f"_{key}": _number(item, names) for key, item in enumerate(value)}
+    return _along(lambda **parts: tuple(parts.values()))(**numbers)
 
 
 _function = named("functions", FUNCTIONS)
-_material, _section, _element = named("materials", MATERIALS), named("sections", SECTIONS), named("elements", ELEMENTS)
-Elements = reader(_elements)
 TYPES: dict[Any, Any] = {
     Point: reader(lambda value, names: names.point(value)),
-    Point | tuple[float, float]: reader(
-        lambda value, names: tuple(value) if type(value) is list else names.point(value)
-    ),
-    Sequence[Point]: reader(lambda value, names: names.points(value)),
+    Point | tuple[float, float]: reader(lambda at, names: tuple(at) if type(at) is list else names.point(at)),
     Beam: reader(lambda value, names: names.beam(value)),
-    Material: reader(_material),
-    CrossSection: reader(_section),
-    Element: reader(_element),
+    MeshLine1: reader(lambda ends, names: part({"graded": graded}, ends, names) if isinstance(ends, dict) else ends),
+    Material: reader(named("materials", MATERIALS)),
+    CrossSection: reader(named("sections", SECTIONS)),
+    Element: reader(named("elements", ELEMENTS)),
     Curve: reader(_curve),
-    **dict.fromkeys((ContinuumMechanics, SplitContinuum, ElasticLine, Structural), reader(named("forces", FORCES))),
+    **dict.fromkeys(FORCES.values(), reader(named("forces", FORCES))),
     "function": reader(_function),
     "number": reader(_number),
     "vector": reader(_vector),
 }
-NAMED: dict[str, Kinds] = {
-    "materials": MATERIALS,
-    "functions": FUNCTIONS,
-    "sections": SECTIONS,
-    "elements": ELEMENTS,
-}
-
-
-@dataclass(frozen=True)
-class BeamTable:
-    """The keys of [beams.NAME]."""
-
-    curve: Curve
-    elements: Elements  # type: ignore[valid-type]
-    element: Element
-    section: CrossSection
-    material: Material | None = None
-
-    def beam(self, name: str) -> Beam:
-        """Return the beam with a name. Raises InputError."""
-        return Beam(**vars(self), name=name)
+NAMED = {"materials": MATERIALS, "functions": FUNCTIONS, "sections": SECTIONS, "elements": ELEMENTS}
 
 
 _PYTHON = {

@@ -4,63 +4,61 @@ import json
 import math
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
 import typer
+
+from beamfem.errors import BeamfemError, ConvergenceError, InputError
+from beamfem.extras import require_package
+from beamfem.progress import no_progress
+from beamfem.tables import as_text
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+DRAWN = (".png", ".svg", ".pdf", ".html", ".gif", ".mp4")  # what `draw` writes
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print the result, or an error, as JSON on stdout.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
+Colour = Annotated[
+    str | None, typer.Option("--colour", "--color", help="Colour of the body: moment, stress, utilisation, speed ...")
+]
 _PACKAGES = {".h5": "h5py", ".hdf5": "h5py", ".pvd": "vtkmodules", ".vtkhdf": "vtkmodules", ".mp4": "imageio_ffmpeg"}
 
 
 @contextmanager
-def reported(as_json: bool, quiet: bool = False) -> Iterator[None]:
-    """Turn the errors of the library into a message and an exit code; quiet: show no progress either."""
-    from beamfem.errors import BeamfemError, ConvergenceError
-    from beamfem.progress import no_progress
+def reported(as_json: bool, quiet: bool = False) -> Iterator[Callable[[Any, str | Callable[[], None]], None]]:
+    """Return what prints a result, as JSON or as a text; errors of the library become a message and an exit code."""
+
+    def show(result: Any, text: str | Callable[[], None]) -> None:
+        if as_json:
+            print_json(result)
+        elif not quiet:
+            print(text) if isinstance(text, str) else text()
 
     try:
         with no_progress() if quiet else nullcontext():
-            yield
+            yield show
     except BrokenPipeError:  # the reader has closed the pipe; typer ends the process quietly
         raise
-    except ConvergenceError as error:
-        _fail(error, FAILED, as_json)
-    except KeyboardInterrupt as error:
-        _fail(error, INTERRUPTED, as_json)
-    except (BeamfemError, OSError) as error:
-        _fail(error, BAD_INPUT, as_json)
-
-
-def _fail(error: BaseException, code: int, as_json: bool) -> None:
-    notes = list(getattr(error, "__notes__", ()))
-    message = "interrupted" if isinstance(error, KeyboardInterrupt) else str(error)
-    if as_json:
-        names = ("message", "remedy", "file", "line", "key")
-        details = {name: getattr(error, name) for name in names if getattr(error, name, None)}
-        content = {"type": type(error).__name__, "message": message} | details
-        print_json({"error": content | ({"notes": notes} if notes else {}), "exit_code": code})
-    else:
-        print("\n".join([f"error: {message}", *notes]), file=sys.stderr)
-    raise typer.Exit(code) from None
-
-
-def wrote(paths: Sequence[Path], as_json: bool, quiet: bool) -> None:
-    """Print the files that a command has written."""
-    if as_json:
-        print_json({"written": paths})
-    elif not quiet:
-        print("\n".join(f"wrote {path}" for path in paths))
+    except (BeamfemError, OSError, KeyboardInterrupt) as error:
+        stopped, failed = isinstance(error, KeyboardInterrupt), isinstance(error, ConvergenceError)
+        code = INTERRUPTED if stopped else FAILED if failed else BAD_INPUT
+        message = "interrupted" if stopped else str(error)
+        if as_json:
+            names = ("message", "remedy", "file", "line", "key", "__notes__")
+            details = {name.strip("_"): value for name in names if (value := getattr(error, name, None))}
+            print_json({"error": {"type": type(error).__name__, "message": message, **details}, "exit_code": code})
+        else:
+            print("\n".join([f"error: {message}", *getattr(error, "__notes__", ())]), file=sys.stderr)
+        raise typer.Exit(code) from None
 
 
 def print_json(value: Any) -> None:
@@ -70,8 +68,6 @@ def print_json(value: Any) -> None:
 
 def plain(value: Any) -> Any:
     """Return a value as types of JSON; a solution as its summary, numbers that are not finite as None."""
-    import numpy as np
-
     from beamfem.results.solution import Solution
 
     if isinstance(value, Solution):
@@ -79,9 +75,7 @@ def plain(value: Any) -> Any:
     if isinstance(value, Enum):
         return value.name.lower().replace("_", " ")
     if isinstance(value, Mapping):
-        return {
-            ", ".join(map(str, key)) if isinstance(key, tuple) else str(key): plain(item) for key, item in value.items()
-        }
+        return {", ".join(map(str, key if isinstance(key, tuple) else (key,))): plain(value[key]) for key in value}
     if is_dataclass(value) and not isinstance(value, type):
         return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, np.generic | np.ndarray):
@@ -108,8 +102,6 @@ def summary(solution: "Solution") -> dict[str, Any]:
 
 def print_table(title: str, rows: Sequence[Mapping[str, Any]], units: Mapping[str, str] | None = None) -> None:
     """Print rows with the same keys as a table; lists in them become several lines. units: of columns, by name."""
-    from beamfem.tables import as_text
-
     lines = [
         [value[number] if isinstance(value, list) else value for value in row.values()]
         for row in rows
@@ -118,20 +110,11 @@ def print_table(title: str, rows: Sequence[Mapping[str, Any]], units: Mapping[st
     if lines:
         heads = [f"{name} [{units[name]}]" if units and name in units else name for name in rows[0]]
         print(f"\n{title}" if title else "")
-        print(as_text(heads, [[_cell(value) for value in line] for line in lines]))
+        print(as_text(heads, [[f"{v:.8g}" if isinstance(v, float) else str(v) for v in line] for line in lines]))
 
 
-def _cell(value: Any) -> str:
-    return f"{value:.8g}" if isinstance(value, float) else str(value)
-
-
-def require_target(path: Path | None, suffixes: Sequence[str]) -> None:
+def require_target(path: Path, suffixes: Sequence[str]) -> None:
     """Raise InputError for a file that cannot be written: wrong suffix, a folder, a missing package."""
-    from beamfem.errors import InputError
-    from beamfem.extras import require_package
-
-    if path is None:
-        return
     if (suffix := path.suffix.lower()) not in suffixes:
         right = f"{path.with_suffix(suffixes[0])} would be right" if path.name else ""
         raise InputError(f"{path} must end in {' or '.join(', '.join(suffixes).rsplit(', ', 1))}; {right}")
@@ -152,3 +135,14 @@ def writable(folder: Path) -> bool:
             return True
     except OSError:
         return False
+
+
+def draw(solution: "Solution", path: Path, colour: str | None) -> None:
+    """Write a picture, a page with a slider (.html) or a film (.gif, .mp4). Raises InputError."""
+    kind = path.suffix.lower()
+    if kind != ".html":
+        (solution.animate if kind in (".gif", ".mp4") else solution.plot)(path, colour=colour)
+    elif colour is None:
+        solution.to_html(path)
+    else:
+        raise InputError("a page has its own choice of colours; --colour is for pictures and films")

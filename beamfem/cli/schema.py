@@ -4,36 +4,37 @@ The parameters of a class or function are the keys of its table; pydantic checks
 parts are found by name in the `Names` of the file, the context of pydantic.
 """
 
-import inspect
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, is_dataclass
 from difflib import get_close_matches
+from functools import partial
+from inspect import signature
 from types import NoneType, UnionType
-from typing import Annotated, Any, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, PlainValidator, Strict, ValidationError, ValidationInfo, create_model
+from pydantic import BaseModel, ConfigDict, PlainValidator, ValidationError, create_model
 
-from beamfem.errors import BeamfemError, InputError
+from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.validation import nearest, require_known
 from beamfem.validation import shown as in_python
 
 Kinds = Mapping[str, Callable[..., Any]]
-Made = TypeVar("Made")
 
 _POINT = re.compile(
     r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\(\s*(?P<fraction>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*\))"
 )
-_NO_KEYS = ("self", "model", "asked", "path")  # parameters that are no keys
 _RULES = {
     "float_type": "a number",
     "int_type": "a whole number",
-    "int_from_float": "a whole number",
     "bool_type": "true or false",
     "string_type": "a text",
     "list_type": "an array",
+    "dict_type": "tables with a name, each headed [{}.NAME]",
 }
 
 
@@ -42,43 +43,44 @@ class KeyFault(ValueError):
 
     def __init__(self, message: str, *path: str | int) -> None:
         super().__init__(message)
-        self.message, self.path = message, path
+        self.path = path
 
-    @classmethod
-    def of(cls, error: "KeyFault | BeamfemError", *path: str | int) -> "KeyFault":
-        """Return an error as that of the key at a path."""
-        return cls(str(error), *path, *(error.path if isinstance(error, KeyFault) else ()))
+
+@contextmanager
+def fault_at(*path: str | int, table: Iterable[str] = ()) -> Iterator[None]:
+    """Raise an error inside as the KeyFault of the value at a path; in a table, of the key that it names first."""
+    try:
+        yield
+    except KeyFault as fault:
+        raise KeyFault(str(fault), *path, *fault.path) from fault
+    except InputError as error:
+        named = [(match.start(), key) for key in table if (match := re.search(rf"\b{re.escape(key)}\b", str(error)))]
+        raise KeyFault(str(error), *path, *[key for _, key in sorted(named)[:1]]) from error
 
 
 @dataclass
 class Names:
-    """Parts of a model file by name; types: readers of values for pydantic, by type hint."""
+    """Parts of a model file by section and name; types: readers of values for pydantic, by type hint."""
 
     types: Mapping[Any, Any]
-    parts: dict[str, dict[str, Any]] = field(default_factory=dict)  # by section: materials, sections ...
-    beams: dict[str, Beam] = field(default_factory=dict)
+    parts: dict[str, dict[str, Any]] = field(default_factory=lambda: defaultdict(dict))
     schemas: dict[Callable[..., Any], type[BaseModel]] = field(default_factory=dict)
 
     def beam(self, name: Any) -> Beam:
         """Return the beam of a name. Raises InputError."""
-        require_known(f"there is no beam {name!r}", name, self.beams)
-        return self.beams[name]
+        require_known(f"there is no beam {name!r}", name, beams := self.parts["beams"])
+        return beams[name]
 
     def point(self, text: Any) -> Point:
         """Return the point NAME.start, NAME.end or NAME.at(fraction). Raises InputError."""
         match = _POINT.fullmatch(text) if isinstance(text, str) else None
         if match is None:
-            prefix = str(text).partition(".")[0]
-            name = prefix if prefix in self.beams else next(iter(self.beams), "NAME")
-            such = f'"{name}.start", "{name}.end" or "{name}.at(0.5)"'
-            raise InputError(f"must be a point such as {such}, got {shown(text)}")
-        require_known(f"there is no beam {match['beam']!r}", match["beam"], self.beams)
-        fraction = float(match["fraction"]) if match["fraction"] else float(match["end"] == "end")
-        return Point(self.beams[match["beam"]], fraction)
-
-    def points(self, places: Any) -> list[Point]:
-        """Return the points of a list, or a list of one point. Raises InputError."""
-        return [self.point(place) for place in (places if isinstance(places, list) else [places])]
+            prefix, beams = str(text).partition(".")[0], self.parts["beams"]
+            name = prefix if prefix in beams else next(iter(beams), "NAME")
+            raise InputError(
+                f'must be a point such as "{name}.start", "{name}.end" or "{name}.at(0.5)", got {shown(text)}'
+            )
+        return Point(self.beam(match["beam"]), float(match["fraction"] or match["end"] == "end"))
 
 
 def part(kinds: Kinds, table: Any, names: Names, default: str | None = None) -> Any:
@@ -94,92 +96,65 @@ def part(kinds: Kinds, table: Any, names: Names, default: str | None = None) -> 
     return build(kinds[kind], {key: value for key, value in table.items() if key != "kind"}, names)
 
 
-def build(make: Callable[..., Made], table: Any, names: Names) -> Made:
-    """Return what `make` makes of the keys of a table. Raises KeyFault."""
+def build(make: Callable[..., Any], table: Any, names: Names, **given: Any) -> Any:
+    """Return what `make` makes of the keys of a table, and of arguments that are no keys. Raises KeyFault."""
     require_table(table)
-    schema = names.schemas.get(make) or names.schemas.setdefault(make, _schema(make, names.types))
+    schema = names.schemas.get(make)
+    if schema is None:
+        fields: Any = {
+            key: (_type(hint, names.types), item) for key, (hint, item) in keys_of(make).items() if key not in given
+        }
+        config = ConfigDict(extra="forbid", strict=True, arbitrary_types_allowed=True)
+        schema = names.schemas[make] = create_model("Table", __config__=config, **fields)
     try:
-        given = schema.model_validate(table, context=names)
+        read = schema.model_validate(table, context=names)
     except ValidationError as error:
         raise _fault(error, schema) from None
-    try:
-        return make(**{key: getattr(given, key) for key in schema.model_fields if key in given.model_fields_set})
-    except InputError as error:
-        raise KeyFault.of(error, *named_first(str(error), table)) from None
+    with fault_at(table=table):
+        return make(**given, **{key: getattr(read, key) for key in schema.model_fields if key in read.model_fields_set})
 
 
-def named_first(message: str, table: Mapping[str, Any]) -> list[str]:
-    """Return the key of a table that a message names first, in a list that is empty if there is none."""
-    places = {key: match.start() for key in table if (match := re.search(rf"\b{re.escape(key)}\b", message))}
-    return sorted(places, key=lambda key: places[key])[:1]
+@dataclass(frozen=True, eq=False)
+class Keyed:
+    """A function with the types and defaults of its keys."""
+
+    make: Callable[..., Any]
+    keys: dict[str, tuple[Any, Any]]
+
+    def __call__(self, **values: Any) -> Any:
+        return self.make(**values)
 
 
-def _schema(make: Callable[..., Any], types: Mapping[Any, Any]) -> type[BaseModel]:
-    """Return a pydantic model whose fields are the parameters of a class or function."""
-    hints = get_type_hints(make, include_extras=True)
-    parameters = {key: item for key, item in inspect.signature(make).parameters.items() if key not in _NO_KEYS}
-    fields: Any = {
-        key: (_type(hints.get(key, item.annotation), types), ... if item.default is item.empty else item.default)
-        for key, item in parameters.items()
-    }
-    return create_model("Table", __config__=ConfigDict(extra="forbid", arbitrary_types_allowed=True), **fields)
+def keys_of(make: Callable[..., Any]) -> dict[str, tuple[Any, Any]]:
+    """Return the types and defaults of the parameters of a class or function; ... where there is no default."""
+    if isinstance(make, Keyed):
+        return make.keys
+    hints, parameters = get_type_hints(make, include_extras=True), signature(make).parameters.items()
+    return {key: (hints.get(key, Any), ... if item.default is item.empty else item.default) for key, item in parameters}
 
 
 def _type(hint: Any, types: Mapping[Any, Any]) -> Any:
     """Return the type with which pydantic checks a value in a model file."""
     if get_origin(hint) is Annotated:
         return hint
-    if hint is inspect.Parameter.empty:
-        return Any
-    if hint in types:
-        return types[hint]
     union = get_args(hint) if get_origin(hint) in (Union, UnionType) else (hint,)
     options = [option for option in union if option not in (NoneType, np.ndarray)]
-    for option in reversed(options):
-        if option in types:
-            return types[option]
+    for known in filter(types.__contains__, (hint, *reversed(options))):
+        return types[known]
     described: Any = next(filter(is_dataclass, options), None)
     if described is not None:
-        return reader(lambda value, names: build(described, value, names))
+        return reader(partial(build, described))
     origins = [get_origin(option) or option for option in options]
     if Callable in origins:
         return types["number" if float in origins else "vector" if tuple in origins else "function"]
-    hint = options[0]
-    if get_origin(hint) is tuple and Ellipsis not in get_args(hint):
+    if origins[0] is tuple and Ellipsis not in get_args(options[0]):
         return Any  # the library checks vectors
-    if get_origin(hint) in (tuple, list, Sequence):
-        return list[_type(get_args(hint)[0], types)]  # type: ignore[misc]
-    return Annotated[hint, Strict()] if hint in (float, int, bool, str) else hint
+    return list[_type(get_args(options[0])[0], types)] if origins[0] in (tuple, list, Sequence) else options[0]  # type: ignore[misc]
 
 
-def with_keys(make: Callable[..., Any], sources: Sequence[Callable[..., Any]], **hints: Any) -> Callable[..., Any]:
-    """Return a function whose keys are the parameters of others.
-
-    hints: types of further keys, None for parameters that are left out.
-    """
-    key_only = inspect.Parameter.KEYWORD_ONLY
-
-    def made(**keys: Any) -> Any:
-        return make(keys)
-
-    found = {key: item for source in sources for key, item in inspect.signature(source).parameters.items()}
-    own = {key: inspect.Parameter(key, key_only, default=None) for key in hints}
-    kept = {key: item for key, item in (found | own).items() if hints.get(key, make) is not None}
-    types = {key: hint for source in sources for key, hint in get_type_hints(source).items()} | hints
-    parameters = [item.replace(kind=key_only) for item in kept.values()]
-    made.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
-    made.__annotations__ = {key: types.get(key, item.annotation) for key, item in kept.items()}
-    return made
-
-
-def reader(read: Callable[[Any, Names], Any]) -> Any:
-    """Return a type whose values a function reads."""
-
-    def validate(value: Any, info: ValidationInfo) -> Any:
-        names: Any = info.context
-        return read(value, names)
-
-    return Annotated[Any, PlainValidator(validate)]
+def reader(read: Callable[[Any, Any], Any]) -> Any:
+    """Return a type whose values a function reads, with the `Names` of the file."""
+    return Annotated[Any, PlainValidator(lambda value, info: read(value, info.context))]
 
 
 def named(section: str, kinds: Kinds) -> Callable[[Any, Names], Any]:
@@ -193,11 +168,9 @@ def named(section: str, kinds: Kinds) -> Callable[[Any, Names], Any]:
             return part(kinds, value, names)
         if not isinstance(value, str):
             raise InputError(f"must be the name of {article} {single}, or a table, got {shown(value)}")
-        known = names.parts.get(section, {})
-        if value in known:
-            return known[value]
-        if value in short:
-            return part(kinds, {"kind": value}, names)
+        known = names.parts[section]
+        if value in known or value in short:
+            return known[value] if value in known else kinds[value]()
         if value in kinds:
             raise InputError(f"the kind {value!r} needs further keys: {in_braces(value, kinds[value])}")
         listed = [*known, *short]
@@ -214,8 +187,7 @@ def require_table(value: Any) -> None:
 
 
 def _needed(make: Callable[..., Any]) -> list[str]:
-    parameters = inspect.signature(make).parameters.values()
-    return [item.name for item in parameters if item.default is item.empty and item.name not in _NO_KEYS]
+    return [key for key, (_, default) in keys_of(make).items() if default is ...]
 
 
 def in_braces(kind: str, make: Callable[..., Any]) -> str:
@@ -224,22 +196,22 @@ def in_braces(kind: str, make: Callable[..., Any]) -> str:
 
 def _fault(error: ValidationError, schema: type[BaseModel]) -> KeyFault:
     """Return the first error that pydantic found."""
-    first = min(error.errors(), key=lambda item: item["type"] == "missing")
+    first = min(error.errors(), key=lambda item: {"extra_forbidden": 0, "missing": 2}.get(item["type"], 1))
     path, given = first["loc"], first["input"]
     cause = first.get("ctx", {}).get("error")
     if isinstance(cause, KeyFault | InputError):
-        return KeyFault.of(cause, *path)
+        return KeyFault(str(cause), *path, *getattr(cause, "path", ()))
     if first["type"] == "missing":
         needed = [name for name, info in schema.model_fields.items() if info.is_required()]
         return KeyFault(f"the key {path[-1]} is missing; needed are {', '.join(needed)}", *path[:-1])
     if first["type"] == "extra_forbidden":
         return KeyFault(f"unknown key; {nearest(path[-1], schema.model_fields)}", *path)
+    rule, hint = _RULES.get(first["type"], first["msg"]).replace("{}", str(path[-1])), ""
     if first["type"] == "literal_error":
         rule = first["ctx"]["expected"].replace("'", '"')
         near = get_close_matches(str(given), re.findall(r'"(.*?)"', rule), 1)
         hint = f"; did you mean {near[0]}?" if near else ""
-        return KeyFault(f"must be {rule}, got {shown(given)}{hint}", *path)
-    return KeyFault(f"must be {_RULES.get(first['type'], first['msg'])}, got {shown(given)}", *path)
+    return KeyFault(f"must be {rule}, got {shown(given)}{hint}", *path)
 
 
 def shown(value: Any) -> str:

@@ -8,8 +8,6 @@ from typing import Any
 
 from beamfem.errors import InputError
 
-KeyPath = tuple[str | int, ...]
-
 _HDF5 = b"\x89HDF"
 _LARGEST = 5_000_000  # bytes
 # start of a message of tomllib, and the usual cause
@@ -45,60 +43,55 @@ class Source:
     values: dict[str, Any]
 
     def error(self, message: str, *path: str | int) -> ModelFileError:
-        """Return the error of a key; for a missing key, with the line of the table that should contain it."""
-        return ModelFileError(message, self.file, _line(self.text, path), written(path) or None)
+        """Return the error of a key; items of arrays are counted from 1."""
+        key = "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in path)
+        return ModelFileError(message, self.file, _line(self.text, path), key.removeprefix(".") or None)
 
 
 def read_source(path: Path) -> Source:
     """Return the text and values of a model file. Raises ModelFileError."""
+    line, content = None, b""
+    if path.exists() and not path.is_file():
+        raise ModelFileError(f"this is a {'folder' if path.is_dir() else 'device'}, not a model file", path)
     try:
-        if path.exists() and not path.is_file():
-            raise ModelFileError(f"this is a {'folder' if path.is_dir() else 'device'}, not a model file", path)
-        if path.stat().st_size > _LARGEST:
-            raise ModelFileError(f"this file has more than {_LARGEST // 10**6} MB, too many for a model file", path)
-        content = path.read_bytes()
+        if path.stat().st_size <= _LARGEST:
+            content = path.read_bytes()
+            text = content.decode("utf-8-sig").replace("\r\n", "\n")
+            return Source(path, text, tomllib.loads(text))
+        message = f"this file has more than {_LARGEST // 10**6} MB, too many for a model file"
     except FileNotFoundError:
-        raise ModelFileError("there is no such file", path) from None
-    try:
-        text = content.decode("utf-8-sig").replace("\r\n", "\n")
-        return Source(path, text, tomllib.loads(text))
+        message = "there is no such file"
     except UnicodeDecodeError:
         results = "a results file, which beamfem info, plot and export read"
-        what = results if content.startswith(_HDF5) else "not a text in UTF-8"
-        raise ModelFileError(f"this is {what}; model files are TOML", path) from None
+        message = f"this is {results if content.startswith(_HDF5) else 'not a text in UTF-8'}; model files are TOML"
     except tomllib.TOMLDecodeError as error:
         cause = next((f"; {cause}" for start, cause in _CAUSES.items() if str(error).startswith(start)), "")
         place = re.search(r"\(at line (\d+)", str(error))
         line = int(place[1]) if place else max(len(text.rstrip().splitlines()), 1)
-        raise ModelFileError(f"not valid TOML: {error}{cause}", path, line) from None
+        message = f"not valid TOML: {error}{cause}"
     except ValueError as error:  # whole numbers of thousands of digits
-        raise ModelFileError(f"a number cannot be read: {error}", path) from None
+        message = f"a number cannot be read: {error}"
     except RecursionError:
-        raise ModelFileError("arrays or tables are nested too deeply", path) from None
+        message = "arrays or tables are nested too deeply"
+    raise ModelFileError(message, path, line)
 
 
-def _line(text: str, path: KeyPath) -> int | None:
-    """Return the line, from 1, of the statement after which a key, or else the table that should contain it, is there.
-
-    The first lines of a text are valid TOML if they end with a statement.
-    """
-    lines = text.splitlines(keepends=True)
-    while path and not _known("".join(lines), path):
+def _line(text: str, path: tuple[str | int, ...]) -> int | None:
+    """Return the line, from 1, where the statement of a key begins, or else the table that should contain it."""
+    while path and not _known(text, path):
         path = path[:-1]
+    lines = text.splitlines(keepends=True)
     without, having = 0, len(lines)
     while path and having - without > 1:
         middle = (without + having) // 2
-        # the lines of a long array, which end with a comma, need not be parsed each
-        ends = (end for end in range(middle, having) if end == middle or not lines[end - 1].rstrip().endswith(","))
-        found = next(((end, known) for end in ends if (known := _known("".join(lines[:end]), path)) is not None), None)
-        if found is None or found[1]:
-            having = middle
-        else:
-            without = found[0]
+        # the first lines are TOML if they end with a statement, which lines of a long array, with a comma, do not
+        ends = (end for end in range(middle, having) if end == middle or lines[end - 1].rstrip()[-1:] != ",")
+        known = next((known for end in ends if (known := _known("".join(lines[:end]), path)) is not None), True)
+        without, having = (without, middle) if known else (middle, having)
     return having if path else None
 
 
-def _known(text: str, path: KeyPath) -> bool | None:
+def _known(text: str, path: tuple[str | int, ...]) -> bool | None:
     """Return whether a text has a key, None if it is no TOML."""
     try:
         value: Any = tomllib.loads(text)
@@ -109,9 +102,3 @@ def _known(text: str, path: KeyPath) -> bool | None:
         return False
     except tomllib.TOMLDecodeError:
         return None
-
-
-def written(path: KeyPath) -> str:
-    """Return a path as text; items of arrays are counted from 1."""
-    text = "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in path)
-    return text.removeprefix(".")

@@ -49,7 +49,8 @@ class PathState(State):
         return self.at
 
     @cached_property
-    def _alone(self) -> Solution:
+    def alone(self) -> Solution:
+        """The state as a solution of one row."""
         rows = (np.array([self.at]), self.p[None], self.v[None], self.a[None])
         turned = None if self.turned is None else self.turned[None]
         return Solution(self.model, True, *rows, Statistics(0, 0, 0, "one state of a path"), turned=turned)
@@ -57,7 +58,7 @@ class PathState(State):
     @property
     def stable(self) -> bool:
         """Whether it is a stable equilibrium, see `Solution.stable`."""
-        return bool(self._alone.stable[0]) if self.stability is None else self.stability
+        return bool(self.alone.stable[0]) if self.stability is None else self.stability
 
     def position(self, point: Point) -> np.ndarray:
         """Return the position of a point.
@@ -72,7 +73,7 @@ class PathState(State):
         array, [m], (2,)
             Position.
         """
-        return np.asarray(self._alone.position(point)[0])
+        return np.asarray(self.alone.position(point)[0])
 
     def displacement(self, point: Point) -> np.ndarray:
         """Return the displacement of a point from the reference configuration.
@@ -87,7 +88,7 @@ class PathState(State):
         array, [m], (2,)
             Displacement.
         """
-        return np.asarray(self._alone.displacement(point)[0])
+        return np.asarray(self.alone.displacement(point)[0])
 
     def rotation(self, point: Point) -> float:
         """Return the rotation of the section, counter-clockwise positive, full turns included.
@@ -102,7 +103,7 @@ class PathState(State):
         float, [rad]
             Rotation from the reference.
         """
-        return float(self._alone.rotation(point)[0])
+        return float(self.alone.rotation(point)[0])
 
     def reaction(self, point: Point) -> np.ndarray:
         """Return the reaction of the supports on the beam.
@@ -122,7 +123,7 @@ class PathState(State):
         InputError
             If the point has no support.
         """
-        return np.asarray(self._alone.reaction(point)[0])
+        return np.asarray(self.alone.reaction(point)[0])
 
     def fields(self, point: Point) -> Fields:
         """Return position, gradients, rotation, shear angle, strain and stress at a point.
@@ -137,7 +138,7 @@ class PathState(State):
         Fields
             The fields, without the axis of steps.
         """
-        of_row = self._alone.fields(point)
+        of_row = self.alone.fields(point)
         values = [getattr(of_row, name) for name in Fields.__dataclass_fields__]
         return Fields(*(_first(value) for value in values))
 
@@ -154,7 +155,7 @@ class PathState(State):
         SectionForces
             Normal and shear force [N] and moment [N m], (stations,).
         """
-        forces = self._alone.section_forces(beam)
+        forces = self.alone.section_forces(beam)
         return replace(forces, normal=forces.normal[0], shear=forces.shear[0], moment=forces.moment[0])
 
 

@@ -1,6 +1,6 @@
 """Curves of quantities: at points against time or load factor, and of any two quantities against each other."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from os import PathLike
 from typing import Any
 
@@ -11,6 +11,7 @@ from beamfem.model.beam import Point
 from beamfem.results.axis_fields import QUANTITIES, PointsAt, Quantity
 from beamfem.results.free_bodies import Cuts
 from beamfem.results.path import Path, PathState
+from beamfem.results.quantities import AT_POINT, UNITS, value_of
 from beamfem.results.solution import Solution
 from beamfem.validation import items, one_of, require_known, shown
 from beamfem.view.frames import axis_of_rows
@@ -20,20 +21,16 @@ from beamfem.view.plots import COLOURS, new_figure, save_figure
 _STYLES = ("-", "--", ":")
 
 
-def _components(values: np.ndarray, *names: str) -> dict[str, np.ndarray]:
-    return {name: values[:, column] for column, name in enumerate(names)}
-
-
-# what is drawn of a point: label, unit and the curves by name
-_CURVES_OF_POINT: dict[str, tuple[str, str, Callable[[Solution, Point], dict[str, np.ndarray]]]] = {
-    "displacement": ("displacement", "m", lambda s, at: _components(s.displacement(at), "ux", "uy")),
-    "ux": ("displacement ux", "m", lambda s, at: {"ux": s.displacement(at)[:, 0]}),
-    "uy": ("displacement uy", "m", lambda s, at: {"uy": s.displacement(at)[:, 1]}),
-    "position": ("position", "m", lambda s, at: _components(s.position(at), "x", "y")),
-    "velocity": ("velocity", "m/s", lambda s, at: _components(s.velocity(at), "vx", "vy")),
-    "rotation": ("rotation", "rad", lambda s, at: {"rotation": s.rotation(at)}),
-    "force": ("reaction force", "N", lambda s, at: _components(s.reaction(at), "fx", "fy")),
-    "reaction_moment": ("reaction moment", "N m", lambda s, at: {"m": s.reaction(at)[:, 2]}),
+# what is drawn of a point: label and the names of its curves
+_CURVES_OF_POINT = {
+    "displacement": ("displacement", ("ux", "uy")),
+    "ux": ("displacement ux", ("ux",)),
+    "uy": ("displacement uy", ("uy",)),
+    "position": ("position", ("x", "y")),
+    "velocity": ("velocity", ("vx", "vy")),
+    "rotation": ("rotation", ("rotation",)),
+    "force": ("reaction force", ("fx", "fy")),
+    "reaction_moment": ("reaction moment", ("m",)),
 }
 
 
@@ -54,11 +51,12 @@ def plot_history(
         curves = {name: getattr(energy, name) for name in ("kinetic", "strain", "potential", "total")}
         label, unit, parts = "energy", "J", [curves]
     else:
-        label, unit, values = _quantity(quantity)
+        label, names = _quantity(quantity)
+        unit = UNITS[names[0]]
         points = [point] if isinstance(point, Point) else [] if point is None else items("point", point)
         if not points or not all(isinstance(item, Point) for item in points):
             raise InputError(f"the history of {quantity!r} needs a point such as beam.end, got {shown(point)}")
-        parts = [values(solution, item) for item in points]
+        parts = [{name: value_of(solution, item, AT_POINT[name][0]) for name in names} for item in points]
         if len(parts) > 1:
             parts = [
                 {f"{name} at {place(solution.model, item.reference)}": curve for name, curve in part.items()}
@@ -93,8 +91,9 @@ def plot_load_displacement(
     """
     one_of("what the load is drawn over", quantity, ("ux", "uy", "rotation"))
     load = solution.load_factor
-    label, unit, values = _quantity(quantity)
-    (curve,) = values(solution, point).values()
+    label, _ = _quantity(quantity)
+    what, unit = AT_POINT[quantity][0], UNITS[quantity]
+    curve = value_of(solution, point, what)
     figure, axes = new_figure()
     axes.axhline(0.0, color="0.6", linewidth=0.8)
     marker = "." if len(solution) <= 200 else None
@@ -108,7 +107,7 @@ def plot_load_displacement(
             if not states:
                 continue
             alone = _together(solution, states)
-            (x,) = values(alone, point).values()
+            x = value_of(alone, point, what)
             axes.plot(x, alone.at, linestyle="none", label=name, zorder=3, **look(colour))
             marked += zip(x.tolist(), alone.at.tolist(), strict=True)
             colours += len(states) * [colour]
@@ -133,7 +132,7 @@ def _diamond(colour: str) -> dict[str, Any]:
     return {"marker": "D", "markersize": 6, "color": colour, "markeredgecolor": "white"}
 
 
-def _quantity(name: str) -> tuple[str, str, Callable[[Solution, Point], dict[str, np.ndarray]]]:
+def _quantity(name: str) -> tuple[str, tuple[str, ...]]:
     require_known(f"there is no history of {shown(name)}", name, [*_CURVES_OF_POINT, "energy"])
     return _CURVES_OF_POINT[name]
 
@@ -149,18 +148,18 @@ def _together(path: Solution, states: Sequence[PathState]) -> Solution:
 Drawn = str | tuple[str, Any] | np.ndarray
 _MARKED = 200  # rows up to which each is a dot
 
-# of a point: label, unit and value
-_OF_POINT: dict[str, tuple[str, str, Callable[[Solution, Point], np.ndarray]]] = {
-    "ux": ("displacement ux", "m", lambda s, at: s.displacement(at)[:, 0]),
-    "uy": ("displacement uy", "m", lambda s, at: s.displacement(at)[:, 1]),
-    "x": ("x", "m", lambda s, at: s.position(at)[:, 0]),
-    "y": ("y", "m", lambda s, at: s.position(at)[:, 1]),
-    "rotation": ("rotation", "rad", lambda s, at: s.rotation(at)),
-    "vx": ("velocity vx", "m/s", lambda s, at: s.velocity(at)[:, 0]),
-    "vy": ("velocity vy", "m/s", lambda s, at: s.velocity(at)[:, 1]),
-    "fx": ("reaction fx", "N", lambda s, at: s.reaction(at)[:, 0]),
-    "fy": ("reaction fy", "N", lambda s, at: s.reaction(at)[:, 1]),
-    "m": ("reaction moment", "N m", lambda s, at: s.reaction(at)[:, 2]),
+# of a point, by name
+_LABELS = {
+    "ux": "displacement ux",
+    "uy": "displacement uy",
+    "x": "x",
+    "y": "y",
+    "rotation": "rotation",
+    "vx": "velocity vx",
+    "vy": "velocity vy",
+    "fx": "reaction fx",
+    "fy": "reaction fy",
+    "m": "reaction moment",
 }
 OF_SECTION = (
     *("normal", "shear", "moment", "stress", "von_mises", "upper", "lower", "outer"),
@@ -200,12 +199,12 @@ def _taken(solution: Solution, which: str, given: Drawn) -> tuple[str, np.ndarra
         return f"{name} [{unit}]", solution.at
     if isinstance(given, tuple) and len(given) == 2 and isinstance(given[1], Point):
         name, point = given
-        require_known(f"{which} of a curve is no {shown(name)} of a point", name, [*_OF_POINT, *OF_SECTION])
+        require_known(f"{which} of a curve is no {shown(name)} of a point", name, [*_LABELS, *OF_SECTION])
         if name in OF_SECTION:
             label, unit, values = _of_section(solution, QUANTITIES[name], point)
         else:
-            label, unit, value = _OF_POINT[name]
-            values = value(solution, point)
+            label, unit = _LABELS[name], UNITS[name]
+            values = value_of(solution, point, AT_POINT[name][0])
         return f"{label} at {place(solution.model, point.reference)} [{solution.model.unit(unit)}]", values
     label, numbers = given if isinstance(given, tuple) and len(given) == 2 else ("", given)
     try:

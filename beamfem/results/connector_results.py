@@ -1,5 +1,6 @@
 """Energies and momenta of the connectors of a model."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -36,12 +37,16 @@ def connector_force(solution: "Solution", connector: Contribution) -> np.ndarray
 
     Of a part along a beam, the points are the nodes of the beam.
     """
+    return forces_at(solution, _bound(solution, connector))
+
+
+def forces_at(solution: "Solution", items: Sequence[Connector]) -> np.ndarray:
+    """Return the forces of connectors on their points (steps, m, 3): fx, fy [N], moment [N m]."""
     system, times = loading(solution)
-    bound = _bound(solution, connector)
     forces = []
     for motion, at in _states(solution, times):
         gravity = system.connectors.gravity(at)
-        forces.append([item.by_point(-item.force_in(motion, at, gravity)[: len(item.dofs)]) for item in bound])
+        forces.append([item.by_point(-item.force_in(motion, at, gravity)[: len(item.dofs)]) for item in items])
     return np.array(forces).reshape(len(solution), -1, 3)
 
 

@@ -1,5 +1,6 @@
 """Section forces of beams from the equilibrium of their elements, at stations and at any other points."""
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
@@ -162,14 +163,34 @@ def _at_stations(solution: "Solution", mesh: BeamMesh) -> np.ndarray:
 def at_points(solution: "Solution", mesh: BeamMesh, cuts: Cuts, rows: slice | np.ndarray = slice(None)) -> np.ndarray:
     """Return normal and shear force [N] and moment [N m] (steps, 3, points) of some rows at points of a beam."""
     elements = np.unique(cuts.element)
+
+    def at_cuts(chunk: Rows, own: Parted, p: np.ndarray) -> np.ndarray:
+        return cut_free(chunk, mesh, elements, own, p).at(cuts)
+
+    return of_elements(solution, mesh, elements, at_cuts, (3, len(cuts.xi)), rows)
+
+
+def of_elements(
+    solution: "Solution",
+    mesh: BeamMesh,
+    elements: np.ndarray,
+    values: Callable[[Rows, Parted, np.ndarray], np.ndarray],
+    shape: tuple[int, ...],
+    rows: slice | np.ndarray = slice(None),
+) -> np.ndarray:
+    """Return the values of elements (ne,) of a beam, in ascending order, in some rows (steps, ...).
+
+    values: function of rows, of the elements without shared nodes and of their coordinates; shape: of its result in a
+    row, by the size of which the rows that are evaluated at once are limited.
+    """
     own = parted(loading(solution)[0].blocks[mesh.block], mesh.in_block(elements))
     field = mesh.beam.element.field
-    size = len(field.nodes) * len(field.vectors) * (len(cuts.xi) + len(elements) * len(field.nodes))
+    size = len(field.nodes) * len(field.vectors) * (math.prod(shape) + len(elements) * len(field.nodes))
     chunk = max(1, _VALUES // size)
-    parts = [np.empty((0, 3, len(cuts.xi)))]
+    parts = [np.empty((0, *shape))]
     for numbers in in_parts(len(solution), rows, chunk):
-        chunk_rows = rows_of(solution, numbers)
-        parts.append(exactly(solution, partial(_at_cuts, chunk_rows, mesh, elements, own, cuts), numbers, own.used))
+        evaluated = partial(values, rows_of(solution, numbers), own)
+        parts.append(exactly(solution, evaluated, numbers, own.used))
     return np.concatenate(parts)
 
 
@@ -182,10 +203,6 @@ def in_parts(count: int, rows: slice | np.ndarray, longest: int) -> Iterator[sli
     for first in range(0, len(chosen), longest):
         part = chosen[first : first + longest]
         yield slice(part[0], part[-1] + 1, part.step) if part.step > 0 else np.array(part)
-
-
-def _at_cuts(rows: Rows, mesh: BeamMesh, elements: np.ndarray, own: Parted, cuts: Cuts, p: np.ndarray) -> np.ndarray:
-    return cut_free(rows, mesh, elements, own, p).at(cuts)
 
 
 def stations(mesh: BeamMesh) -> Cuts:

@@ -13,6 +13,7 @@ from beamfem.curves import BSpline, spline_through_hermite, without_removable_kn
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import Contribution
+from beamfem.model.joints import Joint
 from beamfem.model.model import Model
 from beamfem.reprs import brief
 from beamfem.results import postprocess
@@ -333,6 +334,42 @@ class Solution:
         from beamfem.results.connector_results import connector_force
 
         return connector_force(self, connector)
+
+    def joint_force(self, joint: Joint | Contribution) -> np.ndarray:
+        """Return fx, fy [N] and m [N m] that a joint exerts on its second point `b`, in global axes (steps, 3).
+
+        On `a` it exerts the opposite force. Of `Hinge`, `Rigid` and other joints at which beams share coordinates, the
+        force balances all else that acts on the nodes on the side of `b`: elements with their inertia, loads, supports
+        and connectors there; a joint without a common angle transmits no moment. Of connectors with two points, such as
+        `Link`, `Slider` and `Gear`, it is the force on the second one.
+
+        Parameters
+        ----------
+        joint : Joint or Contribution
+            One of `model.joints`, or a connector with two points.
+
+        Returns
+        -------
+        array, [N, N, N m], (steps, 3)
+            Force and moment about the point.
+
+        Raises
+        ------
+        InputError
+            For anything else, and if further joints connect the same points.
+
+        Examples
+        --------
+        >>> post = bf.Beam(bf.Line((2, 0), (2, -1)), 2, bf.CRBF(order=3), bf.Rectangle(0.05, 0.1), steel)
+        >>> hinge = bf.Hinge(beam.end, post.start)
+        >>> frame = bf.Model([beam, post], [bf.Clamp(beam.start), bf.Clamp(post.end)], model.loads, [hinge])
+        >>> round(float(bf.solve_static(frame).joint_force(hinge)[-1, 1]))  # fy
+        -9997
+        """
+
+        from beamfem.results.joint_forces import joint_force
+
+        return joint_force(self, joint)
 
     def multipliers(self, connector: Contribution) -> np.ndarray:
         """Return the k additional unknowns of a connector, such as multipliers (steps, k).

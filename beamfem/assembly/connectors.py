@@ -10,7 +10,7 @@ from beamfem.cached_properties import cached_property
 from beamfem.element.fields import rule_of
 from beamfem.errors import InputError
 from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.model.contribution import At, Contribution, Remembering, remembered, uses_rotations
+from beamfem.model.contribution import At, Contribution, Remembering, prescribed_by, remembered, uses_rotations
 from beamfem.model.load_base import factor
 from beamfem.model.model import Model
 from beamfem.parts.at_points import PartAlongBeam, PartAtPoints
@@ -27,7 +27,8 @@ Motion = tuple[np.ndarray, np.ndarray, np.ndarray]  # p, p', p'' (n,)
 class Connector:
     """A contribution and the numbers of the coordinates that it acts on.
 
-    dofs (d,): x, y and rotation of each of m points, x and y alone if it has no rotations; own (k,): its multipliers;
+    dofs (d,): x, y and rotation of each of m points, x and y alone if it has no rotations; own (k,): its multipliers,
+    and then the values that are prescribed for its conditions;
     memory (h,): its history variables; reference (m, 3): q in the reference; given: the part of the model that it
     belongs to, another one than `item` where a part along a beam acts at its nodes.
     """
@@ -43,6 +44,24 @@ class Connector:
     def all(self) -> np.ndarray:
         """Numbers (d + k,) of all coordinates that the force belongs to."""
         return np.concatenate([self.dofs, self.own])
+
+    @property
+    def multipliers(self) -> np.ndarray:
+        """Numbers of its multipliers."""
+        return self.own[: self.item.unknowns]
+
+    @property
+    def values(self) -> np.ndarray:
+        """Numbers of the prescribed values of its conditions."""
+        return self.own[self.item.unknowns :]
+
+    def values_in(self, p: np.ndarray) -> np.ndarray:
+        """Return the values with which a state p (n,) satisfies their conditions."""
+        if not len(self.values):
+            return _NOTHING
+        zeros, first = np.zeros(len(p)), len(self.dofs)
+        gaps = self.force_in((p, zeros, zeros), 0.0, np.zeros(2))[first : first + len(self.values)]
+        return np.asarray(p[self.values] + gaps)
 
     @cached_property
     def alone(self) -> "Connector":
@@ -340,7 +359,7 @@ class Connectors:
     @cached_property
     def multipliers(self) -> np.ndarray:
         """Numbers (k,) of the multipliers."""
-        return np.concatenate([_NO_NUMBERS, *(item.own for item in self.items)]) if self.items else _NO_NUMBERS
+        return np.concatenate([_NO_NUMBERS, *(item.multipliers for item in self.items)]) if self.items else _NO_NUMBERS
 
     @cached_property
     def memory(self) -> np.ndarray:
@@ -418,8 +437,10 @@ class Connectors:
         values, rates = [_NOTHING], [_NOTHING]
         for item in (each for each in self.items if len(each.own)):
             d, motion = len(item.dofs), (p, zeros, zeros)
-            values.append(item.force_in(motion, 0.0, gravity)[d:])
-            rates.append(item.tangent(motion, 0.0, gravity, (1.0, 0.0, 0.0))[d:, :d] @ rate[item.dofs])
+            rows, moved = slice(d, d + len(item.multipliers)), rate[item.all]
+            moved[rows] = 0.0
+            values.append(item.force_in(motion, 0.0, gravity)[rows])
+            rates.append(item.tangent(motion, 0.0, gravity, (1.0, 0.0, 0.0))[rows] @ moved)
         return np.concatenate(values), np.concatenate(rates)
 
     @cached_property
@@ -473,7 +494,8 @@ def connectors_of(model: Model, static: bool) -> Connectors:
 def _checked_connectors(model: Model) -> tuple[Connector, ...]:
     """Return the connectors of a model, evaluated once to check shapes and finite values."""
     first, connectors = model.coordinates, []
-    behind = first + sum(item.unknowns for item in model.at_points)
+    value = first_value(model)
+    behind = value + sum(len(prescribed_by(item)) for item in model.at_points)
     for given in model.at_points:
         for item, nodes in _with_nodes(given, model):
             dofs, positions = [], []
@@ -481,16 +503,22 @@ def _checked_connectors(model: Model) -> tuple[Connector, ...]:
                 numbers = mesh.coordinates_of(node)
                 dofs += [numbers[name] for name in _COORDINATES[: 3 if uses_rotations(item) else 2]]
                 positions.append([*mesh.position[node].tolist(), 0.0])
-            multipliers = np.arange(first, first + item.unknowns)
-            first += item.unknowns
+            values = len(prescribed_by(item))
+            own = np.concatenate([np.arange(first, first + item.unknowns), np.arange(value, value + values)])
+            first, value = first + item.unknowns, value + values
             memory = np.arange(behind, behind + len(remembered(item)))
             behind += len(memory)
-            place = np.array(dofs, dtype=np.int64), multipliers, memory, np.array(positions)
+            place = np.array(dofs, dtype=np.int64), own, memory, np.array(positions)
             connectors.append(Connector(item, *place, given))
     for connector in connectors:
         if connector.compiled is None:
             _require_finite(connector.alone)
     return tuple(connectors)
+
+
+def first_value(model: Model) -> int:
+    """Return the number of the first coordinate that is a prescribed value of a condition; they follow multipliers."""
+    return model.coordinates + sum(item.unknowns for item in model.at_points)
 
 
 def _with_nodes(given: Contribution, model: Model) -> list[tuple[Contribution, list[tuple[BeamMesh, int]]]]:

@@ -5,11 +5,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beamfem.assembly.connectors import first_value
 from beamfem.element.coordinates import across, labels
 from beamfem.errors import InputError
 from beamfem.kernels.block import ROTATED_GRADIENTS, Block
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.beam import Point
+from beamfem.model.contribution import prescribed_by, uses_rotations
 from beamfem.model.model import Model
 from beamfem.model.supports import PointSupport, Value
 from beamfem.validation import function_value
@@ -89,7 +91,10 @@ class PrescribedCoordinate(NamedTuple):
 
 
 def prescribed_coordinates(model: Model) -> tuple[PrescribedCoordinate, ...]:
-    """Return the prescribed coordinates ordered by number. Raises InputError if two supports prescribe the same one."""
+    """Return the prescribed coordinates and values of conditions ordered by number.
+
+    Raises InputError if two supports prescribe the same one.
+    """
     coordinates: dict[int, PrescribedCoordinate] = {}
     for support in model.point_supports:
         mesh = model.mesh_of(support.point)
@@ -105,6 +110,9 @@ def prescribed_coordinates(model: Model) -> tuple[PrescribedCoordinate, ...]:
                     f"{what} at {support.point}: another support already prescribes {direction} there; one is enough"
                 )
             coordinates[dof] = PrescribedCoordinate(dof, value, direction == "rotation", support.point)
+    values = ((item, value) for item in model.at_points for value in prescribed_by(item))
+    for dof, (item, value) in enumerate(values, first_value(model)):
+        coordinates[dof] = PrescribedCoordinate(dof, value, uses_rotations(item), item.points[-1])
     return tuple(coordinates[dof] for dof in sorted(coordinates))
 
 

@@ -166,7 +166,7 @@ class Parts(Record):
     coordinates: int  # of all points of a part
     per_point: int
     multipliers: int
-    unknowns: int  # coordinates and multipliers
+    unknowns: int  # coordinates, multipliers and prescribed values
     numbers: Annotated[Wholes, "count", "unknowns"]
     data_size: int
     data: Annotated[Reals, "count", "data_size"]

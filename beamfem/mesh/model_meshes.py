@@ -21,7 +21,7 @@ from beamfem.mesh.numbering import first_of_group, groups, number_nodes
 from beamfem.mesh.reference import curvature, reference_axis, sections_at, stations
 from beamfem.model.along_beam import AlongBeam, functions_along, kinks_along
 from beamfem.model.beam import Beam, Point
-from beamfem.model.contribution import remembered, uses_rotations
+from beamfem.model.contribution import prescribed_by, remembered, uses_rotations
 from beamfem.model.supports import PointSupport
 from beamfem.section.protocol import CrossSection, HasParts
 from beamfem.value_keys import by_value
@@ -257,7 +257,9 @@ def nodes_needed(model: "Model") -> NodesNeeded:
     points = [support.point for support in model.point_supports if _turns(support)]
     points += [point for connector in model.at_points if uses_rotations(connector) for point in connector.points]
     angled = sorted({(model.number_of(point.beam), point.fraction) for point in points})
-    further = sum(connector.unknowns + len(remembered(connector)) for connector in model.at_points)
+    further = sum(
+        connector.unknowns + len(prescribed_by(connector)) + len(remembered(connector)) for connector in model.at_points
+    )
     return NodesNeeded(fractions, angled, further)
 
 

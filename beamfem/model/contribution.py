@@ -8,6 +8,7 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Point, require_point
+from beamfem.model.supports import Value
 from beamfem.reprs import brief
 from beamfem.validation import count, finite, flag, fulfils, items, shown
 
@@ -179,6 +180,11 @@ def require_connector(connector: Contribution) -> None:
 def uses_rotations(connector: Contribution) -> bool:
     """Return whether a connector depends on rotations of its points, which then have an angle as a coordinate."""
     return getattr(connector, "rotations", True)
+
+
+def prescribed_by(connector: Contribution) -> tuple[Value, ...]:
+    """Return the values that a connector prescribes for its conditions, none if it is user-defined."""
+    return getattr(connector, "prescribed", ())
 
 
 def remembered(connector: Contribution) -> np.ndarray:

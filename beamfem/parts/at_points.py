@@ -10,6 +10,7 @@ from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point, require_point_of
 from beamfem.model.contribution import At
 from beamfem.model.load_shapes import ConnectorShape
+from beamfem.model.supports import Value
 from beamfem.physics.compiled_connections import in_python
 from beamfem.physics.connections import Connection, Functions
 from beamfem.validation import convert, vector
@@ -24,6 +25,9 @@ class PartAtPoints:
     ----------
     points : tuple of Point, (m,)
         Its points.
+    prescribed : tuple of float or callable
+        Values of the conditions that have one, see `Connection.prescribed`: numbers, which grow with the load factor in
+        statics, or functions of time [s], in statics of the load factor.
     connection : Connection
         Its definition. Other definitions than those of the package need sympy.
     """
@@ -42,6 +46,11 @@ class PartAtPoints:
         def connection(self) -> Connection:
             """The definition of its energies and conditions."""
             ...
+
+    @property
+    def prescribed(self) -> tuple[Value, ...]:
+        """Values of its conditions, none unless overridden."""
+        return ()
 
     def data(self, reference: np.ndarray) -> tuple[float, ...]:
         """Return its numbers, in the order of `Connection.data`; reference (m, 3): q of its points in the reference."""
@@ -82,7 +91,7 @@ class PartAtPoints:
         size, count = self.connection.coordinates, len(at.q)
         q, v, a = (np.asarray(x)[:, :size].ravel() for x in (at.q, at.v, at.a))
         turned = np.array([(np.cos(angle), np.sin(angle)) for angle in at.q[:, 2]]).ravel()
-        result = np.zeros(size * count + self.unknowns, dtype=np.result_type(q, v, a, at.own, float))
+        result = np.zeros(size * count + len(at.own), dtype=np.result_type(q, v, a, at.own, float))
         in_python(self.connection)(q, v, a, at.own, turned, self._data(at), at.gravity, result)
         forces = np.zeros((count, 3), dtype=result.dtype)
         forces[:, :size] = result[: size * count].reshape(count, size)

@@ -45,7 +45,7 @@ def passes_of(connection: Connection) -> Passes:
         return Passes(*(getattr(connection_forces, f"{connection.name}_{what}") for what in ("force", "tangent")))
     if not connection.name.isidentifier():
         raise InputError(f"the name of a Connection must be one word of letters, digits and _, got {connection.name!r}")
-    if max(connection.points * connection.coordinates, connection.multipliers) > MOST:
+    if max(connection.points * connection.coordinates, connection.multipliers + connection.prescribed) > MOST:
         raise InputError(f"{connection.name} has more than {MOST} coordinates or conditions; split it into parts")
     if len(connection.data) + len(connection.memory) > MOST_DATA and connection.memory:
         raise InputError(

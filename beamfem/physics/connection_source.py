@@ -46,8 +46,10 @@ def _positive(x: Any) -> Any:
 def connection_source(connection: Connection) -> str:
     """Return the source of two functions of a part at points: its force, and ck df/dq + cv df/dv + ca df/da."""
     size, count, k = connection.coordinates, connection.points * connection.coordinates, connection.multipliers
+    moved = connection.prescribed
     q, v, a = (sympy.symbols([f"{letter}{i}" for i in range(count)], real=True) for letter in "qva")
-    own, data = sympy.symbols(f"own:{k}", real=True), sympy.symbols([*connection.data, *connection.memory], real=True)
+    own, values = (sympy.symbols(f"{name}:{number}", real=True) for name, number in (("own", k), ("value", moved)))
+    data = sympy.symbols([*connection.data, *connection.memory], real=True)
     gravity, zero = sympy.symbols("gx gy", real=True), sympy.Integer(0)
     functions = Functions(sympy.sqrt, sympy.cos, sympy.sin, _positive)
     at, rates = ([tuple(x[size * i : size * (i + 1)]) for i in range(connection.points)] for x in (q, v))
@@ -61,13 +63,15 @@ def connection_source(connection: Connection) -> str:
     for i, (x, rate, direct) in enumerate(zip(q, v, given, strict=True)):
         force[i] += (potential - kinetic).diff(x) + lost.diff(rate) + direct
         force[i] += sum((symbol * g.diff(x) for symbol, g in zip(own, conditions, strict=True)), zero)
-    whole = sympy.Matrix([sympy.expand_trig(value) for value in [*force, *conditions]])
+    for i, value in enumerate(values):
+        conditions[i] -= value
+    whole = sympy.Matrix([sympy.expand_trig(value) for value in [*force, *conditions, *(-x for x in own[:moved])]])
     weights = sympy.symbols("ck cv ca", real=True)
-    tangent = sympy.zeros(count + k, count + k)
-    for weight, variables in zip(weights, ([*q, *own], v, a), strict=True):
+    tangent = sympy.zeros(len(whole), len(whole))
+    for weight, variables in zip(weights, ([*q, *own, *values], v, a), strict=True):
         tangent[:, : len(variables)] += weight * whole.jacobian(variables)
     turned = {f(x): sympy.Symbol(f"{n}{i}") for i, x in enumerate(q) for f, n in ((sympy.cos, "c"), (sympy.sin, "s"))}
-    arrays = {"q": q, "v": v, "a": a, "own": own, "data": data, "gravity": gravity}
+    arrays = {"q": q, "v": v, "a": a, "own": [*own, *values], "data": data, "gravity": gravity}
     places = {symbol: f"{name}[{i}]" for name, symbols in arrays.items() for i, symbol in enumerate(symbols)}
     for number in range(connection.points):
         places |= {sympy.Symbol(f"{n}{size * number + 2}"): f"turned[{2 * number + i}]" for i, n in enumerate("cs")}

@@ -3,7 +3,8 @@
 A connection has m points with coordinates q: x, y and, if it depends on rotations, the angle from the reference. Its
 forces, with the sign of internal forces, are those of Lagrange's equations, d/dt dT/dv - dT/dq + dV/dq + dR/dv +
 (dg/dq)' l, with its kinetic energy T(q, v), potential V(q), dissipation function R(q, v), and conditions g(q) = 0 with
-their multipliers l, and forces given directly; `generate` derives them with sympy.
+their multipliers l, and forces given directly; `generate` derives them with sympy. Conditions whose value is prescribed
+as a function of time are g(q) = u, with u as a further coordinate, which a support could move: its reaction is -l.
 """
 
 from collections.abc import Callable
@@ -56,8 +57,10 @@ class Connection(NamedTuple):
     compiled : (int, int), optional
         Addresses of C functions in place of what sympy derives: force(q, v, a, own, turned, data, gravity, out) and
         tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out). All but the weights are pointers to doubles; own:
-        multipliers, turned: cosine and sine of each rotation; out: the resisting forces and the conditions, or
-        ck df/dq + cv df/dv + ca df/da row by row.
+        multipliers and prescribed values, turned: cosine and sine of each rotation; out: the resisting forces, the
+        conditions and the reactions, or ck df/dq + cv df/dv + ca df/da row by row.
+    prescribed : int, default 0
+        Number of the conditions, the first ones, that are g(q) = u with values u that `PartAtPoints.prescribed` gives.
     """
 
     name: str
@@ -73,6 +76,7 @@ class Connection(NamedTuple):
     force: Callable[..., tuple[Number, ...]] | None = None
     remember: Callable[..., tuple[Number, ...]] | None = None
     compiled: tuple[int, int] | None = None
+    prescribed: int = 0
 
 
 def _mass_kinetic(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
@@ -230,6 +234,10 @@ def _stop_remember(q: list[Vector], v: list[Vector], data: Vector, f: Functions)
     return data[9] + slipped, data[10] + friction * slipped
 
 
+def _motor_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
+    return (q[1][2] - q[0][2],)
+
+
 _LEAST = 1e-300  # [m^2/s^2], so that the derivative of |v| v is zero at rest
 
 
@@ -258,8 +266,9 @@ _BUSHING = ("kx", "ky", "kt", "cx", "cy", "ct", "x", "y")
 BUSHING = Connection("bushing", 2, 3, _BUSHING, None, _bushing_potential, _bushing_dissipation)
 SLIDER = Connection("slider", 2, 3, ("nx", "ny", "offset"), None, None, None, _slider_conditions, 2)
 GEAR = Connection("gear", 2, 3, ("ratio",), None, None, None, _gear_conditions, 1)
+MOTOR = Connection("motor", 2, 3, (), None, None, None, _motor_conditions, 1, prescribed=1)
 _STOP = ("stiffness", "damping", "friction", "x", "y", "nx", "ny", "x0", "y0")
 STOP = Connection("stop", 1, 2, _STOP, None, _stop_potential, _stop_dissipation)
 ROUGH_STOP = STOP._replace(name="rough_stop", memory=("slip", "dissipated"), force=_stop_force, remember=_stop_remember)
 _SPRINGS = SPRING, GROUNDED_SPRING, TORSION_SPRING, CABLE, GROUNDED_CABLE, BUSHING
-CONNECTIONS = MASS, BODY, *_SPRINGS, LINK, SLIDER, GEAR, DRAG, STOP, ROUGH_STOP
+CONNECTIONS = MASS, BODY, *_SPRINGS, LINK, SLIDER, GEAR, MOTOR, DRAG, STOP, ROUGH_STOP

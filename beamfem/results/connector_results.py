@@ -52,7 +52,7 @@ def forces_at(solution: "Solution", items: Sequence[Connector]) -> np.ndarray:
 
 def multipliers(solution: "Solution", connector: Contribution) -> np.ndarray:
     """Return the additional unknowns of a connector (steps, k), such as multipliers. Raises InputError."""
-    return solution.p[:, np.concatenate([item.own for item in _bound(solution, connector)])]
+    return solution.p[:, np.concatenate([item.multipliers for item in _bound(solution, connector)])]
 
 
 def _bound(solution: "Solution", connector: Contribution) -> list[Connector]:

@@ -905,6 +905,94 @@ def gear_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
 
 
 @routine("rrrrrrrr")
+def motor_force(q, v, a, own, turned, data, gravity, out):
+    """Fill the force of `MOTOR`."""
+    q2 = q[2]
+    q5 = q[5]
+    own0 = own[0]
+    value0 = own[1]
+    x0 = -own0
+    out[0] = 0.0
+    out[1] = 0.0
+    out[2] = x0
+    out[3] = 0.0
+    out[4] = 0.0
+    out[5] = own0
+    out[6] = -q2 + q5 - value0
+    out[7] = x0
+
+
+@routine("rrrrrrrdddr")
+def motor_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
+    """Fill ck df/dq + cv df/dv + ca df/da of `MOTOR`, row by row."""
+    x0 = -ck
+    out[0] = 0.0
+    out[1] = 0.0
+    out[2] = 0.0
+    out[3] = 0.0
+    out[4] = 0.0
+    out[5] = 0.0
+    out[6] = 0.0
+    out[7] = 0.0
+    out[8] = 0.0
+    out[9] = 0.0
+    out[10] = 0.0
+    out[11] = 0.0
+    out[12] = 0.0
+    out[13] = 0.0
+    out[14] = 0.0
+    out[15] = 0.0
+    out[16] = 0.0
+    out[17] = 0.0
+    out[18] = 0.0
+    out[19] = 0.0
+    out[20] = 0.0
+    out[21] = 0.0
+    out[22] = x0
+    out[23] = 0.0
+    out[24] = 0.0
+    out[25] = 0.0
+    out[26] = 0.0
+    out[27] = 0.0
+    out[28] = 0.0
+    out[29] = 0.0
+    out[30] = 0.0
+    out[31] = 0.0
+    out[32] = 0.0
+    out[33] = 0.0
+    out[34] = 0.0
+    out[35] = 0.0
+    out[36] = 0.0
+    out[37] = 0.0
+    out[38] = 0.0
+    out[39] = 0.0
+    out[40] = 0.0
+    out[41] = 0.0
+    out[42] = 0.0
+    out[43] = 0.0
+    out[44] = 0.0
+    out[45] = 0.0
+    out[46] = ck
+    out[47] = 0.0
+    out[48] = 0.0
+    out[49] = 0.0
+    out[50] = x0
+    out[51] = 0.0
+    out[52] = 0.0
+    out[53] = ck
+    out[54] = 0.0
+    out[55] = x0
+    out[56] = 0.0
+    out[57] = 0.0
+    out[58] = 0.0
+    out[59] = 0.0
+    out[60] = 0.0
+    out[61] = 0.0
+    out[62] = x0
+    out[63] = 0.0
+
+
+@routine("rrrrrrrr")
 def drag_force(q, v, a, own, turned, data, gravity, out):
     """Fill the force of `DRAG`."""
     v0 = v[0]

@@ -27,7 +27,7 @@ def require_met(system: System, p: np.ndarray, v: np.ndarray, duration: float) -
                 f"conditions of {item.name} depend on time, which simulate does not support; let a Prescribed support "
                 "move"
             )
-        rows = item.own - system.model.coordinates
+        rows = item.multipliers - system.model.coordinates
         if np.any(np.abs(gaps[rows]) > _MET * system.extent):
             raise InputError(
                 f"the start of the motion does not satisfy the conditions of {item.name}, which are off by {gaps[rows]}"

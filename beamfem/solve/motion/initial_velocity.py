@@ -123,6 +123,13 @@ def require_on_supports(system: System, p: np.ndarray, prescribed: np.ndarray, g
             raise InputError(_jumping(system, support, p, dofs, jumps, given))
         if None in names.values() and numbers["r^x"] in slides:
             raise InputError(_sliding(system, support, slides[numbers["r^x"]]))
+    for item in system.connectors.items:
+        for dof in (each for each in item.values.tolist() if each in jumps):
+            raise InputError(
+                f"{item.name} at {item.item.points[-1]} prescribes {_number(system, dof, p[dof] + jumps[dof])} when "
+                f"the motion begins, but {'start' if given else 'the reference'} has {_number(system, dof, p[dof])}, "
+                f"so that it would jump by {abs(jumps[dof]):.4g}; shift its function of time, which begins at 0"
+            )
 
 
 def put_onto_supports(system: System, state: np.ndarray, prescribed: np.ndarray) -> np.ndarray:

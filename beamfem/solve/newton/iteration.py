@@ -186,8 +186,9 @@ def _largest_gap(system: System, p: np.ndarray, load_factor: float, unbalanced: 
     largest = 0.0
     tangents = connectors.tangents((p, zeros, zeros), load_factor, STATICS)
     for item, tangent in zip(connectors.items, tangents, strict=True):
-        gradients = np.abs(tangent[len(item.dofs) :, : len(item.dofs)])
-        gaps = np.abs(unbalanced[item.own]) / (gradients @ system.scale[item.dofs])
+        first = len(item.dofs)
+        gradients = np.abs(tangent[first : first + len(item.multipliers), :first])
+        gaps = np.abs(unbalanced[item.multipliers]) / (gradients @ system.scale[item.dofs])
         largest = max(largest, float(np.max(gaps, initial=0.0)))
     return largest
 

@@ -49,6 +49,8 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
         if id(item.item) in source_items:
             found = source_items[id(item.item)]
             p[item.memory], p[item.own] = state.p[found.memory], state.p[found.own]
+        else:
+            p[item.values] = item.values_in(p)
     return p, v
 
 

@@ -83,6 +83,7 @@ from .parts.gear import Gear as Gear
 from .parts.gravity import Gravity as Gravity
 from .parts.hinge import Hinge as Hinge
 from .parts.link import Link as Link
+from .parts.motor import Motor as Motor
 from .parts.pin import Pin as Pin
 from .parts.point_force import PointForce as PointForce
 from .parts.point_mass import PointMass as PointMass

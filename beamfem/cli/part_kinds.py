@@ -17,6 +17,7 @@ from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
 from beamfem.model.grading import graded
 from beamfem.model.time_functions import Interpolated, kinks_of
+from beamfem.parts.hinge import Hinge
 from beamfem.parts.parts_registry import parts_in
 from beamfem.section import Circle, Layered, Rectangle, Section, Tube
 from beamfem.section.protocol import CrossSection
@@ -110,10 +111,20 @@ def _vector(value: Any, names: Names) -> Any:
     return _along(lambda **parts: tuple(parts.values()))(**numbers)
 
 
+def _point_or_hinge(value: Any, names: Names) -> Any:
+    """Return a point, or the hinge of two points."""
+    if not isinstance(value, list):
+        return names.point(value)
+    if len(value) != 2:
+        raise InputError(f"must be a point, or the two points of a hinge, got {shown(value)}")
+    return Hinge(*map(names.point, value))
+
+
 _function = named("functions", FUNCTIONS)
 TYPES: dict[Any, Any] = {
     Point: reader(lambda value, names: names.point(value)),
     Point | tuple[float, float]: reader(lambda at, names: tuple(at) if type(at) is list else names.point(at)),
+    Point | Hinge: reader(_point_or_hinge),
     Beam: reader(lambda value, names: names.beam(value)),
     MeshLine1: reader(lambda ends, names: part({"graded": graded}, ends, names) if isinstance(ends, dict) else ends),
     Material: reader(named("materials", MATERIALS)),

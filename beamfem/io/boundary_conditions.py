@@ -124,8 +124,8 @@ def _of_foundation(
 
 def _loads(model: Model) -> Iterator[Vertices]:
     """Yield the vertices of the loads; strains that are imposed act nowhere from outside."""
-    for load in model.loads:
-        kind = type(load).__name__
+    named = [(type(load).__name__, part) for load in model.loads for part in load.parts if isinstance(part, Load)]
+    for kind, load in named:
         for mesh, element, xi in _loaded(model, load.place):
             acting = load.acting(mesh.arc_length(element, xi))
             for name in acting:

@@ -6,6 +6,7 @@ from typing import Any
 
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point, names
+from beamfem.model.joints import Joint
 from beamfem.model.model import Model
 from beamfem.model.part_units import field_units
 from beamfem.section import Layered, Section, ShapedSection, StiffnessSection
@@ -90,6 +91,8 @@ def _value_in_words(value: Any, model: Model) -> str:
             ends = {0.0: "start", 1.0: "end"}
             place = ends.get(value.fraction, f"at({value.fraction:g})")
             return f"{_value_in_words(value.beam, model)}.{place}"
+        case Joint():
+            return part_in_words(value, model)
         case tuple():
             return f"({', '.join(_value_in_words(item, model) for item in value)})"
         case float():

@@ -10,9 +10,11 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.model.along_beam import AlongBeam, check_along, ends_and_middle
 from beamfem.model.beam import Beam, Point, require_beam, require_point_of
+from beamfem.model.joints import Joint
 from beamfem.model.load_arrays import values_along
 from beamfem.model.load_shapes import Acceleration, Force, ForcesAlong, LoadShape, Moment
 from beamfem.model.state_protocols import Axes, Displaced, Placed, in_plane
+from beamfem.model.supports import Value
 from beamfem.validation import (
     called,
     finite,
@@ -60,6 +62,11 @@ class Load(ABC):
     def layout(self) -> Any:
         """All of the load but its size; the load itself if tables of solvers depend on its size."""
         return self
+
+    @property
+    def parts(self) -> tuple[Any, ...]:
+        """What the load consists of: itself, unless it is a `CompositeLoad`."""
+        return (self,)
 
     @property
     @abstractmethod
@@ -253,6 +260,40 @@ class PointLoad(Load):
         numbers = [squared(finite)(what, number) for number in items(what, value)]
         if len(numbers) != 3:
             raise InputError(f"{what} must be three numbers, fx, fy and moment, got {shown(value)}")
+
+
+class CompositeLoad(Load):
+    """A load that consists of supports at points, loads at points and conditions.
+
+    Attributes
+    ----------
+    joint : Joint, optional
+        The joint of the model that it acts in.
+    """
+
+    @property
+    def joint(self) -> Joint | None:
+        """The joint of the model that it acts in, none unless overridden."""
+        return None
+
+    @property
+    @abstractmethod
+    def parts(self) -> tuple[Any, ...]:
+        """What it consists of, the same objects at each access."""
+
+    @property
+    def conservative(self) -> bool:
+        """Whether all of its loads have a potential."""
+        return all(part.conservative for part in self.parts if isinstance(part, Load))
+
+    @abstractmethod
+    def changed(self, change: Callable[[Value], Value]) -> "CompositeLoad":
+        """Return the load with what `change` returns for its values, numbers or functions, in place of these."""
+
+    def work(self, displaced: Displaced) -> np.ndarray:
+        """Return the work of its loads, see `Load.work`."""
+        own = (part.work(displaced) for part in self.parts if isinstance(part, Load))
+        return sum(own, start=super().work(displaced))
 
 
 _ARROWS = 11  # along a beam

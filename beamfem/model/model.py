@@ -17,7 +17,7 @@ from beamfem.model.check_units import warn_of_units
 from beamfem.model.contribution import Contribution, require_connector
 from beamfem.model.imposed_strains import ImposedStrain
 from beamfem.model.joints import Joint
-from beamfem.model.load_base import BodyLoad, LineLoad, Load, PointLoad
+from beamfem.model.load_base import BodyLoad, CompositeLoad, LineLoad, Load, PointLoad
 from beamfem.model.supports import LineSupport, PointSupport, Support
 from beamfem.model.supports_along import SupportsAlong
 from beamfem.units import Units, units_of
@@ -81,7 +81,7 @@ _UNNAMED = "N, m, s"
 _KINDS: dict[str, tuple[type, ...]] = {
     "beams": (Beam,),
     "supports": (PointSupport, LineSupport),
-    "loads": (BodyLoad, LineLoad, PointLoad, ImposedStrain),
+    "loads": (BodyLoad, LineLoad, PointLoad, ImposedStrain, CompositeLoad),
     "joints": (Joint, Contribution),
     "connectors": (Contribution,),
     "masses": (Contribution,),
@@ -248,6 +248,15 @@ class Model:
                 part.require_valid()
         for item in parts:
             self._require(item, item.place)
+        for load in self.loads:
+            for part in load.parts if isinstance(load, CompositeLoad) else ():
+                for point in getattr(part, "points", None) or (part.point,):
+                    self._require(load, point)
+            if isinstance(load, CompositeLoad) and load.joint is not None and load.joint not in self.shared_joints:
+                raise InputError(
+                    f"{type(load).__name__} acts in a {type(load.joint).__name__} at {load.joint.a} that is not one of "
+                    "the joints of the model; add it to joints"
+                )
         for joint in self.shared_joints:
             self._require(joint, joint.a)
             self._require(joint, joint.b)
@@ -406,9 +415,14 @@ class Model:
 
     @cached_property
     def at_points(self) -> tuple[Contribution, ...]:
-        """Connectors, masses, and joints that are conditions: what acts on points."""
+        """Connectors, masses, joints that are conditions, and conditions of loads: what acts on points."""
         conditions = (joint for joint in self.joints if not isinstance(joint, Joint))
-        return (*self.connectors, *self.masses, *conditions)
+        of_loads = (part for part in self._parts_of_loads if not isinstance(part, Load | Support))
+        return (*self.connectors, *self.masses, *conditions, *of_loads)
+
+    @cached_property
+    def _parts_of_loads(self) -> tuple[Any, ...]:
+        return tuple(part for load in self.loads for part in load.parts)
 
     @cached_property
     def imposing(self) -> tuple[tuple[int, ImposedStrain], ...]:
@@ -436,12 +450,13 @@ class Model:
     @cached_property
     def point_loads(self) -> tuple[PointLoad, ...]:
         """The loads that are forces and moments at points."""
-        return tuple(load for load in self.loads if isinstance(load, PointLoad))
+        return tuple(part for part in self._parts_of_loads if isinstance(part, PointLoad))
 
     @cached_property
     def point_supports(self) -> tuple[PointSupport, ...]:
         """The supports at points."""
-        return tuple(support for support in self.supports if isinstance(support, PointSupport))
+        parts = (*self.supports, *self._parts_of_loads)
+        return tuple(part for part in parts if isinstance(part, PointSupport))
 
     @cached_property
     def supports_along(self) -> SupportsAlong:

@@ -30,3 +30,4 @@ from beamfem.parts.distributed_load import DistributedLoad as DistributedLoad
 from beamfem.parts.pressure import Pressure as Pressure
 from beamfem.parts.actuation import Actuation as Actuation
 from beamfem.parts.temperature import Temperature as Temperature
+from beamfem.parts.motor import Motor as Motor

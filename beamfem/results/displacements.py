@@ -77,9 +77,8 @@ class Displacements:
     def _loaded(self) -> dict[int, list[Point]]:
         """The loaded points of each beam."""
         result = defaultdict[int, list[Point]](list)
-        for load in self.solution.model.loads:
-            if isinstance(load.place, Point):
-                result[id(load.place.beam)].append(load.place)
+        for load in self.solution.model.point_loads:
+            result[id(load.point.beam)].append(load.point)
         return result
 
 

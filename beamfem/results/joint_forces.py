@@ -12,8 +12,10 @@ from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.beam import Point
 from beamfem.model.contribution import Contribution
 from beamfem.model.joints import Joint
-from beamfem.model.load_base import PointLoad, factor
+from beamfem.model.load_base import Load, PointLoad, factor
 from beamfem.model.model import Model
+from beamfem.model.supports import PointSupport
+from beamfem.parts.motor import Motor
 from beamfem.results.connector_results import connector_force, forces_at
 from beamfem.results.element_loads import Rows
 from beamfem.results.free_bodies import Parted, cut_free
@@ -28,17 +30,33 @@ if TYPE_CHECKING:
 Node = tuple[int, int]  # number of the beam, and of its node
 
 
-def joint_force(solution: "Solution", joint: Joint | Contribution) -> np.ndarray:
+def joint_force(solution: "Solution", joint: Joint | Contribution | Load) -> np.ndarray:
     """Return fx, fy [N] and m [N m] (steps, 3) of a joint on its second party, see `Solution.joint_force`."""
     for item in solution.model.shared_joints:
         if item is joint:
             return _of_cut(solution, item)
+    for load in solution.model.loads:
+        if load is joint and isinstance(load, Motor):
+            return _of_motor(solution, load)
     for part in solution.model.at_points:
         if part is joint and len(part.points) == 2:
             return connector_force(solution, part)[:, 1]
     raise InputError(
-        f"{shown(joint)} is neither a joint nor a connector of two points of this model; use one of model.joints"
+        f"{shown(joint)} is neither a joint, a motor nor a connector of two points of this model; use one of "
+        "model.joints"
     )
+
+
+def _of_motor(solution: "Solution", motor: Motor) -> np.ndarray:
+    """Return the torque of a motor (steps, 3)."""
+    last = motor.parts[-1]
+    if isinstance(last, PointLoad):
+        return _of_load(solution, last)
+    if not isinstance(last, PointSupport):
+        return connector_force(solution, last)[:, 1]
+    result = np.zeros((len(solution), 3))
+    result[:, 2] = reaction_of(solution, [last])[:, 2]
+    return result
 
 
 def _of_cut(solution: "Solution", joint: Joint) -> np.ndarray:

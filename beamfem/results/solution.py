@@ -14,6 +14,7 @@ from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import Contribution
 from beamfem.model.joints import Joint
+from beamfem.model.load_base import Load
 from beamfem.model.model import Model
 from beamfem.reprs import brief
 from beamfem.results import postprocess
@@ -335,18 +336,18 @@ class Solution:
 
         return connector_force(self, connector)
 
-    def joint_force(self, joint: Joint | Contribution) -> np.ndarray:
+    def joint_force(self, joint: Joint | Contribution | Load) -> np.ndarray:
         """Return fx, fy [N] and m [N m] that a joint exerts on its second point `b`, in global axes (steps, 3).
 
         On `a` it exerts the opposite force. Of `Hinge`, `Rigid` and other joints at which beams share coordinates, the
         force balances all else that acts on the nodes on the side of `b`: elements with their inertia, loads, supports
         and connectors there; a joint without a common angle transmits no moment. Of connectors with two points, such as
-        `Link`, `Slider` and `Gear`, it is the force on the second one.
+        `Link`, `Slider` and `Gear`, it is the force on the second one, and of a `Motor` its torque.
 
         Parameters
         ----------
-        joint : Joint or Contribution
-            One of `model.joints`, or a connector with two points.
+        joint : Joint, Contribution or Motor
+            One of `model.joints`, a connector with two points, or a motor.
 
         Returns
         -------

@@ -27,6 +27,7 @@ def supported(name):
         "PointMoment": lambda: bf.Model([one], [clamp], [bf.PointMoment(far, 10.0)]),
         "DistributedLoad": lambda: bf.Model([one], [clamp], [bf.DistributedLoad(one, (0.0, 10.0))]),
         "Pressure": lambda: bf.Model([one], [clamp], [bf.Pressure(one, 10.0)]),
+        "Motor": lambda: bf.Model([one], [bf.Pin(one.start)], [bf.Motor(one.start, speed=1.0)]),
         "Gravity": lambda: bf.Model([one], [clamp], [bf.Gravity((0.0, -9.81))]),
     }[name]()
 
@@ -54,7 +55,7 @@ def panel(axes, name, model):
 
 def main():
     names = ["Clamp", "Pin", "Roller", "Roller(normal=...)", "Prescribed", "Spring", "Foundation", "Rigid", "Hinge"]
-    names += ["PointForce", "PointMoment", "DistributedLoad", "Pressure", "Gravity"]
+    names += ["PointForce", "PointMoment", "DistributedLoad", "Pressure", "Gravity", "Motor"]
     figure, grid = plt.subplots(4, 4, figsize=(12.0, 4.6), layout="constrained")
     for axes in grid.flat[len(names) :]:
         axes.axis("off")

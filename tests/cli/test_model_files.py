@@ -341,3 +341,42 @@ def test_the_same_results_as_python_saves(tmp_path):
 def test_steps_of_a_static_analysis_are_rows(steps, tmp_path):
     run(f'{ARM}\n[analysis]\nkind = "static"\nsteps = {steps}\n', tmp_path, "--out", str(tmp_path / "a.h5"))
     np.testing.assert_allclose(bf.load(tmp_path / "a.h5").load_factor, np.linspace(0, 1, steps + 1), atol=1e-12)
+
+
+DRIVEN = """
+[beams.tip]
+curve = { kind = "line", start = [1, 0], end = [1.5, 0] }
+elements = 4
+element = { kind = "CRBF", order = 3 }
+section = { kind = "rectangle", width = 0.01, height = 0.01 }
+material = "steel"
+[[joints]]
+kind = "hinge"
+a = "arm.end"
+b = "tip.start"
+[[loads]]
+kind = "motor"
+at = ["arm.end", "tip.start"]
+speed = { kind = "sine", frequency = 2 }
+[[supports]]
+kind = "roller"
+point = "tip.end"
+"""
+
+
+def test_motors_in_hinges_and_at_points(tmp_path):
+    file = tmp_path / "motor.toml"
+    file.write_text(ARM + DRIVEN + '[analysis]\nkind = "dynamics"\nduration = 0.1\nstep = 1e-3\n')
+    assert CliRunner().invoke(app, ["run", str(file), "--out", str(tmp_path / "a.h5"), "--quiet"]).exit_code == 0
+    motion = bf.load(tmp_path / "a.h5")
+    arm, tip = motion.model.beams
+    turn = motion.rotation(tip.start) - motion.rotation(arm.end)
+    assert turn == pytest.approx((1 - np.cos(4 * np.pi * motion.time)) / (4 * np.pi), abs=1e-6)
+    told = CliRunner().invoke(app, ["info", str(tmp_path / "a.h5"), "--json"]).stdout
+    assert json.loads(told)["model"]["loads"][1] == "Motor: at Hinge: a arm.end, b tip.start, speed a function rad/s"
+    file.write_text((ARM + DRIVEN).replace('["arm.end", "tip.start"]', '"tip.end"').replace("speed", "torque"))
+    model = read_model_file(file).model
+    assert model.loads[1].at == model.beams[1].end
+    file.write_text((ARM + DRIVEN).replace('["arm.end", "tip.start"]', '["arm.end"]'))
+    with pytest.raises(ModelFileError, match="must be a point, or the two points of a hinge"):
+        read_model_file(file)

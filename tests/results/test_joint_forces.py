@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from rigid_rods import AREA, DENSITY, DEPTH, LENGTHS, double_pendulum
 from scipy.integrate import solve_ivp
 
 import beamfem as bf
@@ -89,7 +90,7 @@ def test_joints_in_a_loop_have_no_force_of_their_own():
     solution = bf.solve_static(bf.Model(beams, [bf.Clamp(beams[0].start)], [bf.Gravity((0, -1))], joints))
     with pytest.raises(bf.InputError, match=r"other joints connect the points of Rigid at .* by n - 1 joints"):
         solution.joint_force(joints[0])
-    with pytest.raises(bf.InputError, match=r"is neither a joint nor a connector of two points .* model\.joints"):
+    with pytest.raises(bf.InputError, match=r"is neither a joint, a motor nor a connector .* model\.joints"):
         solution.joint_force(bf.Rigid(ends[0], ends[1]))
 
 
@@ -118,25 +119,6 @@ def test_slider_transmits_what_its_second_party_needs():
     own, needed = force.joint_force(moved)[-1], -in_axes(force, rod.start, 0.0)[-1]
     assert own[2] == pytest.approx(needed[2], rel=1e-7)
     assert own[1] == pytest.approx(0.1 * EI, rel=1e-7)
-
-
-LENGTHS, DEPTH, AREA, DENSITY = (1.0, 0.7), 0.01, 1e-4, 7850.0
-
-
-def double_pendulum(time, state):
-    """Rates of the two angles from the x axis and their velocities, of two uniform rigid rods under gravity."""
-    (first, second, w1, w2), (l1, l2) = state, LENGTHS
-    m1, m2 = (DENSITY * AREA * length for length in LENGTHS)
-    c, s = np.cos(first - second), np.sin(first - second)
-    turning, height = m2 * l1 * l2 * c / 2, DEPTH**2 / 12
-    matrix = [[m1 * (l1**2 / 3 + height) + m2 * l1**2, turning], [turning, m2 * (l2**2 / 3 + height)]]
-    right = -np.array(
-        [
-            m2 * l1 * l2 * s * w2**2 / 2 + (m1 / 2 + m2) * 9.81 * l1 * np.cos(first),
-            -m2 * l1 * l2 * s * w1**2 / 2 + m2 * 9.81 * l2 * np.cos(second) / 2,
-        ]
-    )
-    return np.array([w1, w2, *np.linalg.solve(matrix, right)])
 
 
 def test_double_pendulum_of_stiff_beams_is_that_of_rigid_rods():

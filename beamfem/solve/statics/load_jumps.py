@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, LimitPointError
-from beamfem.model.load_base import Load, factor
+from beamfem.model.load_base import CompositeLoad, Load, factor
 from beamfem.model.model import Model
 from beamfem.model.supports import DIRECTIONS, PointSupport, Value
 from beamfem.parts.prescribed import Prescribed
@@ -47,11 +47,7 @@ def _moves(support: PointSupport) -> bool:
 
 def _moved(support: PointSupport, before: float | None, after: float) -> tuple[PointSupport, ...]:
     """Return equivalent supports with prescribed values linear in the load factor."""
-    values = {
-        name: _Line(0.0 if before is None else _prescribed(value, before), _prescribed(value, after))
-        for name, value in support.prescribed().items()
-        if name != "normal"
-    }
+    values = {name: _line(value, before, after) for name, value in support.prescribed().items() if name != "normal"}
     supports: tuple[PointSupport, ...] = (Prescribed(support.point, **values),)
     if support.direction is not None:
         supports = (*supports, Roller(support.point, tuple(support.direction)))
@@ -61,12 +57,18 @@ def _moved(support: PointSupport, before: float | None, after: float) -> tuple[P
     return supports
 
 
+def _line(value: Value, before: float | None, after: float) -> _Line:
+    return _Line(0.0 if before is None else _prescribed(value, before), _prescribed(value, after))
+
+
 def _prescribed(value: Value, load_factor: float) -> float:
     return function_value("motion prescribed", value, load_factor) if callable(value) else value * load_factor
 
 
 def _changing_load(load: Load, before: float | None, after: float) -> Load:
-    """Return a load whose factor is linear in the load factor."""
+    """Return a load whose factor, or whose values, are linear in the load factor."""
+    if isinstance(load, CompositeLoad):
+        return load.changed(lambda value: _line(value, before, after))
     result: Load = copy(load)
     line = _Line(0.0 if before is None else factor(load, before, True), factor(load, after, True))
     # whether or not it is a field of its class

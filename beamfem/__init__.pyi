@@ -82,6 +82,8 @@ from .parts.foundation import Foundation as Foundation
 from .parts.gear import Gear as Gear
 from .parts.gravity import Gravity as Gravity
 from .parts.hinge import Hinge as Hinge
+from .parts.hinge_friction import HingeFriction as HingeFriction
+from .parts.hinge_stop import HingeStop as HingeStop
 from .parts.link import Link as Link
 from .parts.motor import Motor as Motor
 from .parts.pin import Pin as Pin

@@ -20,6 +20,8 @@ from beamfem.parts.bushing import Bushing as Bushing
 from beamfem.parts.drag import Drag as Drag
 from beamfem.parts.spring_damper import SpringDamper as SpringDamper
 from beamfem.parts.stop import Stop as Stop
+from beamfem.parts.hinge_friction import HingeFriction as HingeFriction
+from beamfem.parts.hinge_stop import HingeStop as HingeStop
 from beamfem.parts.torsion_spring import TorsionSpring as TorsionSpring
 from beamfem.parts.point_mass import PointMass as PointMass
 from beamfem.parts.rigid_body import RigidBody as RigidBody

@@ -220,7 +220,7 @@ def _stop_slip(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, Num
     stiffness, limit = data[0], data[2] * data[0] * _penetration(q, data, f)
     along = (q[0][1] - data[8]) * data[5] - (q[0][0] - data[7]) * data[6]
     trial = stiffness * (along - data[9])
-    over = f.positive(trial - limit) - f.positive(-trial - limit)
+    over = _clipped(trial, limit, f)
     return trial - over, over / stiffness
 
 
@@ -236,6 +236,46 @@ def _stop_remember(q: list[Vector], v: list[Vector], data: Vector, f: Functions)
 
 def _motor_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
     return (q[1][2] - q[0][2],)
+
+
+def _clipped(trial: Number, limit: Number, f: Functions) -> Number:
+    """Return what of a trial force is beyond a limit."""
+    return f.positive(trial - limit) - f.positive(-trial - limit)
+
+
+def _friction_slip(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, Number]:
+    """Return the moment on b, which is at most data[1], and the change of the slip."""
+    trial = data[0] * (q[1][2] - q[0][2] - data[2])
+    over = _clipped(trial, data[1], f)
+    return trial - over, over / data[0]
+
+
+def _friction_force(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
+    moment = _friction_slip(q, data, f)[0]
+    return 0, 0, -moment, 0, 0, moment
+
+
+def _friction_remember(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
+    moment, slipped = _friction_slip(q, data, f)
+    return data[2] + slipped, data[3] + moment * slipped
+
+
+def _excess(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, Number]:
+    """Return by how much the angle is below its lower and above its upper limit."""
+    turn = q[1][2] - q[0][2]
+    return f.positive(data[0] - turn), f.positive(turn - data[1])
+
+
+def _limits_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
+    """Return k d^2 / 2 on both sides."""
+    low, high = _excess(q, data, f)
+    return data[2] * (low * low + high * high) / 2
+
+
+def _limits_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
+    """Return k c d (dd/dt)^2 / 2 (Hunt and Crossley 1975)."""
+    rate, (low, high) = v[1][2] - v[0][2], _excess(q, data, f)
+    return data[2] * data[3] * (low + high) * rate * rate / 2
 
 
 _LEAST = 1e-300  # [m^2/s^2], so that the derivative of |v| v is zero at rest
@@ -267,8 +307,14 @@ BUSHING = Connection("bushing", 2, 3, _BUSHING, None, _bushing_potential, _bushi
 SLIDER = Connection("slider", 2, 3, ("nx", "ny", "offset"), None, None, None, _slider_conditions, 2)
 GEAR = Connection("gear", 2, 3, ("ratio",), None, None, None, _gear_conditions, 1)
 MOTOR = Connection("motor", 2, 3, (), None, None, None, _motor_conditions, 1, prescribed=1)
+_SLIP = "slip", "dissipated"
 _STOP = ("stiffness", "damping", "friction", "x", "y", "nx", "ny", "x0", "y0")
 STOP = Connection("stop", 1, 2, _STOP, None, _stop_potential, _stop_dissipation)
-ROUGH_STOP = STOP._replace(name="rough_stop", memory=("slip", "dissipated"), force=_stop_force, remember=_stop_remember)
+ROUGH_STOP = STOP._replace(name="rough_stop", memory=_SLIP, force=_stop_force, remember=_stop_remember)
+HINGE_FRICTION = Connection(
+    "hinge_friction", 2, 3, ("stiffness", "torque"), memory=_SLIP, force=_friction_force, remember=_friction_remember
+)
+_LIMITS = ("low", "high", "stiffness", "damping")
+HINGE_STOP = Connection("hinge_stop", 2, 3, _LIMITS, None, _limits_potential, _limits_dissipation)
 _SPRINGS = SPRING, GROUNDED_SPRING, TORSION_SPRING, CABLE, GROUNDED_CABLE, BUSHING
-CONNECTIONS = MASS, BODY, *_SPRINGS, LINK, SLIDER, GEAR, MOTOR, DRAG, STOP, ROUGH_STOP
+CONNECTIONS = MASS, BODY, *_SPRINGS, LINK, SLIDER, GEAR, MOTOR, DRAG, STOP, ROUGH_STOP, HINGE_FRICTION, HINGE_STOP

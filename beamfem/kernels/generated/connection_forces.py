@@ -1179,3 +1179,164 @@ def rough_stop_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
     out[1] = x26 * (x12 * x29 - x25 * x31 + x28) + x27
     out[2] = x26 * (-x24 * x33 + x28 + x32 * x9) + x27
     out[3] = x26 * (stiffness * ((2.0 * x34) if x5 else (0.0)) + x29 * x32 + x31 * x33) + x34 * x7
+
+
+@routine("rrrrrrrr")
+def hinge_friction_force(q, v, a, own, turned, data, gravity, out):
+    """Fill the force of `HINGE_FRICTION`."""
+    q2 = q[2]
+    q5 = q[5]
+    stiffness = data[0]
+    torque = data[1]
+    slip = data[2]
+    x0 = q2 - q5 + slip
+    x1 = stiffness * x0
+    x2 = torque + x1
+    x3 = x1 + ((-x2) if (x2 < 0.0) else (0.0)) - ((stiffness * x0 - torque) if (torque - x1 < 0.0) else (0.0))
+    out[0] = 0.0
+    out[1] = 0.0
+    out[2] = x3
+    out[3] = 0.0
+    out[4] = 0.0
+    out[5] = -x3
+
+
+@routine("rrrrrrrdddr")
+def hinge_friction_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
+    """Fill ck df/dq + cv df/dv + ca df/da of `HINGE_FRICTION`, row by row."""
+    q2 = q[2]
+    q5 = q[5]
+    stiffness = data[0]
+    torque = data[1]
+    slip = data[2]
+    x0 = -stiffness
+    x1 = stiffness * (q2 - q5 + slip)
+    x2 = torque + x1 < 0.0
+    x3 = -torque + x1 > 0.0
+    x4 = ck * (stiffness - ((stiffness) if x3 else (0.0)) + ((x0) if x2 else (0.0)))
+    x5 = ck * (stiffness - ((stiffness) if x2 else (0.0)) + ((x0) if x3 else (0.0)))
+    out[0] = 0.0
+    out[1] = 0.0
+    out[2] = 0.0
+    out[3] = 0.0
+    out[4] = 0.0
+    out[5] = 0.0
+    out[6] = 0.0
+    out[7] = 0.0
+    out[8] = 0.0
+    out[9] = 0.0
+    out[10] = 0.0
+    out[11] = 0.0
+    out[12] = 0.0
+    out[13] = 0.0
+    out[14] = x4
+    out[15] = 0.0
+    out[16] = 0.0
+    out[17] = -x5
+    out[18] = 0.0
+    out[19] = 0.0
+    out[20] = 0.0
+    out[21] = 0.0
+    out[22] = 0.0
+    out[23] = 0.0
+    out[24] = 0.0
+    out[25] = 0.0
+    out[26] = 0.0
+    out[27] = 0.0
+    out[28] = 0.0
+    out[29] = 0.0
+    out[30] = 0.0
+    out[31] = 0.0
+    out[32] = -x4
+    out[33] = 0.0
+    out[34] = 0.0
+    out[35] = x5
+
+
+@routine("rrrrrrrr")
+def hinge_stop_force(q, v, a, own, turned, data, gravity, out):
+    """Fill the force of `HINGE_STOP`."""
+    q2 = q[2]
+    q5 = q[5]
+    v2 = v[2]
+    v5 = v[5]
+    low = data[0]
+    high = data[1]
+    stiffness = data[2]
+    damping = data[3]
+    x0 = q2 - q5
+    x1 = high + x0
+    x2 = x1 < 0.0
+    x3 = low + x0
+    x4 = x3 > 0.0
+    x5 = -x1
+    x6 = damping * (v2 - v5) * (((x3) if x4 else (0.0)) + ((x5) if x2 else (0.0)))
+    out[0] = 0.0
+    out[1] = 0.0
+    out[2] = stiffness * (x6 + (0.5) * ((2.0 * x1) if x2 else (0.0)) + (0.5) * ((2.0 * x3) if x4 else (0.0)))
+    out[3] = 0.0
+    out[4] = 0.0
+    out[5] = stiffness * (-x6 + (0.5) * ((-2.0 * x3) if x4 else (0.0)) + (0.5) * ((2.0 * x5) if x2 else (0.0)))
+
+
+@routine("rrrrrrrdddr")
+def hinge_stop_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
+    """Fill ck df/dq + cv df/dv + ca df/da of `HINGE_STOP`, row by row."""
+    q2 = q[2]
+    q5 = q[5]
+    v2 = v[2]
+    v5 = v[5]
+    low = data[0]
+    high = data[1]
+    stiffness = data[2]
+    damping = data[3]
+    x0 = q2 - q5
+    x1 = low + x0
+    x2 = x1 > 0.0
+    x3 = high + x0
+    x4 = x3 < 0.0
+    x5 = cv * damping * (((x1) if x2 else (0.0)) + ((-x3) if x4 else (0.0)))
+    x6 = ((-1.0) if x4 else (0.0)) + ((1.0) if x2 else (0.0))
+    x7 = v2 - v5
+    x8 = 2.0 * damping * x7
+    x9 = ((2.0) if x2 else (0.0)) + ((2.0) if x4 else (0.0))
+    x10 = (0.5) * ck
+    x11 = -x5
+    x12 = ((-1.0) if x2 else (0.0)) + ((1.0) if x4 else (0.0))
+    x13 = ((-2.0) if x2 else (0.0)) + ((-2.0) if x4 else (0.0))
+    out[0] = 0.0
+    out[1] = 0.0
+    out[2] = 0.0
+    out[3] = 0.0
+    out[4] = 0.0
+    out[5] = 0.0
+    out[6] = 0.0
+    out[7] = 0.0
+    out[8] = 0.0
+    out[9] = 0.0
+    out[10] = 0.0
+    out[11] = 0.0
+    out[12] = 0.0
+    out[13] = 0.0
+    out[14] = stiffness * (x10 * (x6 * x8 + x9) + x5)
+    out[15] = 0.0
+    out[16] = 0.0
+    out[17] = stiffness * (x10 * (x12 * x8 + x13) + x11)
+    out[18] = 0.0
+    out[19] = 0.0
+    out[20] = 0.0
+    out[21] = 0.0
+    out[22] = 0.0
+    out[23] = 0.0
+    out[24] = 0.0
+    out[25] = 0.0
+    out[26] = 0.0
+    out[27] = 0.0
+    out[28] = 0.0
+    out[29] = 0.0
+    out[30] = 0.0
+    out[31] = 0.0
+    out[32] = -stiffness * (x10 * (2.0 * damping * x6 * x7 - x13) + x5)
+    out[33] = 0.0
+    out[34] = 0.0
+    out[35] = stiffness * (-x10 * (2.0 * damping * x12 * x7 - x9) - x11)

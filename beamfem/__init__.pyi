@@ -86,6 +86,7 @@ from .parts.hinge_friction import HingeFriction as HingeFriction
 from .parts.hinge_stop import HingeStop as HingeStop
 from .parts.link import Link as Link
 from .parts.motor import Motor as Motor
+from .parts.moving_force import MovingForce as MovingForce
 from .parts.pin import Pin as Pin
 from .parts.point_force import PointForce as PointForce
 from .parts.point_mass import PointMass as PointMass

@@ -1,7 +1,7 @@
 """Loads of a model at a time; forces, moments, springs and pressures in the form that the kernels expect."""
 
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,12 +10,12 @@ from beamfem.assembly.equation_numbering import Unknowns
 from beamfem.assembly.model_coordinates import COORDINATES
 from beamfem.cached_properties import cached_property
 from beamfem.element.element import Element
-from beamfem.element.fields import d_slots, r_slots
+from beamfem.element.fields import d_slots, length_rule, r_slots
 from beamfem.kernels.block import PointLoads, Springs
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import jacobians, length_points, reference_axis, scales
 from beamfem.model.beam import Beam
-from beamfem.model.load_base import LineLoad, PointLoad, factor, forces_of
+from beamfem.model.load_base import LineLoad, MovingLoad, PointLoad, factor, forces_of
 from beamfem.model.model import Model
 
 
@@ -121,6 +121,7 @@ class Actions:
     xi: np.ndarray
     rule: np.ndarray
     loads: tuple[PointLoad | LineLoad, ...]
+    moving: tuple["_Moving", ...] = ()
 
     @cached_property
     def _distributed(self) -> tuple[np.ndarray, np.ndarray]:
@@ -148,12 +149,43 @@ class Actions:
         unit = self.unit.copy()
         for row, number in self._at_points:
             unit[row] = loads[number].value
-        return Actions(self.points, unit, self.source, self.xi, self.rule, loads)
+        return replace(self, unit=unit, loads=loads)
 
     def values(self, time: float, static: bool) -> np.ndarray:
         """Return forces and moments (nl, 3) at a time."""
         factors = [factor(load, time, static) for load in self.loads]
-        return self.unit * np.array([*factors, 1.0])[self.source, None]
+        result = self.unit * np.array([*factors, 1.0])[self.source, None]
+        for moving in self.moving:
+            rows, shares = moving.at(time)
+            force = factor(moving.load, time, static) * np.array(moving.load.vector)
+            result[moving.first + rows, :2] = shares[:, None] * force
+        return result
+
+
+@dataclass(frozen=True, eq=False)
+class _Moving:
+    """A moving load of a block, and the first of its rows, one for each Gauss point of its beam.
+
+    A polynomial of the degree of the field is determined by its values at the Gauss points of an element, so that
+    forces there, in the shares of Lagrange's polynomials, have the nodal forces of one between them.
+    """
+
+    load: MovingLoad
+    mesh: BeamMesh
+    first: int
+
+    def at(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return rows (n,) and shares (n,) of the load at a time, none off the beam."""
+        fraction = self.load.place_at(time) / self.mesh.beam.curve.length
+        if not 0.0 <= fraction <= 1.0:
+            return np.empty(0, dtype=np.int64), np.empty(0)
+        element, xi = self.mesh.locate(fraction)
+        points = length_rule(self.mesh.beam.element.field)[0]
+        count = len(points)
+        own = np.eye(count, dtype=bool)
+        apart = np.where(own, 1.0, points[:, None] - points)
+        shares = np.prod(np.where(own, 1.0, xi - points) / apart, axis=1)
+        return element * count + np.arange(count), shares
 
 
 def build_actions(model: Model, block: int) -> Actions:
@@ -177,6 +209,13 @@ def build_actions(model: Model, block: int) -> Actions:
             part = _part(mesh, element, xi, np.zeros((len(xi), 3)), -1, False, len(xi) // mesh.elements)
             part["spring"] = np.outer(weight, foundation.stiffness)
             parts.append(part)
+    moving = []
+    for wheel in model.moving_loads:
+        mesh = _mesh(model, wheel.beam, block)
+        if mesh is not None:
+            element, xi, _ = length_points(mesh)
+            moving.append(_Moving(wheel, mesh, sum(len(part["xi"]) for part in parts)))
+            parts.append(_part(mesh, element, xi, np.zeros((len(xi), 3)), -1, False, len(xi) // mesh.elements))
     if len(parts) == 1:
         joined = dict(parts[0])
     else:
@@ -185,7 +224,7 @@ def build_actions(model: Model, block: int) -> Actions:
             name: np.concatenate([values, *(part[name] for part in parts)]) for name, values in _empty(size).items()
         }
     values = {name: joined.pop(name) for name in ("unit", "source", "xi", "rule")}
-    return Actions(PointLoads(**joined), **values, loads=(*points, *lines))
+    return Actions(PointLoads(**joined), **values, loads=(*points, *lines), moving=tuple(moving))
 
 
 def _lines(model: Model) -> list[LineLoad]:

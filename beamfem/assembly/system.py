@@ -258,13 +258,14 @@ class System:
 
     @cached_property
     def varying(self) -> bool:
-        """Whether a load has an amplitude, a function of time."""
-        return any(load.amplitude is not None for load in self.model.loads)
+        """Whether a load has an amplitude, a function of time, or moves."""
+        return bool(self.model.moving_loads) or any(load.amplitude is not None for load in self.model.loads)
 
     @cached_property
     def proportional(self) -> bool:
         """Whether all loads are proportional to the load factor of statics."""
-        return self.static and all(load.scale and load.amplitude is None for load in self.model.loads)
+        loads, moves = self.model.loads, bool(self.model.moving_loads)
+        return self.static and not moves and all(load.scale and load.amplitude is None for load in loads)
 
     @property
     def steady(self) -> bool:

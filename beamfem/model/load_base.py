@@ -262,6 +262,49 @@ class PointLoad(Load):
             raise InputError(f"{what} must be three numbers, fx, fy and moment, got {shown(value)}")
 
 
+class MovingLoad(Load):
+    """A force [N] that moves along a beam.
+
+    Attributes
+    ----------
+    beam : Beam
+        The beam.
+    vector : (float, float), [N]
+        The force (fx, fy).
+    """
+
+    beam: Beam
+    vector: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        require_beam(type(self).__name__, getattr(self, "beam", None))
+        super().__post_init__()
+
+    @abstractmethod
+    def place_at(self, time: float) -> float:
+        """Return the arc length [m] at a time [s] or load factor; off the beam there is no force."""
+
+    @abstractmethod
+    def moved(self, position: Callable[[float], float]) -> "MovingLoad":
+        """Return the load at the arc lengths of another function of time."""
+
+    @property
+    def place(self) -> Beam:
+        """The beam."""
+        return self.beam
+
+    @property
+    def conservative(self) -> bool:
+        """False: the force has no potential that is constant in time."""
+        return False
+
+    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
+        """Return the force to draw, see `Load.shapes`."""
+        fraction = self.place_at(placed.time) / self.beam.curve.length
+        on_beam = 0.0 <= fraction <= 1.0
+        return (Force(self.beam.at(fraction), weight * np.array(self.vector)),) if on_beam else ()
+
+
 class CompositeLoad(Load):
     """A load that consists of supports at points, loads at points and conditions.
 

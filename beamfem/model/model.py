@@ -17,7 +17,7 @@ from beamfem.model.check_units import warn_of_units
 from beamfem.model.contribution import Contribution, require_connector
 from beamfem.model.imposed_strains import ImposedStrain
 from beamfem.model.joints import Joint
-from beamfem.model.load_base import BodyLoad, CompositeLoad, LineLoad, Load, PointLoad
+from beamfem.model.load_base import BodyLoad, CompositeLoad, LineLoad, Load, MovingLoad, PointLoad
 from beamfem.model.supports import LineSupport, PointSupport, Support
 from beamfem.model.supports_along import SupportsAlong
 from beamfem.units import Units, units_of
@@ -81,7 +81,7 @@ _UNNAMED = "N, m, s"
 _KINDS: dict[str, tuple[type, ...]] = {
     "beams": (Beam,),
     "supports": (PointSupport, LineSupport),
-    "loads": (BodyLoad, LineLoad, PointLoad, ImposedStrain, CompositeLoad),
+    "loads": (BodyLoad, LineLoad, PointLoad, ImposedStrain, CompositeLoad, MovingLoad),
     "joints": (Joint, Contribution),
     "connectors": (Contribution,),
     "masses": (Contribution,),
@@ -446,6 +446,11 @@ class Model:
     def line_loads(self) -> tuple[LineLoad, ...]:
         """The loads that are forces along beams."""
         return tuple(load for load in self.loads if isinstance(load, LineLoad))
+
+    @cached_property
+    def moving_loads(self) -> tuple[MovingLoad, ...]:
+        """The forces that move along beams."""
+        return tuple(load for load in self.loads if isinstance(load, MovingLoad))
 
     @cached_property
     def point_loads(self) -> tuple[PointLoad, ...]:

@@ -28,6 +28,11 @@ class Stations(Protocol):
 class Placed(Protocol):
     """A state of a model, with the members that shapes need."""
 
+    @property
+    def time(self) -> float:
+        """Time [s] or load factor of the loads."""
+        ...
+
     def at(self, point: Point) -> Stations:
         """Return the state at a point."""
         ...

@@ -33,3 +33,4 @@ from beamfem.parts.pressure import Pressure as Pressure
 from beamfem.parts.actuation import Actuation as Actuation
 from beamfem.parts.temperature import Temperature as Temperature
 from beamfem.parts.motor import Motor as Motor
+from beamfem.parts.moving_force import MovingForce as MovingForce

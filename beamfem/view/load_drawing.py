@@ -27,6 +27,11 @@ class PlacedRow:
     def __init__(self, solution: "Solution", row: int) -> None:
         self.only = one_row(solution, row)
 
+    @property
+    def time(self) -> float:
+        """Time [s] or load factor of the loads."""
+        return float(loading(self.only)[1][0])
+
     def position(self, point: Point) -> np.ndarray:
         """Return the position of a point (2,) [m]."""
         return self.only.position(point)[0]

@@ -173,7 +173,7 @@ print(json.dumps(said))
 def test_kinds_are_those_of_model_files():
     assert list(ACTING["supports"]) == ["clamp", "pin", "roller", "prescribed", "spring", "foundation"]
     assert list(ACTING["loads"]) == [
-        *("gravity", "force", "moment", "distributed", "pressure", "actuation", "temperature", "motor"),
+        *("gravity", "force", "moment", "distributed", "pressure", "actuation", "temperature", "motor", "moving-force"),
     ]
     assert list(ACTING["joints"]) == ["rigid", "hinge"]
     assert len(listed_parts()) == sum(map(len, ACTING.values()))  # no two have one kind

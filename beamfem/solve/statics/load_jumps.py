@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, LimitPointError
-from beamfem.model.load_base import CompositeLoad, Load, factor
+from beamfem.model.load_base import CompositeLoad, Load, MovingLoad, factor
 from beamfem.model.model import Model
 from beamfem.model.supports import DIRECTIONS, PointSupport, Value
 from beamfem.parts.prescribed import Prescribed
@@ -70,6 +70,8 @@ def _changing_load(load: Load, before: float | None, after: float) -> Load:
     if isinstance(load, CompositeLoad):
         return load.changed(lambda value: _line(value, before, after))
     result: Load = copy(load)
+    if isinstance(load, MovingLoad):
+        result = load.moved(_line(load.place_at, before, after))
     line = _Line(0.0 if before is None else factor(load, before, True), factor(load, after, True))
     # whether or not it is a field of its class
     object.__setattr__(result, "amplitude", line)

@@ -1,0 +1,96 @@
+"""Forces that move along beams: against forces at points, influence lines and the closed form of Fryba."""
+
+import numpy as np
+import pytest
+
+import beamfem as bf
+
+STEEL, SECTION = bf.Material(2.1e11, 0.3, 7850.0), bf.Rectangle(0.05, 0.05)
+LENGTH, FORCE = 4.0, 500.0
+EI, MASS = 2.1e11 * SECTION.second_moment, 7850.0 * SECTION.area
+
+
+def bridge(element=None, elements=8):
+    beam = bf.Beam(bf.Line((0, 0), (LENGTH, 0)), elements, element or bf.CRBF(4), SECTION, STEEL)
+    return beam, bf.Model([beam], [bf.Pin(beam.start), bf.Roller(beam.end)])
+
+
+def test_a_force_at_a_node_is_that_of_a_point_force(element):
+    beam, model = bridge(element, 4)
+    moving = bf.MovingForce(beam, lambda load: 0.25 * LENGTH, (0.3 * FORCE, -FORCE), scale=True)
+    fixed = bf.PointForce(beam.at(0.25), (0.3 * FORCE, -FORCE))
+    one, other = (bf.solve_static(model.with_loads([load])) for load in (moving, fixed))
+    assert one.p[-1] == pytest.approx(other.p[-1], abs=1e-10)
+    sections = [solution.section_forces(beam) for solution in (one, other)]
+    at_end = [forces.shear[-1, -1] for forces in sections]
+    assert at_end[0] == pytest.approx(at_end[1], rel=1e-6)
+
+
+def test_between_nodes_it_balances_the_reactions():
+    beam, model = bridge(elements=3)
+    place = 0.41 * LENGTH
+    wheel = bf.MovingForce(beam, lambda load: place, (0.0, -FORCE), amplitude=lambda load: load)
+    solution = bf.solve_static(model.with_loads([wheel]))
+    ends = solution.reaction(beam.start)[-1, 1], solution.reaction(beam.end)[-1, 1]
+    sag = np.hypot(*(solution.position(beam.end)[-1] - solution.position(beam.start)[-1]))
+    x = solution.position(beam.at(0.41))[-1, 0]
+    assert ends == pytest.approx((FORCE * (sag - x) / sag, FORCE * x / sag), rel=1e-9)
+
+
+def test_influence_line_of_the_deflection():
+    beam, model = bridge()
+    wheel = bf.MovingForce(beam, lambda load: LENGTH * load, (0.0, -0.01 * FORCE))
+    solution = bf.solve_static(model.with_loads([wheel]), steps=40)
+    s = np.minimum(LENGTH * solution.at, LENGTH * (1 - solution.at))
+    shear = 5 / 6 * 2.1e11 / 2.6 * SECTION.area
+    line = 0.01 * FORCE * s * ((3 * LENGTH**2 - 4 * s**2) / (48 * EI) + 1 / (2 * shear))
+    assert -solution.displacement(beam.at(0.5))[:, 1] == pytest.approx(line, abs=2e-5 * line.max())
+
+
+def test_a_force_that_crosses_a_bridge_at_a_speed():
+    """Euler-Bernoulli beam, Fryba 1999, section 1.2."""
+    beam, model = bridge()
+    speed, duration = 30.0, LENGTH / 30.0
+    wheel = bf.MovingForce(beam, lambda time: speed * time, (0.0, -0.01 * FORCE))
+    motion = bf.simulate(model.with_loads([wheel]), duration, duration / 2000, save_every=20)
+    n, t = np.arange(1, 60)[:, None], motion.time
+    own, forced = (n * np.pi / LENGTH) ** 2 * np.sqrt(EI / MASS), n * np.pi * speed / LENGTH
+    modes = (np.sin(forced * t) - forced / own * np.sin(own * t)) / (own**2 - forced**2)
+    sag = 2 * 0.01 * FORCE / (MASS * LENGTH) * (np.sin(n * np.pi / 2) * modes).sum(axis=0)
+    assert -motion.displacement(beam.at(0.5))[:, 1] == pytest.approx(sag, abs=2e-3 * sag.max())
+    assert not motion.warnings
+
+
+def test_off_the_beam_there_is_no_force_and_it_is_drawn_and_saved(tmp_path):
+    beam, model = bridge(elements=4)
+    wheel = bf.MovingForce(beam, lambda time: 40.0 * time - 1.0, (0.0, -FORCE))
+    motion = bf.simulate(model.with_loads([wheel]), 0.15, 1e-3)
+    early = motion.time < 0.02
+    assert motion.displacement(beam.at(0.5))[early] == pytest.approx(0.0, abs=1e-13)
+    assert motion.displacement(beam.at(0.5))[~early][-1].any()
+    motion.plot(tmp_path / "wheel.svg")
+    motion.to_html(tmp_path / "wheel.html")
+    motion.to_vtk(tmp_path / "wheel.vtkhdf")
+    motion.save(tmp_path / "wheel.h5")
+    again = bf.load(tmp_path / "wheel.h5")
+    assert again.model.loads[0].position(0.05) == pytest.approx(1.0)
+    assert again.section_forces(again.model.beams[0]).moment[-1] == pytest.approx(
+        motion.section_forces(beam).moment[-1]
+    )
+
+
+def test_work_of_a_moving_force():
+    """It is what the bridge stores and moves with: no energy drifts away that a warning would name."""
+    beam, model = bridge(elements=4)
+    wheel = bf.MovingForce(beam, lambda time: LENGTH * np.sin(3.0 * time) ** 2, (0.0, -FORCE))
+    motion = bf.simulate(model.with_loads([wheel]), 1.0, 1e-3)
+    assert motion.energy_drift is None
+    assert not motion.warnings
+
+
+def test_refused_with_a_reason():
+    beam, _ = bridge()
+    with pytest.raises(bf.InputError, match="position of MovingForce must be a function of time"):
+        bf.MovingForce(beam, 1.0, (0.0, -1.0))
+    with pytest.raises(bf.InputError, match="vector of MovingForce"):
+        bf.MovingForce(beam, lambda time: time, 1.0)

@@ -310,9 +310,16 @@ class CompositeLoad(Load):
 
     Attributes
     ----------
+    points : tuple of Point
+        The points that it acts on.
     joint : Joint, optional
         The joint of the model that it acts in.
     """
+
+    @property
+    @abstractmethod
+    def points(self) -> tuple[Point, ...]:
+        """The points that it acts on."""
 
     @property
     def joint(self) -> Joint | None:

@@ -249,10 +249,11 @@ class Model:
         for item in parts:
             self._require(item, item.place)
         for load in self.loads:
-            for part in load.parts if isinstance(load, CompositeLoad) else ():
-                for point in getattr(part, "points", None) or (part.point,):
-                    self._require(load, point)
-            if isinstance(load, CompositeLoad) and load.joint is not None and load.joint not in self.shared_joints:
+            if not isinstance(load, CompositeLoad):
+                continue
+            for point in load.points:
+                self._require(load, point)
+            if load.joint is not None and load.joint not in self.shared_joints:
                 raise InputError(
                     f"{type(load).__name__} acts in a {type(load.joint).__name__} at {load.joint.a} that is not one of "
                     "the joints of the model; add it to joints"

@@ -10,6 +10,8 @@ from .curves import Polyline as Polyline
 from .curves import elliptic_arc as elliptic_arc
 from .curves import spline_through_hermite as spline_through_hermite
 from .curves import without_removable_knots as without_removable_knots
+from .damping import KelvinVoigt as KelvinVoigt
+from .damping import Rayleigh as Rayleigh
 from .element.coordinates import Gradients as Gradients
 from .element.coordinates import Rotation as Rotation
 from .element.coordinates import ShearFree as ShearFree

@@ -26,7 +26,7 @@ def classes_of(block: Block, elements: slice | np.ndarray) -> dict[str, Any]:
 def build_block(
     element: Element, meshes: Sequence[tuple[int, BeamMesh]], imposing: Sequence[tuple[int, ImposedStrain]] = ()
 ) -> Block:
-    """Return the block of all beams (number, mesh) that share an element and a section law.
+    """Return the block of all beams (number, mesh) that share an element, a section law and `mass_damping`.
 
     imposing: loads that impose strains, each with the number of its beam.
     """
@@ -49,6 +49,7 @@ def build_block(
         measures=element.forces.code,
         director=element.tables.director,
         law=None if law is None else LawPass(law, element.law_points, isinstance(element.coordinates, Gradients)),
+        mass_damping=beam_meshes[0].beam.mass_damping,
         imposed=imposed_on(meshes, imposing) if imposing else None,
         history=_joined([mesh.history for mesh in beam_meshes]) if beam_meshes[0].history.size else NO_HISTORY,
         **joined,

@@ -305,6 +305,7 @@ def make_group(block: Block, layout: Layout, loads: PointLoads) -> ElementGroup:
     }
     record = structure.record.copy()
     record.fill(
+        mass_damping=block.mass_damping,
         apart=not mixed.any(),
         law_points=block.history.shape[1],
         variables=block.history.shape[2],

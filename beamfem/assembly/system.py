@@ -134,6 +134,11 @@ class System:
         )
 
     @shared_table
+    def damped(self) -> bool:
+        """Whether beams resist rates other than by a section law with history."""
+        return any(block.mass_damping or block.damping.any() for block in self.blocks)
+
+    @shared_table
     def equations(self) -> Equations:
         """The equations in the form that compiled code expects."""
         return self.equations_of(self.blocks)

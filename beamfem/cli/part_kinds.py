@@ -9,6 +9,7 @@ from skfem import MeshLine1
 
 from beamfem.cli.schema import Keyed, Kinds, Names, in_braces, keys_of, named, part, reader, shown
 from beamfem.curves import Arc, BSpline, Chain, Curve, Line, Polyline, elliptic_arc, spline_through_hermite
+from beamfem.damping import KelvinVoigt, Rayleigh
 from beamfem.element.element import Element
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
 from beamfem.element.presets import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, ShearRigid
@@ -81,6 +82,7 @@ SECTIONS: Kinds = {
     "layered": Layered,
 }
 MATERIALS: Kinds = {"material": Material}
+DAMPING: Kinds = {"rayleigh": Rayleigh, "ratios": Rayleigh.from_ratios, "kelvin-voigt": KelvinVoigt}
 FUNCTIONS: Kinds = {"table": Interpolated, "sine": _sine, "smooth-ramp": _smooth_ramp}
 ELEMENTS: Kinds = {preset.__name__: preset for preset in (ANCF, ANCFCRBF, BilinearANCF, BilinearCRBF, CRBF, ShearRigid)}
 
@@ -128,6 +130,7 @@ TYPES: dict[Any, Any] = {
     Beam: reader(lambda value, names: names.beam(value)),
     MeshLine1: reader(lambda ends, names: part({"graded": graded}, ends, names) if isinstance(ends, dict) else ends),
     Material: reader(named("materials", MATERIALS)),
+    Rayleigh: reader(lambda value, names: part(DAMPING, value, names)),
     CrossSection: reader(named("sections", SECTIONS)),
     Element: reader(named("elements", ELEMENTS)),
     Curve: reader(_curve),

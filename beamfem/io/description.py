@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from beamfem.curves import Arc, BSpline, Chain, Line, Parametric, Polyline
+from beamfem.damping import KelvinVoigt, Rayleigh
 from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.element import Element
 from beamfem.element.fields import Cubic, Lagrange
@@ -60,6 +61,8 @@ _CLASSES = {
         Maxwell,
         SampledSection,
         Material,
+        Rayleigh,
+        KelvinVoigt,
         Element,
         Cubic,
         Lagrange,

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import Field, fields
 from typing import Any
 
+from beamfem.damping import KelvinVoigt, Rayleigh
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point, names
 from beamfem.model.joints import Joint
@@ -31,6 +32,13 @@ def material_in_words(material: Material | None, unit: Unit) -> str:
         if field.name in further and value != field.default:
             parts.append(f"{field.name.replace('_', ' ')} {value:g} {unit(further[field.name])}")
     return ", ".join(parts)
+
+
+def damping_in_words(damping: Rayleigh | KelvinVoigt, unit: Unit) -> str:
+    """Return a damping with its numbers and units."""
+    if isinstance(damping, KelvinVoigt):
+        return f"Kelvin-Voigt damping {damping.time:g} {unit('s')}"
+    return f"Rayleigh damping {damping.mass:g} {unit('1/s')}, {damping.stiffness:g} {unit('s')}"
 
 
 def section_in_words(section: Any, unit: Unit) -> str:
@@ -63,7 +71,8 @@ def beam_in_words(beam: Beam, model: Model) -> str:
     axis = f"{type(beam.curve).__name__}, {beam.curve.length:.6g} {model.unit('m')} long"
     elements = f"{model.mesh_of(beam.start).elements} x {beam.element.name} ({beam.element.forces.name})"
     section, material = section_in_words(beam.section, model.unit), material_in_words(beam.material, model.unit)
-    return f"{_value_in_words(beam, model)}: {axis}, {elements}, {section}, material {material}"
+    damping = "" if beam.damping is None else f", {damping_in_words(beam.damping, model.unit)}"
+    return f"{_value_in_words(beam, model)}: {axis}, {elements}, {section}, material {material}{damping}"
 
 
 def part_in_words(part: Any, model: Model) -> str:

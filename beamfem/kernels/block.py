@@ -96,6 +96,7 @@ class Block(NamedTuple):
     dof: np.ndarray  # (N, npn) coordinates of a node, -1 where it has fewer
     home: np.ndarray  # (N, 2) an element that contains the node, and the node's number in that element
     damping: np.ndarray  # (nc,) retardation time [s]: resultants of strain rates = this time x stiffness x rates
+    mass_damping: float = 0.0  # [1/s]: inertia forces M (e'' + this e')
     law: Law | None = None  # replaces the linear law
     imposed: Imposed | None = None  # stress-free strains imposed by loads, added to `reference`
     history: np.ndarray = NO_HISTORY  # (ne, nl, k) numbers of the coordinates that store history variables of the law

@@ -83,10 +83,11 @@ def form_matrices(group: Group, system: System, count: int, x: Reals, nodal: Rea
         call.clear(rows * rows, count, k)
     if system.moving != 0:
         convective = at(nodal, group.convective * ROW)  # a copy
+        ca = system.weight_a + group.mass_damping * system.weight_v
         if dependent != 0:
             for n in range(nodes):
                 to = at(convective, n * gathered * ROW)
-                call.add_scaled(dependent * parameters, count, system.weight_a, at(transform, n * gathered * ROW), to)
+                call.add_scaled(dependent * parameters, count, ca, at(transform, n * gathered * ROW), to)
         call.add_mass(
             nodes,
             vectors,
@@ -94,7 +95,7 @@ def form_matrices(group: Group, system: System, count: int, x: Reals, nodal: Rea
             parameters,
             count,
             gathered,
-            system.weight_a,
+            ca,
             at(t, group.mass * ROW),
             transform,
             convective,

@@ -19,13 +19,18 @@ def _of_run(run):
 def place_nodes(group: Group, system: System, moving: int) -> None:
     """Fill the chunks of a group with nodal vectors and B, and set nodal forces to zero.
 
-    If `moving`, also fill accelerations and, for a tangent, the derivatives of e''.
+    If `moving`, also fill accelerations and, for a tangent, the derivatives of e''. They include the damping of the
+    mass: as e'' = B p'' + B' p', with p'' + c p' in place of p'' they are e'' + c e'.
     """
     small_code()
     call = group.routines
     runs, stride, size = group.runs, group.nodes, 2 * group.vectors
     source, frame, chunks, x = group.source, group.frame, group.chunks, group.space
     p, v, a = system.p, system.v, system.a
+    if moving != 0 and group.mass_damping != 0.0:
+        a = group.slowed
+        for i in range(system.size):
+            a[i] = system.a[i] + group.mass_damping * v[i]
     dependent, parameters = group.dependent, group.parameters
     force_rows = 2 * group.vectors if system.predicted == 0 else group.predicted_force + 2 * group.vectors - group.force
     for run in range(group.run_count):

@@ -102,6 +102,8 @@ class Group(Record):
     tables: Reals  # (classes, table rows)
 
     damped: int  # whether resultants depend on strain rates
+    mass_damping: float  # [1/s]: a = p'' + this p' takes the place of p''
+    slowed: Reals  # (n,) a, if it is not 0
     apart: int  # whether the mass does not couple d with r0
     ordered: int  # whether each node of an element has a greater number than the same node of the element before
     director: Annotated[Reals, "points", "nodes_per_element"]

@@ -14,7 +14,6 @@ from beamfem.kernels.block import ELASTIC_LINE
 from beamfem.mesh.beam_grid import Grid
 from beamfem.mesh.numbering import Nodes
 from beamfem.mesh.reference import energy_points, energy_stiffness_at, inertia_at, jacobians, length_points, scales
-from beamfem.model.beam import retardation_time
 from beamfem.value_keys import by_value
 
 _ALIKE = 1e-9  # of the longest element: elements whose lengths differ by less are in one class
@@ -45,7 +44,7 @@ def element_classes(grid: Grid) -> Classes:
     stiffness, reference = energy_stiffness_at(grid, element, xi)
     scale = scales(grid.beam.element, grid.lengths[first])
     mass, gravity, length = _inertia(grid, first, scale)
-    damping = np.full(count, retardation_time(grid.beam.section_at(0.0), grid.beam.material))
+    damping = np.full(count, grid.beam.retardation_time)
 
     def by_class(values: np.ndarray) -> np.ndarray:
         return values.reshape(count, size, *values.shape[1:])
@@ -106,7 +105,7 @@ def likenesses(grids: Sequence[Grid]) -> list[Hashable]:
         rounded = np.round(lengths / unit[:, None], 12)
         for i, size, row in zip(numbers, unit.tolist(), rounded, strict=True):
             beam = grids[i].beam
-            keys[i] = size, row.tobytes(), by_value(beam.section), by_value(beam.material)
+            keys[i] = size, row.tobytes(), by_value(beam.section), by_value(beam.material), beam.retardation_time
     return keys
 
 

@@ -218,7 +218,7 @@ class NumberedMeshes:
         if beam.elements == "knots":  # the mesh coordinate is that of its spline
             return mesh
         counted = mesh not in self.numbers_uncounted
-        return mesh.block, mesh.straight, counted, by_value(beam.section), by_value(beam.material)
+        return mesh.block, mesh.straight, counted, by_value(beam.section), by_value(beam.material), beam.damping
 
     @cached_property
     def places(self) -> dict[int, "Place"]:
@@ -300,16 +300,16 @@ def numbered_meshes(model: "Model") -> NumberedMeshes:
 def _blocks(beams: Sequence[Beam]) -> tuple[tuple[Element, ...], list[int]]:
     """Return the element of each block of beams, in order of appearance, and the number of the block of each beam.
 
-    Beams of one block have the same element and section law.
+    Beams of one block have the same element, section law and damping of the mass.
     """
-    blocks: dict[tuple[Element, Hashable], int] = {}
+    blocks: dict[tuple[Element, Hashable, float], int] = {}
     numbers = [blocks.setdefault(_block_key(beam), len(blocks)) for beam in beams]
-    return tuple(element for element, _ in blocks), numbers
+    return tuple(element for element, _, _ in blocks), numbers
 
 
-def _block_key(beam: Beam) -> tuple[Element, Hashable]:
+def _block_key(beam: Beam) -> tuple[Element, Hashable, float]:
     law = beam.law
-    return beam.element, None if law is None else (by_value(law.section), by_value(law.material))
+    return beam.element, None if law is None else (by_value(law.section), by_value(law.material)), beam.mass_damping
 
 
 def _joined(model: "Model", grids: Sequence[Grid]) -> tuple[np.ndarray, np.ndarray]:

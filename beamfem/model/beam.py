@@ -11,6 +11,7 @@ from skfem import MeshLine, MeshLine1
 from beamfem.cached_properties import cached_property
 from beamfem.curves import BSpline, Curve, Line
 from beamfem.curves.curve import numbers
+from beamfem.damping import KelvinVoigt, Rayleigh
 from beamfem.element.element import Element
 from beamfem.element.fields import Cubic
 from beamfem.errors import InputError
@@ -89,6 +90,8 @@ class Beam:
         Material of the section; not needed if the section includes its materials.
     name : str, optional
         Name of the beam in messages, tables and files, by default its number in the model.
+    damping : Rayleigh or KelvinVoigt, optional
+        Damping in motions, by default only that of the material.
 
     Raises
     ------
@@ -114,6 +117,7 @@ class Beam:
     section: CrossSection | Tapered
     material: Material | None = None
     name: str | None = None
+    damping: Rayleigh | KelvinVoigt | None = None
 
     def __post_init__(self) -> None:
         from beamfem.model.check_beam import require_law_fits, require_magnitudes
@@ -137,6 +141,11 @@ class Beam:
             raise InputError("name of a Beam must not be empty; leave it out for a beam without one")
         if self.name is not None and ("\0" in self.name or any("\ud800" <= sign <= "\udfff" for sign in self.name)):
             raise InputError(f"name of a Beam must not contain NUL or half a surrogate pair, got {self.name!r}")
+        if self.damping is not None and not isinstance(self.damping, Rayleigh | KelvinVoigt):
+            raise InputError(
+                "damping of a Beam must be a Rayleigh, such as Rayleigh(stiffness=1e-4), or a KelvinVoigt, got "
+                f"{shown(self.damping)}"
+            )
         if isinstance(self.section, type) or not (self.prismatic or callable(self.section)):
             raise InputError(
                 f"section of a Beam must be a section or a function of arc length, got {shown(self.section)}"
@@ -189,6 +198,17 @@ class Beam:
         if not fulfils(section, CrossSection):
             raise InputError(f"the section at arc length {arc_length:g} must be a section, got {shown(section)}")
         return section
+
+    @cached_property
+    def retardation_time(self) -> float:
+        """Retardation time [s] of the section forces: that of the material plus what `damping` adds to it."""
+        own = retardation_time(self.section_at(0.0), self.material)
+        return own if self.damping is None else own + self.damping.stiffness
+
+    @property
+    def mass_damping(self) -> float:
+        """Force against the velocity per mass [1/s]."""
+        return 0.0 if self.damping is None else self.damping.mass
 
     @cached_property
     def law(self) -> ConstitutiveLaw | None:

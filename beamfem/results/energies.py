@@ -78,7 +78,7 @@ def dissipated(solution: "Solution", by_sections: np.ndarray) -> np.ndarray:
     """
     system = loading(solution)[0]
     items = system.connectors.items
-    damped = system.connectors.damp or any(block.damping.any() for block in system.blocks)
+    damped = system.connectors.damp or system.damped
     recorded = [item.dissipated for item in items]
     losing = any(not item.item.conservative and not len(own) for item, own in zip(items, recorded, strict=True))
     if losing or (damped and not solution.static):

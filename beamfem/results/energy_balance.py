@@ -140,8 +140,7 @@ def _exchanged(energy: "Energy") -> float:
 
 def _conservative(solution: "Solution") -> bool:
     system = system_of(solution.model, static=False)
-    damped = any(block.damping.any() for block in system.blocks)
-    return not driven(solution) and not damped and not system.history.laws
+    return not driven(solution) and not system.damped and not system.history.laws
 
 
 def driven(solution: "Solution") -> bool:
@@ -314,7 +313,7 @@ def _forces(solution: "Solution", system: System) -> _Forces:
     work, connected, damping = np.zeros((rows, size)), np.zeros((rows, size)), np.zeros(rows)
     moving = [item.dof for item in system.prescribed if callable(item.value)]
     following = any(not load.conservative for load in solution.model.loads)
-    calm = _undamped(system) if any(block.damping.any() for block in system.blocks) else None
+    calm = _undamped(system) if system.damped else None
     without = _without_followers(solution) if following else system
     conserved = system.connectors.keep_energy
     if not (moving or following or calm is not None or not conserved):
@@ -336,7 +335,7 @@ def _forces(solution: "Solution", system: System) -> _Forces:
 
 
 def _undamped(system: System) -> Assembler:
-    blocks = [block._replace(damping=np.zeros_like(block.damping)) for block in system.blocks]
+    blocks = [block._replace(damping=np.zeros_like(block.damping), mass_damping=0.0) for block in system.blocks]
     result = Assembler(system.equations_of(blocks))
     result.weigh((1.0, 1.0, 1.0))
     return result

@@ -50,6 +50,7 @@ def beam_table(beam: Beam) -> str:
         ("section", _numbers(beam.section) if beam.prismatic else "varies along the beam"),
         ("material", "of the section" if beam.material is None else _numbers(beam.material)),
     ]
+    rows += [] if beam.damping is None else [("damping", f"{type(beam.damping).__name__}, {_numbers(beam.damping)}")]
     return f"<b>Beam</b>{as_html((), rows)}"
 
 

@@ -52,6 +52,7 @@ LAYERS = (
     "kernels",
     "section",
     "material",
+    "damping",
     "curves",
     "reprs",
     "tables",

@@ -6,7 +6,6 @@ import numpy as np
 
 from beamfem.assembly.system import System, system_of
 from beamfem.errors import TimeStepWarning, warn
-from beamfem.model.beam import retardation_time
 from beamfem.results.solution import Solution
 from beamfem.solve.start.functions_of_time import FunctionOfTime
 
@@ -65,7 +64,8 @@ def detuned(solution: Solution, system: System, functions: list[FunctionOfTime])
     """Warn of a motion that is driven near resonance if the steps change its period by too much.
 
     That is more than half the damping ratio; without damping, more than a tenth of a period over the motion. Return the
-    sentence. Only Kelvin-Voigt damping counts, with the ratio w t / 2 of the smallest retardation time t.
+    sentence. Only damping of beams counts, with the smallest ratio w t / 2 + a / (2 w) of a retardation time t and a
+    factor a of the mass.
     """
     if not functions:
         return ()
@@ -73,14 +73,14 @@ def detuned(solution: Solution, system: System, functions: list[FunctionOfTime])
     cycles = frequency * float(solution.at[-1])
     if not error * cycles > _DETUNED:
         return ()
-    sections = [(beam.section, beam.material) for beam in solution.model.beams]
-    times = [retardation_time(section, material) for section, material in sections if not callable(section)]
-    damping = np.pi * frequency * min((time for time in times if time > 0.0), default=0.0)
+    omega = 2.0 * np.pi * frequency
+    ratios = [0.5 * (omega * beam.retardation_time + beam.mass_damping / omega) for beam in solution.model.beams]
+    damping = min((ratio for ratio in ratios if ratio > 0.0), default=0.0)
     if damping > 0.0:
         resonant = error > 0.5 * damping and _resonates(solution, functions, frequency)
         allowed, compared = 0.1 * damping, f"more than half the damping ratio there, {100 * damping:.2g} %"
     else:
-        damped = not system.connectors.keep_energy or any(block.damping.any() for block in system.blocks)
+        damped = not system.connectors.keep_energy or system.damped
         # steps do not show at which frequency they drive a vibration of less than two of them
         unknown = damped or system.history.laws or frequency * solution.statistics.rule[0] > 0.5
         drives = [] if unknown else [_frequency_of(function, solution) / frequency for function in functions]

@@ -84,7 +84,7 @@ def march(
     where and why it failed, or None.
     """
     statistics, done, row, failed = record.statistics, 0, 0, None
-    damped = any(block.damping.any() for block in system.blocks) or bool(system.connectors.items)
+    damped = system.damped or bool(system.connectors.items)
     # see initial_acceleration; laws with history know rates by differences only
     relaxed = is_scheme(integrator) and (bool(system.history.laws) or (damped and not _keeps_rates(integrator)))
     # a user-defined integrator may raise any exception; the states reached before are kept

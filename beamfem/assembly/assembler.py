@@ -70,7 +70,7 @@ class Assembler:
     def __init__(self, equations: Equations, stresses: Stresses | None = None, shared: bool = False) -> None:
         self.equations, self.size, self.record = equations, equations.size, equations.record.copy()
         self._imposes = any(group.imposed is not None for group in equations.groups)
-        self._slows = any(group.record.mass_damping for group in equations.groups)
+        self._damped = any(group.record.damped or group.record.mass_damping for group in equations.groups)
         self._laws = tuple(group.law for group in equations.groups if group.law is not None)
         self.works = tuple(Work(group, group.record.copy()) for group in equations.groups)
         self.scratch = self.numbers = 0
@@ -143,13 +143,13 @@ class Assembler:
     def weigh(self, coefficients: Sequence[float], dt: float = 0.0, moving: bool = False) -> None:
         """Set the weights ck, cv, ca of p, p', p'' in the tangent.
 
-        With ca = 0 there are no inertia forces unless `moving` or the mass is damped and cv is not 0, with cv = ca = 0
+        With ca = 0 there are no inertia forces unless `moving` or beams are damped and cv is not 0, with cv = ca = 0
         no damping forces either. dt [s]: time step since the committed history.
         """
         own = self.record
         own.weight_p, own.weight_v, own.weight_a = coefficients
         own.since_committed, own.rated = dt, moving or own.weight_a != 0.0 or own.weight_v != 0.0
-        own.moving = moving or own.weight_a != 0.0 or (self._slows and own.rated)
+        own.moving = moving or own.weight_a != 0.0 or (self._damped and own.rated)
 
     @property
     def weights(self) -> tuple[float, float, float]:

@@ -126,7 +126,8 @@ def _structure(given: Numbers, sizes: Sizes, imposed: bool) -> Structure:
     dependent = 4 if STRETCH in kinds or SHEAR_RIGID in kinds else (0 if set(kinds) <= {GRADIENTS} else 2)
     parameters = coordinates - (size - dependent) if dependent else 0
     velocity = 2 * size + 2 * dependent * parameters
-    gathered = velocity + size * sizes.damped
+    turning = velocity + size * sizes.damped
+    gathered = turning + dependent * parameters * sizes.damped
     force = gathered + parameters * parameters
     rows = _table_rows(nodes * sizes.vectors, sizes)
     used = rows_of(nodes, sizes.vectors, sizes.points, gathered, rows["table_rows"])[-1]
@@ -166,6 +167,7 @@ def _structure(given: Numbers, sizes: Sizes, imposed: bool) -> Structure:
         transform=2 * size,
         convective=2 * size + dependent * parameters,
         velocity=velocity,
+        turning=turning,
         curvature=gathered,
         force=force,
         predicted_force=force + size,
@@ -223,6 +225,7 @@ def _needs(kinds: tuple[int, ...], sizes: Sizes, loads: bool, imposed: bool) -> 
     forces = ("forces", *(("angles",) if angles else ()), *rotated, *(("loads",) if loads else ()))
     forces += (*(("damping",) if sizes.damped else ()), *(("imposed",) if imposed else ()))
     tangent = ["tangent", "band" if sizes.half_width >= 0 else "sparse"]
+    tangent += ["damping tangent"] if sizes.damped else []
     tangent += ["rotation tangent"] if rotates else []
     tangent += ["load tangent"] if loads else []
     tangent += ["rotation load tangent"] if loads and rotates else []

@@ -10,7 +10,7 @@ from beamfem.kernels.records import Reals
 
 @routine()
 def form_matrices(group: Group, system: System, count: int, x: Reals, nodal: Reals, stride: int) -> None:
-    """Fill the reduced matrices B^T (ck K B + M C) of a batch of elements.
+    """Fill the reduced matrices B^T (ck K B + M C) of a batch of elements; see `rate_tangent` for those of damping.
 
     C = ca B + ck de''/dp + cv de''/dp'; ck, cv, ca: weights of the derivatives with respect to p, p' and p''; x:
     workspace; nodal: rows of the first nodes, those of the next ones `stride` numbers on.
@@ -79,6 +79,8 @@ def form_matrices(group: Group, system: System, count: int, x: Reals, nodal: Rea
                 if done == 0:
                     call.store(size, dependent, parameters, coordinates, count, rows, b_node, pair, to)
         call.mirror(rows, count, k)
+        if group.damped != 0 and system.moving != 0 and system.weight_p != 0.0:
+            call.add_rate_tangent(group, system, count, x, nodal, stride, k)
     else:
         call.clear(rows * rows, count, k)
     if system.moving != 0:

@@ -90,7 +90,7 @@ def six_resultants(
 def add_viscous(count, measures, ck, cv, weight, c, time, x):
     """Add the viscous resultants t C eps' (Kelvin-Voigt), and replace the stiffness K by ck K + cv t C.
 
-    time: row of retardation times t [s]; the change of eps' with p at constant p' is neglected.
+    time: row of retardation times t [s]; for the change of eps' with p at constant p' see `rate_tangent`.
     """
     rate, s, stiffness, pair = at(x, RATE * ROW), at(x, RESULTANT * ROW), at(x, STIFFNESS * ROW), 0
     for row in range(measures):

@@ -2,7 +2,7 @@
 
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.point import RATE, RESULTANT, STRAIN
+from beamfem.kernels.point import RATE, RATE_CHANGE, RESULTANT, STRAIN, VELOCITY
 from beamfem.kernels.pointers import at, given, small_code
 from beamfem.kernels.record import LANES, ROW, Group, System
 
@@ -110,13 +110,31 @@ def rate_nodes(group: Group, system: System, row: int) -> None:
 
 
 @routine()
+def turn_nodes(group: Group, system: System) -> None:
+    """Add B' dp, by which e' changes at constant p', to the rates of all nodes of a group; dp: `COORDINATES_V`."""
+    chunks, first, dp, parameters = group.chunks, 0, system.v, group.parameters
+    linear = 2 * group.vectors - group.dependent
+    while first < group.nodes:
+        count, chunk = min(LANES, group.nodes - first), at(chunks, first // LANES * group.node_rows * ROW)
+        for part in range(group.dependent):
+            to = at(chunk, (group.velocity + linear + part) * ROW)
+            for column in range(parameters):
+                dofs = at(group.dof, (linear + column) * group.nodes + first)
+                factor = at(chunk, (group.turning + part * parameters + column) * ROW)
+                for i in range(count):
+                    if dofs[i] >= 0:
+                        to[i] += factor[i] * dp[dofs[i]]
+        first += count
+
+
+@routine()
 def predict_resultants(group: Group, system: System, placed: int) -> None:
     """Fill `STRESS` with the resultants at the strains eps + (d eps / de) B dp, minus imposed strains, after a step dp.
 
     eps and B are those at p, and `COORDINATES_V` holds dp instead of p'. They are the independent stresses of Magisano,
     Leonetti and Garcea 2017 for the geometric part of the tangent. If strain rates matter, `COORDINATES_A` holds p'
-    instead of p'', and t C (d eps / de) B (p' + cv dp) is added, with the retardation time t. placed: whether the nodes
-    were placed at p by the residual or tangent before.
+    instead of p'', and t C (d eps / de) B (p' + cv dp) is added, with the retardation time t, and its change with p if
+    the nodes are placed. placed: whether they were placed at p by a tangent before.
     """
     call, x, director = group.routines, group.space, group.director
     nodes, vectors, bends, elements, measures = (
@@ -138,6 +156,8 @@ def predict_resultants(group: Group, system: System, placed: int) -> None:
         system.v = system.a
         call.rate_nodes(group, system, group.velocity)
         system.v = step
+        if placed != 0:
+            call.turn_nodes(group, system)
     _, e, _, _, tables, q, unit, _, _, _, _ = rows_of(nodes, vectors, group.points, group.curvature, group.table_rows)
     e, t, q, unit = at(x, e * ROW), at(x, tables * ROW), at(x, q * ROW), at(x, unit * ROW)
     pairs, chunks, place = measures * (measures + 1) // 2, group.chunks, group.place
@@ -157,6 +177,15 @@ def predict_resultants(group: Group, system: System, placed: int) -> None:
             call.strains(count, q)
             change = at(nodal, group.acceleration * ROW)
             call.interpolate(nodes, vectors, bends, count, stride, slope, second, factor, change, rate)
+            if damped and placed != 0:
+                moving = at(nodal, group.velocity * ROW)
+                velocity = at(q, VELOCITY * ROW)
+                call.interpolate(nodes, vectors, bends, count, stride, slope, second, factor, moving, velocity)
+                call.rate_changes(count, q)
+                for row in range(measures):
+                    strain, rate_row = at(q, (STRAIN + row) * ROW), at(q, (RATE_CHANGE + row) * ROW)
+                    for i in range(count):
+                        strain[i] += time[i] * rate_row[i]
             call.rates(count, q)
             for row in range(measures):
                 strain, rate_row = at(q, (STRAIN + row) * ROW), at(rate, row * ROW)

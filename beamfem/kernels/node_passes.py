@@ -89,6 +89,11 @@ def place_nodes(group: Group, system: System, moving: int) -> None:
                     for part in range(parts):
                         to = at(chunk, (group.convective + corner + part * parameters) * ROW)
                         put(polar, count, last, at(result, part * polar * ROW), to)
+                    if group.damped != 0:
+                        call.nodes[kind - 1].convect(count, 0.0, 0.5, x)  # half of de''/dp' is B'
+                        for part in range(parts):
+                            to = at(chunk, (group.turning + corner + part * parameters) * ROW)
+                            put(polar, count, last, at(result, part * polar * ROW), to)
             first += count
 
 

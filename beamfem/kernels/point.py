@@ -7,4 +7,6 @@ STIFFNESS = 18  # (21): ds/deps, upper triangle row by row, times the weight
 FORCE = 39  # (6): forces conjugate to q
 HESSIAN = 45  # (21): second derivative of the energy with respect to q, see `stiffness`
 RATE = 66  # (6): rate or change of q, then that of eps
+VELOCITY = FORCE  # q' (6), and
+RATE_CHANGE = HESSIAN  # (6) the change of eps' at constant q', in `rate_tangent`
 POINT_ROWS = 72

@@ -59,6 +59,10 @@ class GroupRoutines(Record):
     hessian = calls("generated.structural_pass:hessian", "tangent")
     law = calls("linear_law:four_resultants", "forces")
     add_viscous = calls("linear_law:add_viscous", "damping")
+    rate_changes = calls("generated.structural_pass:rate_changes", "damping tangent")
+    add_component = calls("rate_tangent:add_component", "damping tangent")
+    add_products = calls("rate_tangent:add_products", "damping tangent")
+    add_rate_tangent = calls("rate_tangent:add_rate_tangent", "damping tangent")
     release = calls("imposed_strain_pass:release", "imposed")
     add_loads = calls("point_loads:add_loads", "loads")
     load_forces = calls("point_loads:load_forces", "loads")
@@ -70,6 +74,7 @@ class GroupRoutines(Record):
     reduce_and_add = calls("element_matrices:reduce_and_add", "load tangent")
     add_node_rates = calls("model_passes:add_node_rates", "prediction", "damping")
     rate_nodes = calls("model_passes:rate_nodes", "prediction", "damping")
+    turn_nodes = calls("model_passes:turn_nodes", "damping tangent")
 
 
 class Group(Record):
@@ -132,6 +137,7 @@ class Group(Record):
     transform: int  # B (dependent, parameters)
     convective: int  # derivatives of e'' with respect to p and p' (dependent, parameters)
     velocity: int  # e', if resultants depend on it
+    turning: int  # B' (dependent, parameters), likewise
     curvature: int  # derivative of B^T f (parameters, parameters)
     force: int
     predicted_force: int  # the same with the stress resultants predicted by the last correction

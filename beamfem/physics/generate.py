@@ -27,12 +27,12 @@ _ORDER = [(i, j) for a in (0, 2, 4) for b in range(a, 6, 2) for i in (a, a + 1) 
 
 
 def measure_source(measure: Measure) -> str:
-    """Return the module of a strain measure as source: strains, forces, rates, second derivative of the energy."""
+    """Return the module of a strain measure as source: strains, forces, rates and their changes, second derivatives."""
     q = sympy.symbols(_AXIS, real=True)
     eps = [sympy.sympify(value) for value in measure(*q, sympy.sqrt)]
     count = len(eps)
     s, dq = sympy.symbols(f"s:{count}", real=True), sympy.symbols([f"{name}_" for name in _AXIS], real=True)
-    slopes = sympy.Matrix(eps).jacobian(q)
+    qt, slopes = sympy.symbols([f"{name}t" for name in _AXIS], real=True), sympy.Matrix(eps).jacobian(q)
     rows = _rows(_AXIS, point.AXIS)
     resultants = _rows([str(symbol) for symbol in s], point.RESULTANT)
     functions = [
@@ -52,6 +52,15 @@ def measure_source(measure: Measure) -> str:
             [],
             slopes * sympy.Matrix(dq),
             point.RATE,
+        ),
+        _function(
+            "rate_changes",
+            "the change of strain rates with a change of q at constant q'",
+            {**rows, **_rows([str(symbol) for symbol in qt], point.VELOCITY)}
+            | _rows([str(symbol) for symbol in dq], point.RATE),
+            [],
+            (slopes * sympy.Matrix(qt)).jacobian(q) * sympy.Matrix(dq),
+            point.RATE_CHANGE,
         ),
         _second(q, eps, s, slopes, {**rows, **resultants}),
     ]

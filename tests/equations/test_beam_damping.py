@@ -43,7 +43,7 @@ def test_the_damping_matrix_is_proportional_to_mass_and_stiffness(element):
 
 
 @pytest.mark.parametrize("element", USUAL, ids=identify)
-@pytest.mark.parametrize("damping", [bf.Rayleigh(mass=0.8)], ids=["mass"])
+@pytest.mark.parametrize("damping", [bf.Rayleigh(mass=0.8), BOTH], ids=["mass", "both"])
 def test_the_tangent_of_a_damped_beam_is_that_of_differences(element, damping, rng):
     """By p, p' and p'' of a moving beam."""
     model = bf.Model([replace(beam(element), damping=damping)])

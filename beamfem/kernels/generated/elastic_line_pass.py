@@ -86,6 +86,63 @@ def rates(count, x):
 
 
 @routine("iv", fastmath=FAST)
+def rate_changes(count, x):
+    """Fill the change of strain rates with a change of q at constant q'."""
+    for i in range(0, count, WIDTH):
+        own = at(x, i)
+        rx = own[0]
+        ry = own[72]
+        ex = own[288]
+        ey = own[360]
+        rxt = own[2808]
+        ryt = own[2880]
+        dxt = own[2952]
+        dyt = own[3024]
+        ext = own[3096]
+        eyt = own[3168]
+        rx_ = own[4752]
+        ry_ = own[4824]
+        dx_ = own[4896]
+        dy_ = own[4968]
+        ex_ = own[5040]
+        ey_ = own[5112]
+        x0 = rx * rx
+        x1 = ry * ry
+        x2 = x0 + x1
+        x3 = 1.0 / x2
+        x4 = ryt * x3
+        x5 = rx * ry
+        x6 = x4 * x5
+        x7 = x0 * x3
+        x8 = rxt * x3
+        x9 = x5 * x8
+        x10 = x1 * x3
+        x11 = 2.0 * x7
+        x12 = ex * ry
+        x13 = ey * rx
+        x14 = 4.0 * x12 - 4.0 * x13
+        x15 = x3 * x5
+        x16 = -ex * rx + ey * ry + x14 * x15
+        x17 = 2.0 * x8
+        own[3240] = -(rx_ * (rxt * x7 - rxt + x6) + ry_ * (ryt * x10 - ryt + x9)) / math.sqrt(x2)
+        own[3312] = x3 * (
+            ex_ * (ryt * (2.0 * x10 - 1.0) + 2.0 * x9)
+            - ey_ * (rxt * (x11 - 1.0) + 2.0 * x6)
+            + rx_ * (2.0 * ext * rx * ry * x3 - eyt * x11 + eyt - 2.0 * x16 * x4 - x17 * (-x12 + 3.0 * x13 + x14 * x7))
+            + ry_
+            * (
+                2.0 * ext * x1 * x3
+                - ext
+                - 2.0 * eyt * x15
+                + 2.0 * ryt * x3 * (3.0 * ex * ry - x10 * x14 - x13)
+                - x16 * x17
+            )
+        )
+        own[3384] = dx_ * rxt + dxt * rx_ + dy_ * ryt + dyt * ry_
+        own[3456] = dx_ * dxt + dy_ * dyt
+
+
+@routine("iv", fastmath=FAST)
 def hessian(count, x):
     """Fill the second derivative of the energy by q."""
     for i in range(0, count, WIDTH):

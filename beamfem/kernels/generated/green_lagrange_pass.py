@@ -80,6 +80,31 @@ def rates(count, x):
 
 
 @routine("iv", fastmath=FAST)
+def rate_changes(count, x):
+    """Fill the change of strain rates with a change of q at constant q'."""
+    for i in range(0, count, WIDTH):
+        own = at(x, i)
+        rxt = own[2808]
+        ryt = own[2880]
+        dxt = own[2952]
+        dyt = own[3024]
+        ext = own[3096]
+        eyt = own[3168]
+        rx_ = own[4752]
+        ry_ = own[4824]
+        dx_ = own[4896]
+        dy_ = own[4968]
+        ex_ = own[5040]
+        ey_ = own[5112]
+        own[3240] = rx_ * rxt + ry_ * ryt
+        own[3312] = ex_ * rxt + ext * rx_ + ey_ * ryt + eyt * ry_
+        own[3384] = ex_ * ext + ey_ * eyt
+        own[3456] = dx_ * dxt + dy_ * dyt
+        own[3528] = dx_ * rxt + dxt * rx_ + dy_ * ryt + dyt * ry_
+        own[3600] = dx_ * ext + dxt * ex_ + dy_ * eyt + dyt * ey_
+
+
+@routine("iv", fastmath=FAST)
 def hessian(count, x):
     """Fill the second derivative of the energy by q."""
     for i in range(0, count, WIDTH):

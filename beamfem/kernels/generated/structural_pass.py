@@ -124,6 +124,115 @@ def rates(count, x):
 
 
 @routine("iv", fastmath=FAST)
+def rate_changes(count, x):
+    """Fill the change of strain rates with a change of q at constant q'."""
+    for i in range(0, count, WIDTH):
+        own = at(x, i)
+        rx = own[0]
+        ry = own[72]
+        dx = own[144]
+        dy = own[216]
+        ex = own[288]
+        ey = own[360]
+        rxt = own[2808]
+        ryt = own[2880]
+        dxt = own[2952]
+        dyt = own[3024]
+        ext = own[3096]
+        eyt = own[3168]
+        rx_ = own[4752]
+        ry_ = own[4824]
+        dx_ = own[4896]
+        dy_ = own[4968]
+        ex_ = own[5040]
+        ey_ = own[5112]
+        x0 = dx * dx
+        x1 = dy * dy
+        x2 = x0 + x1
+        x3 = 1.0 / math.sqrt(x2)
+        x4 = 1.0 / x2
+        x5 = dxt * x4
+        x6 = dx * dy
+        x7 = x5 * x6
+        x8 = x1 * x4
+        x9 = dyt * (x8 - 1.0) + x7
+        x10 = dyt * x4
+        x11 = x10 * x6
+        x12 = x0 * x4
+        x13 = dxt * (x12 - 1.0) + x11
+        x14 = x4 * x6
+        x15 = rxt * x14
+        x16 = dy * rx
+        x17 = dx * ry
+        x18 = 3.0 * x17
+        x19 = 3.0 * x4
+        x20 = (dx * dx * dx) * x19
+        x21 = 3.0 * x16
+        x22 = x12 * x21
+        x23 = dx * rx
+        x24 = 3.0 * x23
+        x25 = x24 * x8
+        x26 = dy * ry
+        x27 = 3.0 * x26
+        x28 = x12 * x27 - x26
+        x29 = x23 - x25 + x28
+        x30 = -ryt * x14
+        x31 = (dy * dy * dy) * x19
+        x32 = -x17 + x18 * x8
+        x33 = -x16 + x22 + x32
+        x34 = 2.0 * dx
+        x35 = dy * x34
+        x36 = 2.0 * x8
+        x37 = 2.0 * x12
+        x38 = dy * x4
+        x39 = x34 * x38
+        x40 = dx * ey
+        x41 = dy * ex
+        x42 = 3.0 * x12
+        x43 = x40 - x41
+        x44 = 3.0 * x43
+        x45 = dx * x4 * x41 - ey * x12 + ey
+        x46 = dx * ex
+        x47 = dy * ey
+        x48 = 3.0 * x8
+        x49 = -ex * x8 + ex + x38 * x40
+        x50 = dx * x49 - dy * x45 + x19 * x43 * x6 + x42 * x47 - x46 * x48 + x46 - x47
+        own[3240] = x3 * (
+            -dx_ * (-ryt * x12 + ryt + x10 * x29 + x15 + x5 * (ry * x20 + x16 - x18 - x22))
+            - dy_ * (rxt * x8 - rxt + x10 * (-rx * x31 + x21 + x32) + x29 * x5 + x30)
+            - rx_ * x9
+            + ry_ * x13
+        )
+        own[3312] = x3 * (
+            dx_ * (-rxt * x12 + rxt + x10 * x33 + x30 + x5 * (rx * x20 - x24 + x28))
+            + dy_ * (-ryt * x8 + ryt + x10 * (ry * x31 - x23 + x25 - x27) - x15 + x33 * x5)
+            - rx_ * x13
+            - ry_ * x9
+        )
+        own[3384] = x4 * (
+            dx_
+            * (
+                ext * x39
+                - eyt * x37
+                + eyt
+                + x10 * x50
+                + x5 * (ey * x20 + x12 * x44 - x34 * x45 - 4.0 * x40 - x41 * x42 + 2.0 * x41)
+            )
+            + dy_
+            * (
+                ext * x36
+                - ext
+                - eyt * x39
+                + x10 * (2.0 * dy * x49 - ex * x31 + x40 * x48 - 2.0 * x40 + 4.0 * x41 + x44 * x8)
+                + x5 * x50
+            )
+            + ex_ * (dyt * (x36 - 1.0) + x35 * x5)
+            - ey_ * (dxt * (x37 - 1.0) + x10 * x35)
+        )
+        own[3456] = -x3 * (dx_ * (dxt * x12 - dxt + x11) + dy_ * (dyt * x8 - dyt + x7))
+
+
+@routine("iv", fastmath=FAST)
 def hessian(count, x):
     """Fill the second derivative of the energy by q."""
     for i in range(0, count, WIDTH):

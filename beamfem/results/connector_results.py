@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.assembly.connectors import Connector, Motion
+from beamfem.assembly.connectors import Connector, Connectors, Motion
 from beamfem.errors import InputError
 from beamfem.model.contribution import Contribution
 from beamfem.results.solution_system import loading
@@ -64,7 +64,14 @@ def _bound(solution: "Solution", connector: Contribution) -> list[Connector]:
 
 def _energies(solution: "Solution") -> np.ndarray:
     system, times = loading(solution)
-    energies = [system.connectors.energies(state, at) for state, at in _states(solution, times)]
+    return energies_of(system.connectors, solution, times)
+
+
+def energies_of(connectors: Connectors, solution: "Solution", times: np.ndarray) -> np.ndarray:
+    """Return the kinetic and potential energy (steps, 2) [J] of some connectors, with the loads at given times."""
+    if not connectors.items:
+        return np.zeros((len(solution), 2))
+    energies = [connectors.energies(state, at) for state, at in _states(solution, times)]
     return np.array(energies).reshape(-1, 2)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamfem.cached_properties import cached_property
 from beamfem.model.beam import Point
 from beamfem.model.load_base import Load, factor
 from beamfem.model.model import Model
@@ -32,19 +33,20 @@ class Energy:
     potential : array, [J], (steps,)
         Potential of gravity, other constant dead loads, springs and foundations; follower forces and pressures have
         none.
-    dissipated : array, [J], (steps,)
-        Energy dissipated since the start by sections and stops with history; nan if something else may dissipate too,
-        which is not integrated: in motions a retardation time or a dashpot, and always another connector that is not
-        conservative.
+    recorded : array, [J], (steps,)
+        Energy dissipated since the start by sections and stops with history.
     unit : str
         Name of the model's unit of energy.
+    solution : Solution, optional
+        The solution, over whose rows `work` and `dissipated` are integrated.
     """
 
     kinetic: np.ndarray
     strain: np.ndarray
     potential: np.ndarray
-    dissipated: np.ndarray
+    recorded: np.ndarray
     unit: str = field(default="J", repr=False)
+    solution: "Solution | None" = field(default=None, repr=False)
 
     __repr__ = brief
 
@@ -61,6 +63,44 @@ class Energy:
         """Sum of kinetic, strain and potential energy (steps,) [J]."""
         return self.kinetic + self.strain + self.potential
 
+    @cached_property
+    def _exchange(self) -> tuple[np.ndarray, np.ndarray]:
+        """Work, nan for equilibria, and what rates dissipate since the first row (steps,) [J]."""
+        from beamfem.results.work_and_losses import exchange
+
+        solution = self.solution
+        if solution is None or solution.static or solution.loaded is not None or not len(solution):
+            return np.full_like(self.kinetic, np.nan), np.zeros_like(self.kinetic)
+        return exchange(solution)
+
+    @property
+    def work(self) -> np.ndarray:
+        """Work (steps,) [J] done on a motion since its first row; nan for equilibria.
+
+        It is that of moving supports, follower loads and pressures, loads that change with time, imposed strains, and
+        connectors that follow time or are not conservative: the mean of the forces in two rows times the displacement
+        between them. The work of constant dead loads is in `potential`.
+        """
+        return self._exchange[0]
+
+    @property
+    def dissipated(self) -> np.ndarray:
+        """Energy (steps,) [J] dissipated since the start by history, and since the first row by rates.
+
+        Damping of beams and dampers resist rates; the mean of their power in two rows, times the time between them. In
+        statics, there is only what sections and stops with history have recorded, and nan if connectors that are not
+        conservative may dissipate too.
+        """
+        return self.recorded + self._exchange[1]
+
+    @property
+    def error(self) -> np.ndarray:
+        """Work less the changes of `total` and of `dissipated` since the first row (steps,) [J]; nan for equilibria.
+
+        It is the error of the time steps, such as numerical damping, and of the integration over the rows.
+        """
+        return self.work - (self.total - self.total[:1]) - (self.dissipated - self.dissipated[:1])
+
 
 def potential(solution: "Solution", first_moments: Sequence[np.ndarray]) -> np.ndarray:
     """Return the potential (steps,) [J] of loads, springs and foundations, zero in the reference configuration.
@@ -71,19 +111,19 @@ def potential(solution: "Solution", first_moments: Sequence[np.ndarray]) -> np.n
     return _of_loads(solution, displaced) + _of_supports(solution, displaced) + potential_of_connectors(solution)
 
 
-def dissipated(solution: "Solution", by_sections: np.ndarray) -> np.ndarray:
-    """Return what was dissipated since the start (steps,) [J]; by_sections: by sections with history.
+def recorded(solution: "Solution", by_sections: np.ndarray) -> np.ndarray:
+    """Return what history variables record as dissipated (steps,) [J]; by_sections: by sections with history.
 
-    What resists rates has no history variable for it, and rows that are not saved cannot be integrated: nan.
+    In statics nan if a connector that is not conservative has no record.
     """
     system = loading(solution)[0]
     items = system.connectors.items
-    damped = system.connectors.damp or system.damped
-    recorded = [item.dissipated for item in items]
-    losing = any(not item.item.conservative and not len(own) for item, own in zip(items, recorded, strict=True))
-    if losing or (damped and not solution.static):
+    own = [item.dissipated for item in items]
+    if system.static and any(
+        not item.item.conservative and not len(each) for item, each in zip(items, own, strict=True)
+    ):
         return np.full(len(solution), np.nan)
-    return by_sections + sum(solution.p[:, own].sum(axis=1) for own in recorded)
+    return by_sections + sum(solution.p[:, each].sum(axis=1) for each in own)
 
 
 def _of_loads(solution: "Solution", displaced: Displacements) -> np.ndarray:

@@ -3,18 +3,19 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import sqrt
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamfem.assembly.assembler import Assembler
-from beamfem.assembly.equations import INERTIA, ROUND_OFF, linearise, residual, sizes
+from beamfem.assembly.connectors import Connectors
+from beamfem.assembly.equations import INERTIA, ROUND_OFF, linearise, sizes
 from beamfem.assembly.system import System, system_of
 from beamfem.kernels.motion_record import MotionLimits
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.time_functions import kinks_of
-from beamfem.results.connector_results import kinetic_of_connectors, potential_of_connectors
+from beamfem.results.connector_results import energies_of
 from beamfem.results.full_turns import start_rotations
+from beamfem.results.work_and_losses import Forces, forces_without_potential, work_between
 
 if TYPE_CHECKING:
     from beamfem.results.energies import Energy
@@ -161,22 +162,6 @@ _BULGE = 0.1  # of an amplitude, by which it may differ from a straight line bet
 
 
 @dataclass(frozen=True)
-class _Forces:
-    """Generalized forces in rows that have no potential.
-
-    work (rows, n): of follower loads, pressures and moving supports; connected (rows, n): of connectors that do not
-    conserve energy; damping (rows,) [W]: power that materials dissipate.
-    """
-
-    work: np.ndarray
-    connected: np.ndarray
-    damping: np.ndarray
-
-    def of(self, rows: slice) -> "_Forces":
-        return _Forces(self.work[rows], self.connected[rows], self.damping[rows])
-
-
-@dataclass(frozen=True)
 class _Balance:
     """Energy in rows (rows,) [J] that work does not explain.
 
@@ -243,18 +228,22 @@ def _some_rows(solution: "Solution") -> "Solution":
 
 def _balance(solution: "Solution") -> _Balance:
     system, energy = system_of(solution.model, static=False), solution.energy()
-    total, forces = energy.total, _forces(solution, system)
-    if not system.connectors.keep_energy:
-        total = total - kinetic_of_connectors(solution) - potential_of_connectors(solution)
-    known, driving = _resolved(solution, system), np.fmin(energy.dissipated, 0.0)
-    work, lost, given = _work(solution, forces)
-    rise = _summed(np.diff(total) - work - np.maximum(given, 0.0) + np.diff(np.nan_to_num(driving)), known)
-    lost = lost + np.diff(energy.dissipated if system.history.laws else np.zeros(len(solution)))
+    connectors = system.connectors
+    if connectors.keep_energy:
+        connectors = Connectors(solution.model, False, ())
+    total = energy.total - energies_of(connectors, solution, solution.at).sum(axis=1)
+    forces = forces_without_potential(solution, system, connectors)
+    known, driving = _resolved(solution, system), np.fmin(energy.recorded, 0.0)
+    work, lost, given = work_between(solution, forces, connectors)
+    rise = _summed(np.diff(total) - work - np.maximum(given, 0.0) + np.diff(driving), known)
+    lost = np.maximum(lost, 0.0) + np.diff(energy.recorded if system.history.laws else np.zeros(len(solution)))
     loss = -_summed(np.diff(total) - work - given + lost, known)
     parts = (energy.kinetic, energy.strain, energy.potential, _summed(work, known))
     exchanged = max(*(np.ptp(part) for part in parts), energy.kinetic.max(), _SMALL * np.abs(energy.strain).max())
     unknown = _summed(np.abs(np.diff(total)), ~known)
-    doubt = _doubt(solution, forces, work + given) + unknown + _inaccuracy(system, solution.p, energy.strain)
+    doubt = (
+        _doubt(solution, forces, connectors, work + given) + unknown + _inaccuracy(system, solution.p, energy.strain)
+    )
     return _Balance(solution.at, rise, loss, doubt, float(exchanged), driven(solution))
 
 
@@ -280,76 +269,15 @@ def _resolved(solution: "Solution", system: System) -> np.ndarray:
     return result
 
 
-def _work(solution: "Solution", forces: _Forces) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the work between rows (rows - 1,) [J]: of loads and supports, dissipated by materials, of connectors.
-
-    Loads that have a potential at each time, and imposed strains, do the work by which their energy changes with time
-    alone.
-    """
-    moved = np.diff(solution.p, axis=0)
-    means = [0.5 * (values[1:] + values[:-1]) for values in (forces.work, forces.connected, forces.damping)]
-    work, given = (np.einsum("sn,sn->s", mean, moved) for mean in means[:2])
-    if any(load.amplitude is not None for load in solution.model.loads):
-        at, energy = solution.at, solution.energy().total
-        later = replace(solution, at=np.append(at[1:], at[-1])).energy().total
-        earlier = replace(solution, at=np.append(at[0], at[:-1])).energy().total
-        work = work + 0.5 * ((later - energy)[:-1] + (energy - earlier)[1:])
-    return work, np.maximum(means[2], 0.0) * np.diff(solution.at), given
-
-
-def _doubt(solution: "Solution", forces: _Forces, work: np.ndarray) -> np.ndarray:
+def _doubt(solution: "Solution", forces: Forces, connectors: Connectors, work: np.ndarray) -> np.ndarray:
     """Return by how much the work until each row (rows,) [J] differs if every second row is left out."""
     if not work.any():
         return np.zeros(len(solution))
-    half, _, given = _work(with_rows(solution, slice(None, None, 2)), forces.of(slice(None, None, 2)))
+    every = slice(None, None, 2)
+    half, _, given = work_between(with_rows(solution, every), forces.of(every), connectors)
     coarse, fine = np.append(0.0, np.cumsum(half + given)), np.append(0.0, np.cumsum(work))
     largest = np.maximum.accumulate(np.abs(coarse - fine[::2]))
     return np.asarray(largest[np.minimum((np.arange(len(fine)) + 1) // 2, len(largest) - 1)])
-
-
-def _forces(solution: "Solution", system: System) -> _Forces:
-    """Return the forces without a potential; those of loads as the difference that their absence makes."""
-    rows, size = solution.p.shape
-    work, connected, damping = np.zeros((rows, size)), np.zeros((rows, size)), np.zeros(rows)
-    moving = [item.dof for item in system.prescribed if callable(item.value)]
-    following = any(not load.conservative for load in solution.model.loads)
-    calm = _undamped(system) if system.damped else None
-    without = _without_followers(solution) if following else system
-    conserved = system.connectors.keep_energy
-    if not (moving or following or calm is not None or not conserved):
-        return _Forces(work, connected, damping)
-    for row, (at, p, v, a) in enumerate(zip(solution.at.tolist(), solution.p, solution.v, solution.a, strict=True)):
-        acting = residual(system, p, v, a, at)
-        if following:
-            work[row] = residual(without, p, v, a, at) - acting
-        if calm is not None:
-            left = np.empty(size)
-            calm.take(system.loads_at(at))
-            calm.balance(p, v, a, left, np.empty(0), False)
-            system.called.add_forces(left, (p, v, a), at)
-            damping[row] = v @ (acting - left)
-        work[row, moving] += acting[moving]
-        if not conserved:
-            system.connectors.add_forces(connected[row], (p, v, a), at)
-    return _Forces(work, -connected, damping)
-
-
-def _undamped(system: System) -> Assembler:
-    blocks = [block._replace(damping=np.zeros_like(block.damping), mass_damping=0.0) for block in system.blocks]
-    result = Assembler(system.equations_of(blocks))
-    result.weigh((1.0, 1.0, 1.0))
-    return result
-
-
-def _without_followers(solution: "Solution") -> System:
-    """Return the equations with loads that have no potential multiplied by zero, with the same coordinates."""
-    model = solution.model
-    loads = [load if load.conservative else replace(cast("Any", load), amplitude=_zero) for load in model.loads]
-    return system_of(model.with_loads(loads), static=False)
-
-
-def _zero(time: float) -> float:
-    return 0.0
 
 
 def _inaccuracy(system: System, p: np.ndarray, strain: np.ndarray) -> float:

@@ -21,7 +21,7 @@ shear_stress stresses.shear Pa, von_mises stresses.von_mises Pa, utilisation str
 """
 _OF_MODEL = """
 kinetic energy.kinetic J, strain energy.strain J, potential energy.potential J, total energy.total J,
-dissipated energy.dissipated J, px linear_momentum.0 N_s, py linear_momentum.1 N_s,
+dissipated energy.dissipated J, work energy.work J, px linear_momentum.0 N_s, py linear_momentum.1 N_s,
 angular_momentum angular_momentum N_m_s, stable stable
 """
 AT_POINT, OF_BEAM, OF_MODEL = (

@@ -488,7 +488,7 @@ class Solution:
         return tuple(postprocess.momenta(mesh, self.p, self.v) for mesh in self.model.meshes)
 
     def energy(self) -> "Energy":
-        """Return kinetic, strain, potential, total and dissipated energy (steps,) [J], see `Energy`.
+        """Return kinetic, strain, potential, total and dissipated energy, and work (steps,) [J], see `Energy`.
 
         The potential is zero in the reference configuration.
 
@@ -500,7 +500,7 @@ class Solution:
         """
 
         from beamfem.results.connector_results import kinetic_of_connectors
-        from beamfem.results.energies import Energy, dissipated, potential
+        from beamfem.results.energies import Energy, potential, recorded
         from beamfem.results.imposed_measures import imposed_measures
 
         kinetic = sum((m.kinetic for m in self._momenta), kinetic_of_connectors(self))
@@ -508,7 +508,7 @@ class Solution:
         parts = (postprocess.strain_energies(mesh, self.p, measures) for mesh, measures in imposed)
         strain, lost = sum(parts, np.zeros((len(self), 2))).T
         acting = potential(self, [m.first_moment for m in self._momenta])
-        return Energy(kinetic, strain, acting, dissipated(self, lost), self.model.unit("J"))
+        return Energy(kinetic, strain, acting, recorded(self, lost), self.model.unit("J"), self)
 
     @cached_property
     def energy_drift(self) -> "EnergyDrift | None":

@@ -1,12 +1,14 @@
 """Damping of beams proportional to mass and stiffness."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from conftest import USUAL, beam, identify
 from integrators import Radau
 from scipy.linalg import eig, eigh
+from section_laws import RambergOsgood
 
 import beamfem as bf
 from beamfem.assembly.equations import linearise, residual
@@ -42,23 +44,28 @@ def test_the_damping_matrix_is_proportional_to_mass_and_stiffness(element):
     assert damping == pytest.approx(expected, abs=1e-12 * np.abs(expected).max())
 
 
-@pytest.mark.parametrize("element", USUAL, ids=identify)
-@pytest.mark.parametrize("damping", [bf.Rayleigh(mass=0.8), BOTH], ids=["mass", "both"])
-def test_the_tangent_of_a_damped_beam_is_that_of_differences(element, damping, rng):
-    """By p, p' and p'' of a moving beam."""
-    model = bf.Model([replace(beam(element), damping=damping)])
+def by_differences(model, rng, spread=0.02):
+    """Return the tangents of a moving model times a step, and what differences of the residual give."""
     system = system_of(model, static=False)
-    p = system.reference + 0.02 * rng.standard_normal(model.size)
+    p = system.reference + spread * rng.standard_normal(model.size)
     v, a, step = rng.standard_normal((3, model.size))
-    free, h = system.free_dofs, 1e-5
+    free, h, found, expected = system.free_dofs, 1e-5, [], []
+    step[np.setdiff1d(np.arange(model.size), free)] = 0.0
     for weights in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.3, 0.7, 0.2)):
-        found = linearise(system, p, v, a, 0.0, weights, moving=True)[1].sparse(UNROTATED) @ step[free]
+        found.append(linearise(system, p, v, a, 0.0, weights, moving=True)[1].sparse(UNROTATED) @ step[free])
         after, before = (
             residual(system, *(x + s * h * w * step for x, w in zip((p, v, a), weights, strict=True)), 0.0)
             for s in (1, -1)
         )
-        expected = ((after - before) / (2 * h))[free]
-        assert found == pytest.approx(expected, rel=1e-6, abs=1e-6 * np.abs(expected).max())
+        expected.append(((after - before) / (2 * h))[free])
+    return np.array(found), np.array(expected)
+
+
+@pytest.mark.parametrize("element", USUAL, ids=identify)
+@pytest.mark.parametrize("damping", [bf.Rayleigh(mass=0.8), BOTH], ids=["mass", "both"])
+def test_the_tangent_of_a_damped_beam_is_that_of_differences(element, damping, rng):
+    found, expected = by_differences(bf.Model([replace(beam(element), damping=damping)]), rng)
+    assert found == pytest.approx(expected, rel=1e-6, abs=1e-6 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("element", USUAL, ids=identify)
@@ -283,3 +290,44 @@ def test_model_files_have_damping(written, keys, expected):
 def test_damping_that_is_none_is_refused(make, said):
     with pytest.raises(bf.InputError, match=said):
         make()
+
+
+@some
+@pytest.mark.parametrize("banded", [True, False], ids=["band", "sparse"])
+def test_the_tangent_of_a_frame_is_that_of_differences(element, banded, rng, widest_band):
+    """Joined at an angle, hinged and clamped: nodes of different kinds, and for gradients with a rotated frame."""
+    if not banded:
+        widest_band(0)
+    points = [(0.0, 0.0), (0.3, 1.0), (1.2, 0.8), (1.5, 0.0)]
+    legs = [
+        bf.Beam(bf.Line(a, b), 2, element, SQUARE, RUBBER, damping=bf.Rayleigh(number, 0.01 * (3 - number)))
+        for number, (a, b) in enumerate(pairwise(points))
+    ]
+    joints = [bf.Rigid(legs[0].end, legs[1].start), bf.Hinge(legs[1].end, legs[2].start)]
+    found, expected = by_differences(bf.Model(legs, [bf.Clamp(legs[0].start), bf.Pin(legs[2].end)], joints=joints), rng)
+    assert found == pytest.approx(expected, rel=1e-6, abs=2e-6 * np.abs(expected).max())
+
+
+def test_the_tangent_of_a_damped_section_law_is_that_of_differences(rng):
+    """Damped by its stiffness at zero strain."""
+    given = {"axial": 1e4, "shear": 4e3, "bending": 10.0, "mass": 1.0, "rotary_inertia": 1e-4}
+    section = RambergOsgood(**given, knee=2.0, exponent=3)
+    arm = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(order=2), section, damping=BOTH)
+    found, expected = by_differences(bf.Model([arm], [bf.Clamp(arm.start)]), rng, spread=1e-3)
+    assert found == pytest.approx(expected, rel=1e-6, abs=2e-6 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("time", [1e-2, 0.1, 1.0])
+@pytest.mark.parametrize("rho", [0.9, 1.0])
+def test_a_strongly_damped_bar_turns_in_steps_of_a_few_degrees(time, rho):
+    """Of 5 degrees: without the resultants that damping predicts, the iterations of these steps do not converge."""
+    material, section = bf.Material(2.5e9, 0.35, 1150.0), bf.Rectangle(0.02, 0.005)
+    bar = bf.Beam(bf.Line((0, 0), (0.5, 0)), 4, bf.CRBF(order=3), section, material, damping=bf.KelvinVoigt(time))
+    spin = bf.RigidVelocity(angular=8.0)
+    found = []
+    for step in (1e-2, 2.5e-3):
+        model = bf.Model([bar], [bf.Pin(bar.start)], [bf.Gravity((0, -9.81))])
+        motion = bf.simulate(model, 0.3, step, bf.GeneralizedAlpha(rho), velocity=spin)
+        assert motion.statistics.iterations < 12 * motion.statistics.steps
+        found.append(motion.rotation(bar.start)[-1])
+    assert found[0] == pytest.approx(found[1], rel=1e-2)

@@ -128,3 +128,6 @@ class KelvinVoigt:
     def stiffness(self) -> float:
         """The retardation time [s]: the factor of the stiffness."""
         return self.time
+
+
+Damping = Rayleigh | KelvinVoigt

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import Field, fields
 from typing import Any
 
-from beamfem.damping import KelvinVoigt, Rayleigh
+from beamfem.damping import Damping, KelvinVoigt
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point, names
 from beamfem.model.joints import Joint
@@ -34,7 +34,7 @@ def material_in_words(material: Material | None, unit: Unit) -> str:
     return ", ".join(parts)
 
 
-def damping_in_words(damping: Rayleigh | KelvinVoigt, unit: Unit) -> str:
+def damping_in_words(damping: Damping, unit: Unit) -> str:
     """Return a damping with its numbers and units."""
     if isinstance(damping, KelvinVoigt):
         return f"Kelvin-Voigt damping {damping.time:g} {unit('s')}"

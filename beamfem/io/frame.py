@@ -138,6 +138,7 @@ def build_frame(
     material: Any,
     members: Members,
     hinges: str | Sequence[str],
+    damping: Any = None,
     name: str | None = None,
 ) -> Frame:
     """Return the frame of a mesh; see `LineMesh.frame`. name: of its beams, with their numbers from 1."""
@@ -146,10 +147,8 @@ def build_frame(
     for hinge in (hinges,) if isinstance(hinges, str) else items("hinges", hinges):
         nodes = _named(mesh.point_sets, "point", hinge)
         hinged[nodes[nodes >= 0]] = True
-    by_cell = {
-        what: _each(mesh, what, value)
-        for what, value in (("elements", elements), ("element", element), ("section", section), ("material", material))
-    }
+    given = {"elements": elements, "element": element, "section": section, "material": material, "damping": damping}
+    by_cell = {what: _each(mesh, what, value) for what, value in given.items()}
     lines = [[(cell, False)] for cell in range(len(mesh.cells))] if members == "cells" else chains(mesh, hinged)
     owner = np.empty(len(mesh.cells), dtype=np.int64)
     places: list[list[Point]] = [[] for _ in mesh.nodes]

@@ -9,6 +9,7 @@ import numpy as np
 
 from beamfem.atomic_write import readable
 from beamfem.curves.curve import GAP
+from beamfem.damping import Damping
 from beamfem.element.element import Element
 from beamfem.errors import InputError
 from beamfem.io.abaqus import read_abaqus
@@ -90,11 +91,12 @@ class LineMesh:
         material: Material | Mapping[str, Material] | None = None,
         members: "Members" = "cells",
         hinges: str | Sequence[str] = (),
+        damping: Damping | Mapping[str, Damping] | None = None,
     ) -> "Frame":
         """Return beams along the lines and the joints between those that share a node.
 
-        Members that share a node are joined rigidly. Each of elements, element, section and material may be a mapping
-        from names of member sets, which together must name each cell once.
+        Members that share a node are joined rigidly. Each of elements, element, section, material and damping may
+        be a mapping from names of member sets, which together must name each cell once.
 
         Parameters
         ----------
@@ -111,6 +113,8 @@ class LineMesh:
             of 30 degrees or more and changes of their sets into one beam.
         hinges : str or sequence of str, default ()
             Point sets at which members rotate freely against each other.
+        damping : Rayleigh, KelvinVoigt or mapping, optional
+            Damping, see `Beam`.
 
         Returns
         -------
@@ -132,7 +136,7 @@ class LineMesh:
 
         from beamfem.io.frame import build_frame
 
-        return build_frame(self, elements, element, section, material, members, hinges)
+        return build_frame(self, elements, element, section, material, members, hinges, damping)
 
 
 def read_mesh(path: str | PathLike[str], *, merge: bool = False) -> LineMesh:

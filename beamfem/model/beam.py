@@ -11,7 +11,7 @@ from skfem import MeshLine, MeshLine1
 from beamfem.cached_properties import cached_property
 from beamfem.curves import BSpline, Curve, Line
 from beamfem.curves.curve import numbers
-from beamfem.damping import KelvinVoigt, Rayleigh
+from beamfem.damping import Damping
 from beamfem.element.element import Element
 from beamfem.element.fields import Cubic
 from beamfem.errors import InputError
@@ -117,7 +117,7 @@ class Beam:
     section: CrossSection | Tapered
     material: Material | None = None
     name: str | None = None
-    damping: Rayleigh | KelvinVoigt | None = None
+    damping: Damping | None = None
 
     def __post_init__(self) -> None:
         from beamfem.model.check_beam import require_law_fits, require_magnitudes
@@ -141,7 +141,7 @@ class Beam:
             raise InputError("name of a Beam must not be empty; leave it out for a beam without one")
         if self.name is not None and ("\0" in self.name or any("\ud800" <= sign <= "\udfff" for sign in self.name)):
             raise InputError(f"name of a Beam must not contain NUL or half a surrogate pair, got {self.name!r}")
-        if self.damping is not None and not isinstance(self.damping, Rayleigh | KelvinVoigt):
+        if self.damping is not None and not isinstance(self.damping, Damping):
             raise InputError(
                 "damping of a Beam must be a Rayleigh, such as Rayleigh(stiffness=1e-4), or a KelvinVoigt, got "
                 f"{shown(self.damping)}"

@@ -331,3 +331,11 @@ def test_a_strongly_damped_bar_turns_in_steps_of_a_few_degrees(time, rho):
         assert motion.statistics.iterations < 12 * motion.statistics.steps
         found.append(motion.rotation(bar.start)[-1])
     assert found[0] == pytest.approx(found[1], rel=1e-2)
+
+
+def test_members_of_a_mesh_are_damped():
+    lines = bf.LineMesh([(0, 0), (0, 3), (4, 3)], [(0, 1, -1), (1, 2, -1)], {"post": [0], "bar": [1]}, {})
+    given = 4, bf.CRBF(order=3), SQUARE, RUBBER
+    assert [beam.damping for beam in lines.frame(*given, damping=BOTH).beams] == [BOTH, BOTH]
+    by_name = lines.frame(*given, damping={"post": None, "bar": BOTH})
+    assert [beam.damping for beam in by_name.beams] == [None, BOTH]

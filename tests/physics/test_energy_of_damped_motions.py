@@ -1,4 +1,4 @@
-"""Energy of damped motions: a rise that is warned of, and dissipation that is nan where it is not known."""
+"""Energy of damped motions: a rise that is warned of, and the balance of work, losses and what is kept."""
 
 from dataclasses import dataclass, replace
 
@@ -110,13 +110,9 @@ def test_what_dampers_dissipate_is_integrated():
                 supports=[*model.supports, bf.Clamp(other.start)],
                 connectors=[dashpot],
             )
-            motion = bf.simulate(damped, 0.2, 2e-4, TRAPEZOIDAL)
-            energy = balanced(motion, 1e-3)
+            energy = balanced(bf.simulate(damped, 0.2, 2e-4, TRAPEZOIDAL), 1e-3)
             assert np.array_equal(bf.solve_static(damped).energy().dissipated, bf.solve_static(model).energy().recorded)
-            force = motion.connector_force(dashpot)[:, 0]
-            pull = np.linalg.norm(force, axis=1)
             assert energy.dissipated[-1] - energy.recorded[-1] > 1e-3
-            assert pull.max() > 0.0
 
 
 def test_a_mass_on_a_damped_spring_loses_its_energy_as_by_hand():

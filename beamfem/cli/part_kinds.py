@@ -9,7 +9,7 @@ from skfem import MeshLine1
 
 from beamfem.cli.schema import Keyed, Kinds, Names, in_braces, keys_of, named, part, reader, shown
 from beamfem.curves import Arc, BSpline, Chain, Curve, Line, Polyline, elliptic_arc, spline_through_hermite
-from beamfem.damping import Damping, KelvinVoigt, Rayleigh
+from beamfem.damping import KelvinVoigt, Rayleigh
 from beamfem.element.element import Element
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
 from beamfem.element.presets import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, ShearRigid

@@ -27,6 +27,7 @@ LAYERS = (
     "solve/statics",
     "solve/continuation",
     "solve/motion",
+    "solve/linear",
     "solve/modes",
     "solve/newton",
     "solve/start",

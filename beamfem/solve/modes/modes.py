@@ -22,7 +22,7 @@ from beamfem.solve.modes.lowest_modes import WRONG, lowest_pairs
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.modes.rigid_modes import unresisted
-from beamfem.solve.start.start_checks import left_over, refuse_dampers, require_fits_memory
+from beamfem.solve.start.start_checks import refuse_dampers, require_equilibrium, require_fits_memory
 from beamfem.solve.start.start_state import resting_state
 from beamfem.tables import as_pandas
 from beamfem.validation import count as whole_number
@@ -247,13 +247,7 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     if count > unknown:
         raise InputError(f"count is {count}, but this model has only {unknown} unknown coordinates")
     pencil = Pencil(system, p, load_factor)
-    force = left_over(system, p, load_factor)
-    if force > 0.0:
-        raise InputError(
-            f"the state to vibrate about is not in equilibrium: at load factor {load_factor:g} a force of {force:.3g} "
-            "is unbalanced",
-            remedy="Give a state of solve_static with the same loads as about",
-        )
+    require_equilibrium(system, p, load_factor, "vibrate")
     if count > pencil.size:
         raise InputError(f"count is {count}, but supports leave this model only {pencil.size} modes")
     with digits_for("modes"):

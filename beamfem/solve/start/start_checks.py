@@ -81,6 +81,17 @@ def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
     return float(remaining.max())
 
 
+def require_equilibrium(system: System, p: np.ndarray, load_factor: float, use: str) -> None:
+    """Raise InputError if a state p (n,) is not in equilibrium; use: what it is given for, such as "vibrate"."""
+    force = left_over(system, p, load_factor)
+    if force > 0.0:
+        raise InputError(
+            f"the state to {use} about is not in equilibrium: at load factor {load_factor:g} a force of {force:.3g} "
+            "is unbalanced",
+            remedy="Give a state of solve_static with the same loads as about",
+        )
+
+
 def _sure(system: System, p: np.ndarray, load_factor: float) -> bool:
     """Return whether a state (n,) balances the loads except for its last digits; without loads, all rows count."""
     if not system.loads_at(load_factor).any:

@@ -1,0 +1,139 @@
+"""The linear equations of small motions about a state."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import LinAlgError
+from scipy.sparse import csc_array, csr_array
+
+from beamfem.assembly.system import system_of
+from beamfem.errors import InputError
+from beamfem.linalg.lapack import superlu
+from beamfem.model.load_base import Load
+from beamfem.model.model import Model
+from beamfem.results.solution import State
+from beamfem.solve.linear.outputs import Quantity, output_row
+from beamfem.validation import items
+
+
+@dataclass(frozen=True, eq=False)
+class LinearModel:
+    """M z'' + C z' + K z = B f, for small motions p(t) = p + T z(t) about a state.
+
+    The coordinates z are those of the model that are neither prescribed nor determined by conditions of connectors and
+    inclined rollers.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    state : State
+        The state p.
+    mass, damping, stiffness : csr_array, (m, m)
+        M, C and K, such that z'' M z'' / 2 is [J/s^2] and so on; entries of positions are [kg], [N s/m] and [N/m].
+    input_matrix : array, [N, N m], (m, loads)
+        B: generalized forces per unit factor f of each load.
+    loads : tuple of Load
+        The loads.
+    transformation : csr_array, (n, m)
+        T: change of all coordinates of the model; zero for prescribed ones, multipliers and history variables.
+    coordinates : array of int, (m,)
+        Numbers of the coordinates z among those of the model.
+    names : tuple of str, (m,)
+        Names of the coordinates z, such as "beam 0, node 3, theta".
+
+    Examples
+    --------
+    >>> linear = bf.linearise(model)
+    >>> linear.mass.shape, linear.names[-1]
+    ((36, 36), 'beam 0, node 12, theta')
+    """
+
+    model: Model
+    state: State
+    mass: csr_array
+    damping: csr_array
+    stiffness: csr_array
+    input_matrix: np.ndarray
+    loads: tuple[Load, ...]
+    transformation: csr_array
+    coordinates: np.ndarray
+    names: tuple[str, ...]
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __repr__(self) -> str:
+        return f"LinearModel({len(self)} coordinates, {len(self.loads)} loads)"
+
+    @property
+    def scale(self) -> np.ndarray:
+        """Sizes (m,) relative to which changes of coordinates are compared: of the model for positions [m], else 1."""
+        return system_of(self.model, static=True).scale[self.coordinates]
+
+    def output(self, quantity: Quantity) -> np.ndarray:
+        """Return the row c of a quantity y = c z.
+
+        Parameters
+        ----------
+        quantity : (str, Point)
+            "ux", "uy" [m] or "rotation" [rad], and a point.
+
+        Returns
+        -------
+        array, (m,)
+            The row.
+
+        Raises
+        ------
+        InputError
+            For anything else.
+        UnknownPointError
+            For a point on a beam that is not in the model.
+
+        Examples
+        --------
+        >>> row = bf.linearise(model).output(("uy", beam.end))
+        """
+        return (output_row(self.model, self.state.p, quantity) @ self.transformation).toarray()[0]
+
+    def state_space(
+        self, outputs: Sequence[Quantity] | None = None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Return the first-order form x' = A x + B f, y = C x + D f, with x = (z, z').
+
+        Parameters
+        ----------
+        outputs : sequence of (str, Point), optional
+            Quantities y, see `output`; by default all coordinates z.
+
+        Returns
+        -------
+        (array, array, array, array), (2 m, 2 m), (2 m, loads), (outputs, 2 m), (outputs, loads)
+            A, B, C and D, for example for `control.ss`.
+
+        Raises
+        ------
+        InputError
+            For an invalid output, and if the mass matrix is singular.
+
+        Examples
+        --------
+        >>> a, b, c, d = bf.linearise(model).state_space([("uy", beam.end)])
+        >>> steady = -c @ np.linalg.solve(a, b)
+        >>> round(float(steady[0, 0]), 4)
+        -0.0305
+        """
+        m = len(self)
+        try:
+            mass = superlu(csc_array(self.mass))
+        except LinAlgError as error:
+            raise InputError("the mass matrix is singular: a coordinate has no inertia") from error
+        right = np.hstack([-self.stiffness.toarray(), -self.damping.toarray(), self.input_matrix])
+        solved = mass.solve(right)
+        a = np.vstack([np.eye(m, 2 * m, m), solved[:, : 2 * m]])
+        b = np.vstack([np.zeros((m, len(self.loads))), solved[:, 2 * m :]])
+        rows = np.eye(m) if outputs is None else [self.output(own) for own in items("outputs", outputs)]
+        c = np.hstack([np.reshape(rows, (-1, m)), np.zeros((len(rows), m))])
+        return a, b, c, np.zeros((len(rows), len(self.loads)))

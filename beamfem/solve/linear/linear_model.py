@@ -13,7 +13,9 @@ from beamfem.linalg.lapack import superlu
 from beamfem.model.load_base import Load
 from beamfem.model.model import Model
 from beamfem.results.solution import State
+from beamfem.solve.linear.damped_modes import damped_modes
 from beamfem.solve.linear.outputs import Quantity, output_row
+from beamfem.solve.modes.modes import Modes
 from beamfem.validation import items
 
 
@@ -97,6 +99,36 @@ class LinearModel:
         >>> row = bf.linearise(model).output(("uy", beam.end))
         """
         return (output_row(self.model, self.state.p, quantity) @ self.transformation).toarray()[0]
+
+    def modes(self, count: int = 10) -> Modes:
+        """Find the slowest modes of vibration with damping, (s^2 M + s C + K) phi = 0.
+
+        Parameters
+        ----------
+        count : int, default 10
+            Number of modes with Im s >= 0, in the order of abs(s); a motion without vibration has two, with real s.
+
+        Returns
+        -------
+        Modes
+            Frequencies Im s / 2 pi, growth rates Re s, negative where damped, damping ratios and complex shapes.
+
+        Raises
+        ------
+        InputError
+            For an invalid count.
+        ConvergenceError
+            If modes were missed.
+
+        Examples
+        --------
+        >>> damper = bf.SpringDamper(beam.end, (2.0, 1.0), stiffness=0.0, damping=500.0)
+        >>> damped = bf.linearise(model.with_(connectors=[damper])).modes(2)
+        >>> damped.frequencies.round(2), damped.ratios.round(3)
+        (array([ 20.76, 129.06]), array([0.097, 0.015]))
+        """
+        matrices = self.mass, self.damping, self.stiffness
+        return damped_modes(self.state, matrices, self.transformation, self.scale, count)
 
     def state_space(
         self, outputs: Sequence[Quantity] | None = None

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.assembly.rigid_velocity import RigidVelocity
 from beamfem.assembly.system import Proven, system_of
 from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
@@ -20,6 +21,7 @@ from beamfem.results.solution_checks import may_lock, warn_of
 from beamfem.results.status import Statistics, Status, counted
 from beamfem.solve.modes.lowest_modes import WRONG, lowest_pairs
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
+from beamfem.solve.modes.participation import participation
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.modes.rigid_modes import unresisted
 from beamfem.solve.start.start_checks import refuse_dampers, require_equilibrium, require_fits_memory
@@ -45,9 +47,10 @@ class Modes:
     frequencies : array, [Hz], (count,)
         Frequencies, first the rigid ones, exactly 0, then ascending.
     growth : array, [1/s], (count,)
-        0 if the state is stable, > 0 for divergence (frequency 0) and flutter.
+        0 if the state is stable, > 0 for divergence (frequency 0) and flutter, < 0 where damped.
     modes : array, (count, n)
-        Shapes phi over all coordinates, phi^T M phi = 1, complex only if follower loads make the tangent unsymmetric.
+        Shapes phi over all coordinates, phi^H M phi = 1, complex only with damping and if follower loads make the
+        tangent unsymmetric.
     rigid : tuple of str
         What each rigid mode moves, in words.
 
@@ -56,6 +59,10 @@ class Modes:
     >>> modes = bf.solve_modes(model, count=3)
     >>> modes.frequencies.round(1)
     array([ 20.8, 129.1, 355.2])
+
+    See Also
+    --------
+    LinearModel.modes : With damping.
     """
 
     model: Model
@@ -99,6 +106,71 @@ class Modes:
     @property
     def _elastic_shapes(self) -> np.ndarray:
         return self.modes[len(self.rigid) :]
+
+    @property
+    def ratios(self) -> np.ndarray:
+        """Damping ratios -Re s / abs(s) [-], (count,); 0 for undamped vibrations and rigid modes, < 0 for growing ones.
+
+        Examples
+        --------
+        >>> bf.solve_modes(model, count=2).ratios
+        array([0., 0.])
+        """
+        size = np.hypot(self.growth, 2.0 * np.pi * self.frequencies)
+        return np.asarray(-self.growth / np.where(size > 0.0, size, 1.0) + 0.0)
+
+    def participation(self, direction: tuple[float, float] | RigidVelocity) -> np.ndarray:
+        """Return the participation factors phi^T M r of undamped modes in a rigid motion r.
+
+        Parameters
+        ----------
+        direction : (float, float) or RigidVelocity
+            Direction (x, y) of a translation with unit velocity, or the velocity of a rigid motion.
+
+        Returns
+        -------
+        array, [kg^(1/2)], (count,)
+            The factors, for a rotation of 1 rad/s [kg^(1/2) m].
+
+        Raises
+        ------
+        InputError
+            For an invalid direction, and if shapes are complex.
+
+        Examples
+        --------
+        >>> factors = bf.solve_modes(model, count=2).participation((0.0, 1.0))
+        """
+        return participation(self.state, self.modes, direction)
+
+    def effective_masses(self, direction: tuple[float, float] | RigidVelocity) -> np.ndarray:
+        """Return the effective masses (phi^T M r)^2 of undamped modes in a direction.
+
+        Summed over all modes they are the total mass, except the small fraction of it that elements at supports have at
+        prescribed coordinates.
+
+        Parameters
+        ----------
+        direction : (float, float) or RigidVelocity
+            Direction (x, y), or a rigid motion, see `participation`.
+
+        Returns
+        -------
+        array, [kg], (count,)
+            The masses, for a rotation of 1 rad/s the moments of inertia [kg m^2].
+
+        Raises
+        ------
+        InputError
+            See `participation`.
+
+        Examples
+        --------
+        >>> modes = bf.solve_modes(model, count=3)
+        >>> (modes.effective_masses((0.0, 1.0)) / model.mass).round(3)
+        array([0.613, 0.189, 0.066])
+        """
+        return self.participation(direction) ** 2
 
     def solution(self, mode: int = 0, amplitude: float | None = None, frames: int = 25) -> Solution:
         """Return one period of a mode as a Solution to draw or export.

@@ -28,7 +28,7 @@ def refuse_dampers(system: System) -> None:
         if damps_at_rest(item):
             raise InputError(
                 f"solve_modes finds undamped vibrations, but the force of {item.name} depends on velocities; leave it "
-                "out, or let simulate show how the motion decays"
+                "out, or find damped ones by linearise(model, about).modes(count)"
             )
 
 

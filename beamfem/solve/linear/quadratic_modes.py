@@ -1,0 +1,104 @@
+"""Eigenvalues s of (s^2 M + s C + K) x = 0, the slowest ones of damped or gyroscopic systems."""
+
+import numpy as np
+from scipy.sparse import csc_array, csr_array, dia_array
+from scipy.sparse.linalg import LinearOperator, eigs
+
+from beamfem.linalg.eigenpairs import MOST_RESTARTS, Pairs, first_that_works, first_vector, lanczos_vectors, repeated
+from beamfem.linalg.lapack import cholesky, eig, solve_triangular, superlu, svd
+
+_ROUND_OFF = 16.0 * float(np.finfo(float).eps)  # of the stiffness and damping of a rigid motion
+_SPARE = 4  # eigenvalues found beyond those asked for
+_REAL = 1e-8  # of a rate: imaginary parts below this fraction are round-off, as of double roots
+_UNDAMPED = 1e-10  # of a rate: real parts below this fraction are round-off
+_SOLVES = 4  # for rigid motions, each of which reduces other parts by the ratio of rigid and elastic rates
+
+
+def slowest_rates(mass: csr_array, damping: csr_array, stiffness: csr_array, scale: np.ndarray, count: int) -> Pairs:
+    """Return the `count` slowest rates s (m,) [1/s] with Im s >= 0, by their size, and vectors x (n, m).
+
+    A rigid motion, s = 0 twice, is one of them. scale (n,): sizes of the coordinates, relative to which vectors are
+    compared. m < count if there are no more. Raises ConvergenceError, LinAlgError.
+    """
+    n = mass.shape[0]
+    resting, undamped = (
+        _ROUND_OFF * float(scale @ (abs(matrix) @ scale)) / float(scale @ (mass @ scale))
+        for matrix in (stiffness, damping)
+    )
+    rigid = _between(mass, stiffness, resting)
+    slow = _slowest(mass, stiffness, rigid, resting)
+    motions = _rigid_motions(mass, stiffness, rigid, np.sqrt(resting**0.5 * slow))
+    resisted = svd(motions.T @ damping @ motions, compute_uv=False) if rigid else np.zeros(0)
+    resisted = resisted[resisted > undamped]
+    slow = min([slow, *resisted.tolist()])
+    shift = slow if rigid else 0.0
+    dynamic = superlu(csc_array(stiffness + shift * damping + shift**2 * mass))
+    momentum = csr_array(damping + shift * mass)
+    units = np.concatenate([scale, slow * scale])
+
+    def times(y: np.ndarray) -> np.ndarray:
+        """Return y / (s - shift) for eigenvectors y = (x, s x) / units."""
+        y = units * y
+        x = -dynamic.solve(mass @ y[n:] + momentum @ y[:n])
+        return np.asarray(np.concatenate([x, y[:n] + shift * x]) / units)
+
+    def search(basis: np.ndarray, wanted: int) -> Pairs:
+        def deflated(y: np.ndarray) -> np.ndarray:
+            return times(y - basis @ (basis.T @ y))
+
+        def dense() -> Pairs:
+            return eig(np.column_stack([deflated(column) for column in np.eye(2 * n)]))
+
+        def few(vectors: int) -> Pairs:
+            operator = LinearOperator((2 * n, 2 * n), matvec=deflated, dtype=float)
+            options = {"ncv": lanczos_vectors(vectors, wanted, 2 * n), "maxiter": MOST_RESTARTS}
+            found: Pairs = eigs(operator, wanted, which="LM", v0=first_vector(2 * n), **options)
+            return found
+
+        return first_that_works(dense, few, 2 * n, wanted + 1)
+
+    product = csr_array(dia_array((np.ones((1, 2 * n)), [0]), shape=(2 * n, 2 * n)))
+    values, y = repeated(search, times, product, min(2 * count + _SPARE, 2 * n), np.abs)
+    finite = np.abs(values) > np.finfo(float).eps * np.abs(values).max()
+    rates, x = shift + 1.0 / values[finite], scale[:, None] * y[:n, finite]
+    rates = np.where(np.abs(rates.imag) <= _REAL * np.abs(rates), rates.real, rates)
+    rates = np.where(np.abs(rates.real) <= _UNDAMPED * np.abs(rates), 1j * rates.imag, rates)
+    still = 2 * rigid - len(resisted)
+    moving = np.argsort(np.abs(rates), kind="stable")[still:]
+    moving = moving[rates[moving].imag >= 0.0]
+    rates = np.append(np.zeros(rigid), rates[moving])
+    return rates[:count], np.column_stack([motions, x[:, moving]])[:, :count]
+
+
+def _rigid_motions(mass: csr_array, stiffness: csr_array, count: int, shift: float) -> np.ndarray:
+    """Return M-orthonormal vectors (n, count) with K x = 0; shift [1/s]: between the rates of these and of others."""
+    factors = superlu(csc_array(stiffness + shift**2 * mass))
+    x = np.random.default_rng(0).standard_normal((mass.shape[0], count))
+    for _ in range(_SOLVES):
+        x = factors.solve(mass @ x)
+        x = solve_triangular(cholesky(x.T @ (mass @ x), lower=True), x.T, lower=True).T
+    return np.asarray(x)
+
+
+def _slowest(mass: csr_array, stiffness: csr_array, rigid: int, resting: float) -> float:
+    """Return the magnitude [1/s] of the slowest rate beside the rigid ones, whose squares are below `resting`."""
+    heavy = mass.diagonal() > 0.0
+    low, high = np.log(resting), np.log(4.0 * np.max(np.abs(stiffness.diagonal()[heavy]) / mass.diagonal()[heavy]))
+    while high - low > np.log(4.0):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if _between(mass, stiffness, np.exp(middle)) > rigid else (middle, high)
+    return float(np.exp(0.5 * high))
+
+
+def _between(mass: csr_array, stiffness: csr_array, size: float) -> int:
+    """Return how many eigenvalues of K x = lambda M x are between -size and size, for a symmetric K."""
+    above, below = (
+        superlu(
+            csc_array(stiffness + side * size * mass),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=1e-10,
+            options={"SymmetricMode": True},
+        ).U.diagonal()
+        for side in (-1.0, 1.0)
+    )
+    return int((above < 0.0).sum()) - int((below < 0.0).sum())

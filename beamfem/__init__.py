@@ -38,8 +38,9 @@ Contents; see help(bf.Beam), for example, for details.
     Solvers           solve_static trace_equilibrium solve_buckling solve_modes simulate
     Solver settings   Newton GeneralizedAlpha Gauss Radau RigidVelocity
                       linearise
+                      linearise frequency_response
     Results           Solution State Path PathState Bifurcation Modes Buckling Status
-                      LinearModel
+                      LinearModel FrequencyResponse
     Along beams       SectionForces BeamStress Fields FieldOnBasis field_on_basis
     Studies           sweep converge
     User-defined      PointLoad LineLoad BodyLoad ImposedStrain PointSupport LineSupport Joint

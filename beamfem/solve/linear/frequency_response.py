@@ -1,0 +1,146 @@
+"""Steady response to a harmonic load about a state."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from scipy.linalg import LinAlgError
+from scipy.sparse import csc_array
+
+from beamfem.errors import InputError
+from beamfem.linalg.lapack import superlu
+from beamfem.model.load_base import Load
+from beamfem.model.model import Model
+from beamfem.results.solution import Solution, State
+from beamfem.solve.linear.linear_model import LinearModel
+from beamfem.solve.linear.linearise import linearise
+from beamfem.solve.linear.outputs import Quantity
+from beamfem.validation import items, not_negative
+
+
+@dataclass(frozen=True, eq=False)
+class FrequencyResponse:
+    """Steady response to a harmonic load: y = Re(value exp(2 pi i f t)) for the load times cos(2 pi f t).
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    load : Load
+        The load.
+    quantity : (str, Point)
+        What responds, such as ("uy", beam.end).
+    frequencies : array, [Hz], (m,)
+        Frequencies f.
+    values : array, (m,)
+        Complex responses [m] or [rad].
+
+    Examples
+    --------
+    >>> response = bf.frequency_response(model, model.loads[0], ("uy", beam.end), [0.0, 10.0])
+    >>> response.amplitude.round(4)
+    array([0.0305, 0.0394])
+    """
+
+    model: Model
+    load: Load
+    quantity: Quantity
+    frequencies: np.ndarray
+    values: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.frequencies)
+
+    @property
+    def amplitude(self) -> np.ndarray:
+        """Amplitudes abs(value) [m] or [rad], (m,)."""
+        return np.abs(self.values)
+
+    @property
+    def phase(self) -> np.ndarray:
+        """Phases of the response [rad], (m,), from -pi to pi; negative where it lags behind the load."""
+        return np.angle(self.values)
+
+    def plot(self, path: str | PathLike[str] | None = None) -> Any:
+        """Draw amplitude and phase against frequency and return the figure.
+
+        path: file to write (PNG, SVG, PDF). Raises MissingPackageError without matplotlib.
+
+        Examples
+        --------
+        >>> sweep = np.linspace(1.0, 200.0, 400)
+        >>> response = bf.frequency_response(model, model.loads[0], ("uy", beam.end), sweep)
+        >>> figure = response.plot("response.png")
+        """
+        from beamfem.view.response_curve import plot_response
+
+        return plot_response(self, path)
+
+
+def frequency_response(
+    model: Model,
+    load: Load,
+    quantity: Quantity,
+    frequencies: Sequence[float] | np.ndarray,
+    about: State | Solution | None = None,
+) -> FrequencyResponse:
+    """Find the steady response to a harmonic load, y = c (K + i w C - w^2 M)^-1 b with w = 2 pi f.
+
+    M, C, K, b and c are those of `linearise`: for small vibrations about the state.
+
+    Parameters
+    ----------
+    model : Model
+        Beams, supports, loads, joints and connectors.
+    load : Load
+        The load that vibrates with its whole size as amplitude: one of the model's loads, or another one at a node.
+    quantity : (str, Point)
+        What responds: "ux", "uy" [m] or "rotation" [rad], and a point.
+    frequencies : sequence of float, [Hz]
+        Frequencies f >= 0.
+    about : State or Solution, optional
+        State to vibrate about, see `linearise`; by default the reference.
+
+    Returns
+    -------
+    FrequencyResponse
+        The complex response at each frequency.
+
+    Raises
+    ------
+    InputError
+        For an invalid argument, see `linearise`, and if the response is infinite.
+    UnknownPointError
+        For a point on a beam that is not in the model.
+
+    Examples
+    --------
+    >>> push = bf.PointForce(beam.end, (0.0, 1.0))
+    >>> response = bf.frequency_response(model, push, ("uy", beam.end), [0.0, 10.0], about=solution)
+    >>> response.values.shape
+    (2,)
+    """
+    linear = linearise(model, about, [load])
+    at = np.array([not_negative("each of the frequencies", f) for f in items("frequencies", frequencies)], dtype=float)
+    row = linear.output(quantity)
+    values = np.array([row @ _moved(linear, frequency) for frequency in at.tolist()], dtype=complex)
+    return FrequencyResponse(model, load, quantity, at, values)
+
+
+def _moved(linear: LinearModel, frequency: float) -> np.ndarray:
+    """Return the response (m,) of all coordinates to the only load. Raises InputError where it is infinite."""
+    rate, force = 2.0 * np.pi * frequency, linear.input_matrix[:, 0]
+    dynamic = csc_array(linear.stiffness + 1j * rate * linear.damping - rate**2 * linear.mass)
+    try:
+        moved = superlu(dynamic).solve(force.astype(complex))
+        # where the matrix is singular up to round-off, that of its product is as large as the load
+        lost = np.finfo(float).eps * (linear.scale @ (abs(dynamic) @ np.abs(moved)))
+        if lost <= linear.scale @ np.abs(force):
+            return np.asarray(moved)
+    except LinAlgError:
+        pass
+    raise InputError(
+        f"the response at {frequency:g} {linear.model.unit('Hz')} is infinite: a mode of this frequency has no damping"
+    )

@@ -39,6 +39,7 @@ Contents; see help(bf.Beam), for example, for details.
     Solver settings   Newton GeneralizedAlpha Gauss Radau RigidVelocity
                       linearise
                       linearise frequency_response
+                      linearise frequency_response reduce
     Results           Solution State Path PathState Bifurcation Modes Buckling Status
                       LinearModel FrequencyResponse
     Along beams       SectionForces BeamStress Fields FieldOnBasis field_on_basis

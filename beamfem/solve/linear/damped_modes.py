@@ -23,19 +23,20 @@ def damped_modes(
     matrices: tuple[csr_array, csr_array, csr_array],
     transformation: csr_array,
     scale: np.ndarray,
+    round_off: tuple[float, float],
     count: int,
 ) -> Modes:
     """Return the slowest modes of M z'' + C z' + K z = 0, with phi^H M phi = 1.
 
-    matrices: M, C and K (m, m); transformation (n, m): change of all coordinates of the model; scale (m,): see
-    `slowest_rates`. Raises InputError, ConvergenceError.
+    matrices: M, C and K (m, m); transformation (n, m): change of all coordinates of the model; scale (m,) and
+    round_off: see `slowest_rates`. Raises InputError, ConvergenceError.
     """
     model, mass = state.model, matrices[0]
     if whole_number("count", count) > mass.shape[0]:
         raise InputError(f"count is {count}, but this model has only {mass.shape[0]} modes")
     system = system_of(model, static=True)
     with digits_for("modes"):
-        rates, vectors = slowest_rates(*matrices, scale, count)
+        rates, vectors = slowest_rates(*matrices, scale, round_off, count)
         rigid = np.count_nonzero(rates == 0.0)
         shapes, words = np.empty((0, model.size)), tuple[str, ...]()
         if rigid:

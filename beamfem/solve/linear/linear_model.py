@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import LinAlgError
-from scipy.sparse import csc_array, csr_array
+from scipy.sparse import csc_array, csr_array, dia_array
 
 from beamfem.assembly.system import system_of
 from beamfem.errors import InputError
@@ -17,6 +17,12 @@ from beamfem.solve.linear.damped_modes import damped_modes
 from beamfem.solve.linear.outputs import Quantity, output_row
 from beamfem.solve.modes.modes import Modes
 from beamfem.validation import items
+
+
+def scale_of(model: Model, transformation: csr_array) -> np.ndarray:
+    """Return the changes (m,) of coordinates z that move a model by its size or turn sections by 1 rad; see `T`."""
+    sizes = dia_array((1.0 / system_of(model, static=True).scale[None], [0]), shape=(model.size, model.size))
+    return np.asarray(1.0 / abs(sizes @ transformation).max(axis=0).toarray().ravel())
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,9 +47,11 @@ class LinearModel:
     transformation : csr_array, (n, m)
         T: change of all coordinates of the model; zero for prescribed ones, multipliers and history variables.
     coordinates : array of int, (m,)
-        Numbers of the coordinates z among those of the model.
+        Numbers of the coordinates z among those of the model, -1 for amplitudes of modes.
     names : tuple of str, (m,)
         Names of the coordinates z, such as "beam 0, node 3, theta".
+    round_off : (float, float), [1/s^2], [1/s]
+        Stiffness and damping of a rigid motion of unit mass that are round-off.
 
     Examples
     --------
@@ -62,6 +70,7 @@ class LinearModel:
     transformation: csr_array
     coordinates: np.ndarray
     names: tuple[str, ...]
+    round_off: tuple[float, float]
 
     def __len__(self) -> int:
         return len(self.names)
@@ -71,8 +80,8 @@ class LinearModel:
 
     @property
     def scale(self) -> np.ndarray:
-        """Sizes (m,) relative to which changes of coordinates are compared: of the model for positions [m], else 1."""
-        return system_of(self.model, static=True).scale[self.coordinates]
+        """Changes (m,) of single coordinates that move the model by its size or turn sections by 1 rad."""
+        return scale_of(self.model, self.transformation)
 
     def output(self, quantity: Quantity) -> np.ndarray:
         """Return the row c of a quantity y = c z.
@@ -128,7 +137,7 @@ class LinearModel:
         (array([ 20.76, 129.06]), array([0.097, 0.015]))
         """
         matrices = self.mass, self.damping, self.stiffness
-        return damped_modes(self.state, matrices, self.transformation, self.scale, count)
+        return damped_modes(self.state, matrices, self.transformation, self.scale, self.round_off, count)
 
     def state_space(
         self, outputs: Sequence[Quantity] | None = None

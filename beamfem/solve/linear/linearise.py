@@ -15,13 +15,14 @@ from beamfem.model.load_base import Load
 from beamfem.model.model import Model
 from beamfem.results.solution import Solution, State
 from beamfem.solve.linear.input_forces import input_forces
-from beamfem.solve.linear.linear_model import LinearModel
+from beamfem.solve.linear.linear_model import LinearModel, scale_of
 from beamfem.solve.linear.null_space import independent_motions
 from beamfem.solve.start.start_checks import require_equilibrium
 from beamfem.solve.start.start_state import last_state, require_finite, resting_state
 from beamfem.validation import items
 
 _DAMPING = (0.0, 1.0, 0.0)
+_ROUND_OFF = 16.0 * float(np.finfo(float).eps)
 
 
 def linearise(model: Model, about: State | Solution | None = None, loads: Sequence[Load] | None = None) -> LinearModel:
@@ -71,17 +72,23 @@ def linearise(model: Model, about: State | Solution | None = None, loads: Sequen
     place = csr_array(coo_array((np.ones(len(free)), (free, np.arange(len(free)))), shape=(model.size, len(free))))
     transformation = csr_array(place @ basis)
     names = _names(system)
+    mass, damping, stiffness = (
+        csr_array(basis.T @ matrix @ basis)
+        for matrix in (_matrix(system, state, INERTIA), _matrix(system, state, _DAMPING), stiffness)
+    )
+    scale = scale_of(model, transformation)
     return LinearModel(
         model,
         state,
-        mass=_reduced(basis, _matrix(system, state, INERTIA)),
-        damping=_reduced(basis, _matrix(system, state, _DAMPING)),
-        stiffness=_reduced(basis, stiffness),
+        mass=mass,
+        damping=damping,
+        stiffness=stiffness,
         input_matrix=transformation.T @ input_forces(loaded, state.p, inputs, state.at),
         loads=inputs,
         transformation=transformation,
         coordinates=free[independent],
         names=tuple(names[dof] for dof in free[independent].tolist()),
+        round_off=(_round_off(stiffness, mass, scale), _round_off(damping, mass, scale)),
     )
 
 
@@ -125,8 +132,9 @@ def _matrix(system: System, state: State, weights: tuple[float, float, float]) -
     return equations.linearise(system, *at, weights, moving=not system.static)[1].sparse(UNROTATED)
 
 
-def _reduced(basis: csr_array, matrix: csr_array) -> csr_array:
-    return csr_array(basis.T @ matrix @ basis)
+def _round_off(matrix: csr_array, mass: csr_array, scale: np.ndarray) -> float:
+    """Return the round-off of x^T A x / x^T M x for rigid motions x of the size of `scale` (m,)."""
+    return _ROUND_OFF * float(scale @ (abs(matrix) @ scale)) / float(scale @ (mass @ scale))
 
 
 def _names(system: System) -> dict[int, str]:

@@ -7,24 +7,28 @@ from scipy.sparse.linalg import LinearOperator, eigs
 from beamfem.linalg.eigenpairs import MOST_RESTARTS, Pairs, first_that_works, first_vector, lanczos_vectors, repeated
 from beamfem.linalg.lapack import cholesky, eig, solve_triangular, superlu, svd
 
-_ROUND_OFF = 16.0 * float(np.finfo(float).eps)  # of the stiffness and damping of a rigid motion
 _SPARE = 4  # eigenvalues found beyond those asked for
 _REAL = 1e-8  # of a rate: imaginary parts below this fraction are round-off, as of double roots
 _UNDAMPED = 1e-10  # of a rate: real parts below this fraction are round-off
 _SOLVES = 4  # for rigid motions, each of which reduces other parts by the ratio of rigid and elastic rates
 
 
-def slowest_rates(mass: csr_array, damping: csr_array, stiffness: csr_array, scale: np.ndarray, count: int) -> Pairs:
+def slowest_rates(
+    mass: csr_array,
+    damping: csr_array,
+    stiffness: csr_array,
+    scale: np.ndarray,
+    round_off: tuple[float, float],
+    count: int,
+) -> Pairs:
     """Return the `count` slowest rates s (m,) [1/s] with Im s >= 0, by their size, and vectors x (n, m).
 
     A rigid motion, s = 0 twice, is one of them. scale (n,): sizes of the coordinates, relative to which vectors are
-    compared. m < count if there are no more. Raises ConvergenceError, LinAlgError.
+    compared; round_off: of x^T K x [1/s^2] and x^T C x [1/s] for a rigid motion x with x^T M x = 1. m < count if there
+    are no more. Raises ConvergenceError, LinAlgError.
     """
     n = mass.shape[0]
-    resting, undamped = (
-        _ROUND_OFF * float(scale @ (abs(matrix) @ scale)) / float(scale @ (mass @ scale))
-        for matrix in (stiffness, damping)
-    )
+    resting, undamped = round_off
     rigid = _between(mass, stiffness, resting)
     slow = _slowest(mass, stiffness, rigid, resting)
     motions = _rigid_motions(mass, stiffness, rigid, np.sqrt(resting**0.5 * slow))

@@ -20,6 +20,7 @@ The examples of all docstrings continue this one, a steel cantilever with a forc
 Contents; see help(bf.Beam), for example, for details.
 
     Model             Model Beam Point Material Rayleigh KelvinVoigt graded
+    Model             Model Beam Point Material graded RotatingFrame
     Axes              Line Arc Polyline Chain BSpline Parametric Curve
                       elliptic_arc spline_through_hermite without_removable_knots
     Sections          Rectangle Circle Tube Section Layered Layer SectionLaw

@@ -68,6 +68,7 @@ from .model.load_base import BodyLoad as BodyLoad
 from .model.load_base import LineLoad as LineLoad
 from .model.load_base import PointLoad as PointLoad
 from .model.model import Model as Model
+from .model.rotating_frame import RotatingFrame as RotatingFrame
 from .model.supports import LineSupport as LineSupport
 from .model.supports import PointSupport as PointSupport
 from .model.time_functions import Interpolated as Interpolated

@@ -3,13 +3,14 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.sparse import csc_array
+from scipy.sparse import coo_array, csc_array, csr_array, hstack
 
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.differences import differentiated
+from beamfem.assembly.rotating_frame import absolute, right_angle, right_angle_of_unknowns, speeds
 from beamfem.assembly.system import Proven, System
 from beamfem.linalg.bordered import Border, BorderedTangent
-from beamfem.linalg.tangent import BandTangent, SparseTangent, Tangent
+from beamfem.linalg.tangent import UNROTATED, BandTangent, SparseTangent, Tangent
 from beamfem.precision.mixed_tangent import MixedTangent, mixed
 from beamfem.precision.saddle import SaddleTangent
 
@@ -25,6 +26,17 @@ def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: 
 
     dt [s]: time step since the committed history, 0 in an accepted state.
     """
+    if system.model.frame is None:
+        return _residual(system, p, v, a, time, dt)
+    terms = [
+        weight * _residual(system, p, *absolute(system, p, v, a, speed), time, dt)
+        for weight, speed in speeds(system, time)
+    ]
+    return np.asarray(sum(terms))
+
+
+def _residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float, dt: float) -> np.ndarray:
+    """Return the residual (n,) of a motion at rest, see `residual`."""
     result, assembler = np.empty(len(p)), _acquired(system)
     assembler.take(system.loads_at(time))
     assembler.weigh((1.0, 1.0, 1.0), dt)
@@ -70,6 +82,26 @@ def linearise(
     blocks, used instead of those of the system; dt [s]: see `residual`; moving: whether there are inertia forces where
     p'' has no weight, which statics lacks.
     """
+    at = system, p, v, a, time, coefficients, stresses, equations, dt
+    result, tangent = _linearise(*at, moving) if system.model.frame is None else _linearise_turning(*at)
+    if Proven.LOSES_DIGITS in system.proven and coefficients[0] != 0.0 and equations is None:
+        tangent = with_stresses(system, (p, v, a), time, coefficients, stresses, tangent)
+    return result, tangent
+
+
+def _linearise(
+    system: System,
+    p: np.ndarray,
+    v: np.ndarray,
+    a: np.ndarray,
+    time: float,
+    coefficients: tuple[float, float, float],
+    stresses: tuple[np.ndarray, ...] | None,
+    equations: Equations | None,
+    dt: float,
+    moving: bool,
+) -> tuple[np.ndarray, Tangent]:
+    """Return residual and tangent of a motion at rest, see `linearise`."""
     matrix, result = _entries(system), np.empty(len(p))
     shared = stresses is None and equations is None
     assembler = _acquired(system) if shared else Assembler(equations or system.equations, stresses)
@@ -79,16 +111,80 @@ def linearise(
     if shared:
         _return_assembler(system, assembler)
     system.called.add_forces(result, (p, v, a), time)
-    tangent = tangent_of(system, matrix, system.called.tangents((p, v, a), time, coefficients))
-    if Proven.LOSES_DIGITS in system.proven and coefficients[0] != 0.0 and equations is None:
-        tangent = with_stresses(system, (p, v, a), time, coefficients, stresses, tangent)
-    return result, tangent
+    return result, tangent_of(system, matrix, system.called.tangents((p, v, a), time, coefficients))
+
+
+def _linearise_turning(
+    system: System,
+    p: np.ndarray,
+    v: np.ndarray,
+    a: np.ndarray,
+    time: float,
+    coefficients: tuple[float, float, float],
+    stresses: tuple[np.ndarray, ...] | None,
+    equations: Equations | None,
+    dt: float,
+) -> tuple[np.ndarray, Tangent]:
+    """Return residual and tangent in a rotating frame, see `rotating_frame`, by the chain rule.
+
+    dR/dp = K + w C J + w^2 M J^2 and dR/dp' = C + 2 w M J with the derivatives K, C and M of the motion at rest.
+    """
+    (ck, cv, _), free, unknown = coefficients, system.free_dofs, len(system.free_dofs)
+    taken, turn = right_angle_of_unknowns(system)
+    twice = csr_array(right_angle(system)[free] @ right_angle(system)[:, free])
+    result, whole = np.zeros(len(p)), csr_array((unknown, unknown))
+    for weight, speed in speeds(system, time):
+        state = p, *absolute(system, p, v, a, speed)
+        forces, tangent = _linearise(system, *state, time, coefficients, stresses, equations, dt, True)
+        damping, mass = (
+            csr_array(
+                hstack(
+                    [
+                        _linearise(system, *state, time, rate, None, equations, dt, True)[1].sparse(UNROTATED),
+                        _by_rates(system, state, time, taken, rate),
+                    ]
+                )
+            )
+            for rate in ((0.0, 1.0, 0.0), INERTIA)
+        )
+        added = speed * (ck * damping + 2.0 * cv * mass) @ turn + ck * speed**2 * mass[:, :unknown] @ twice
+        result, whole = result + weight * forces, whole + weight * (tangent.sparse(UNROTATED) + added)
+    # SuperLU needs every entry of the diagonal, zeros included
+    entries, diagonal = coo_array(whole), np.arange(unknown)
+    places = np.append(entries.row, diagonal), np.append(entries.col, diagonal)
+    full = csc_array(coo_array((np.append(entries.data, np.zeros(unknown)), places), shape=whole.shape))
+    multipliers = len(system.connectors.multipliers)
+    return result, SaddleTangent(SparseTangent(full), multipliers) if multipliers else SparseTangent(full)
+
+
+def _by_rates(
+    system: System,
+    state: tuple[np.ndarray, np.ndarray, np.ndarray],
+    time: float,
+    dofs: np.ndarray,
+    rate: tuple[float, float, float],
+) -> np.ndarray:
+    """Return the derivatives (unknown, k) of the residual by p' or p'' of prescribed coordinates (k,).
+
+    They are differences, which are exact as the residual is quadratic in p' and linear in p''.
+    """
+    columns = []
+    for dof in dofs.tolist():
+        change = np.zeros((3, len(state[0])))
+        change[:, dof] = rate
+        change *= max(1.0, float(np.abs(state[1]).max()), float(np.abs(state[2]).max()))
+        ends = []
+        for side in (1.0, -1.0):
+            p, v, a = np.array(state) + side * change
+            ends.append(_residual(system, p, v, a, time, 0.0))
+        columns.append((ends[0] - ends[1])[system.free_dofs] / (2.0 * change[:, dof].max()))
+    return np.array(columns).reshape(len(dofs), len(system.free_dofs)).T
 
 
 def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float) -> Tangent:
     """Return the static tangent in p (n,) with the stress resultants predicted by a linear step (n,) from p."""
     zeros = np.zeros(len(p))
-    if Proven.LOSES_DIGITS in system.proven:
+    if Proven.LOSES_DIGITS in system.proven or system.model.frame is not None:
         return linearise(system, p, zeros, zeros, time, STATICS, predicted_stresses(system, p, step, time))[1]
     matrix, assembler = _entries(system), _acquired(system)
     assembler.take(system.loads_at(time))

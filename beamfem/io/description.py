@@ -20,6 +20,7 @@ from beamfem.mesh.reference import energy_points, length_points, stations
 from beamfem.model.along_beam import AlongBeam, functions_along, jumps_along, kinks_along
 from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
+from beamfem.model.rotating_frame import RotatingFrame
 from beamfem.model.sampled_functions import Sampled, SampledAlong, SampledSection
 from beamfem.model.time_functions import Interpolated
 from beamfem.parts.parts_registry import listed_parts
@@ -78,6 +79,7 @@ _CLASSES = {
         Interpolated,
         SampledAlong,
         Model,
+        RotatingFrame,
         *listed_parts(),
     )
 }

@@ -18,6 +18,7 @@ from beamfem.model.contribution import Contribution, require_connector
 from beamfem.model.imposed_strains import ImposedStrain
 from beamfem.model.joints import Joint
 from beamfem.model.load_base import BodyLoad, CompositeLoad, LineLoad, Load, MovingLoad, PointLoad
+from beamfem.model.rotating_frame import RotatingFrame
 from beamfem.model.supports import LineSupport, PointSupport, Support
 from beamfem.model.supports_along import SupportsAlong
 from beamfem.units import Units, units_of
@@ -112,6 +113,8 @@ class Model:
         Consistent units of the numbers, such as "N, mm", for labels of pictures and tables.
     masses : sequence of Contribution, optional
         Concentrated masses, `PointMass` and `RigidBody`.
+    frame : RotatingFrame, optional
+        Frame of reference that rotates, by default one at rest.
 
     Raises
     ------
@@ -139,6 +142,7 @@ class Model:
     connectors: Sequence[Contribution] = ()
     units: str = _UNNAMED
     masses: Sequence[Contribution] = ()
+    frame: RotatingFrame | None = None
 
     def with_loads(self, loads: Sequence[Load]) -> "Model":
         """Return the model with other loads, which shares with it all that does not depend on them.
@@ -237,6 +241,8 @@ class Model:
                 own = Contribution not in kinds or isinstance(item, Joint)
                 if own and not (is_dataclass(item) and kind.__dataclass_params__.frozen):
                     raise InputError(f"{kind.__name__}, one of the {name} of a Model, must be a frozen dataclass")
+        if not isinstance(self.frame, RotatingFrame | None):
+            raise InputError(f"frame of a Model must be a RotatingFrame, got {shown(self.frame)}")
         if not self.beams:
             raise InputError("a Model needs at least one beam")
         if len({id(beam) for beam in self.beams}) < len(self.beams):

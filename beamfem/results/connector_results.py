@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem.assembly.connectors import Connector, Connectors, Motion
+from beamfem.assembly.rotating_frame import seen_from_rest
 from beamfem.errors import InputError
 from beamfem.model.contribution import Contribution
 from beamfem.results.solution_system import loading
@@ -44,9 +45,11 @@ def forces_at(solution: "Solution", items: Sequence[Connector]) -> np.ndarray:
     """Return the forces of connectors on their points (steps, m, 3): fx, fy [N], moment [N m]."""
     system, times = loading(solution)
     forces = []
-    for motion, at in _states(solution, times):
+    v, a = seen_from_rest(system, solution.p, solution.v, solution.a, times)
+    for *motion, at in zip(solution.p, v, a, times.tolist(), strict=True):
         gravity = system.connectors.gravity(at)
         forces.append([item.by_point(-item.force_in(motion, at, gravity)[: len(item.dofs)]) for item in items])
+        forces.append([item.by_point(-item.force_in(tuple(motion), at, gravity)[: len(item.dofs)]) for item in bound])
     return np.array(forces).reshape(len(solution), -1, 3)
 
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamfem.assembly.rotating_frame import seen_from_rest
 from beamfem.assembly.system import System
 from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import across
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
 class Rows:
     """Rows of a solution and the forces that act in them.
 
-    p, v, a (steps, n); body (steps, beams, 4): see `System.body`; values: for each block (steps, nl, 3), see `Actions`;
-    imposing (steps, k): factors of the loads that impose strains.
+    p, v, a (steps, n): seen from rest, see `assembly.rotating_frame`; body (steps, beams, 4): see `System.body`;
+    values: for each block (steps, nl, 3), see `Actions`; imposing (steps, k): factors of the loads that impose strains.
     """
 
     system: System
@@ -63,7 +64,8 @@ def _rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:
         np.array([own[block] for own in points]).reshape(len(times), -1, 3) for block in range(len(system.blocks))
     )
     imposing = np.array([system.imposing(time) for time in times]).reshape(len(times), -1)
-    return Rows(system, solution.p[rows], solution.v[rows], solution.a[rows], body, values, imposing)
+    p, rates = solution.p[rows], (solution.v[rows], solution.a[rows])
+    return Rows(system, p, *seen_from_rest(system, p, *rates, at[rows]), body, values, imposing)
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem.cached_properties import cached_property
+from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.model.beam import Point
 from beamfem.model.load_base import Load, factor
 from beamfem.model.model import Model
 from beamfem.reprs import brief
 from beamfem.results.connector_results import potential_of_connectors
 from beamfem.results.displacements import Displacements
+from beamfem.results.postprocess import momenta
 from beamfem.results.solution_system import loading
 
 if TYPE_CHECKING:
@@ -108,7 +110,8 @@ def potential(solution: "Solution", first_moments: Sequence[np.ndarray]) -> np.n
     first_moments: integral of the position over the mass of each beam (steps, 2) [kg m].
     """
     displaced = Displacements(solution, first_moments)
-    return _of_loads(solution, displaced) + _of_supports(solution, displaced) + potential_of_connectors(solution)
+    parts = _of_loads(solution, displaced), _of_supports(solution, displaced), _of_frame(solution)
+    return sum(parts, potential_of_connectors(solution))
 
 
 def recorded(solution: "Solution", by_sections: np.ndarray) -> np.ndarray:
@@ -145,6 +148,22 @@ def _number_of_beam(model: Model, load: Load) -> int:
 def _factors(solution: "Solution", load: Load) -> np.ndarray:
     system, times = loading(solution)
     return np.array([factor(load, at, system.static) for at in times])
+
+
+def _of_frame(solution: "Solution") -> np.ndarray:
+    """Return the potential (steps,) [J] of centrifugal forces, less the kinetic energy of the rotation of the frame."""
+    frame = solution.model.frame
+    if frame is None:
+        return np.zeros(len(solution))
+    system, times = loading(solution)
+    unit = RigidVelocity(angular=1.0, about=frame.about)
+    p = np.vstack([solution.p, system.reference])
+    spin = np.array([rigid_rates(system, unit, row) for row in p])
+    moments = sum((momenta(mesh, p, spin).kinetic for mesh in solution.model.meshes), np.zeros(len(p)))
+    zeros = np.zeros(p.shape[1])
+    moments += [system.connectors.energies((row, rate, zeros), 0.0)[0] for row, rate in zip(p, spin, strict=True)]
+    factors = times if system.static else np.ones(len(times))
+    return -(frame.speed**2) * factors * (moments[:-1] - moments[-1])
 
 
 def _of_supports(solution: "Solution", displaced: Displacements) -> np.ndarray:

@@ -17,7 +17,7 @@ from beamfem.results.solution import Solution, State
 from beamfem.solve.linear.input_forces import input_forces
 from beamfem.solve.linear.linear_model import LinearModel, scale_of
 from beamfem.solve.linear.null_space import independent_motions
-from beamfem.solve.start.start_checks import require_equilibrium
+from beamfem.solve.start.start_checks import refuse_frame, require_equilibrium
 from beamfem.solve.start.start_state import last_state, require_finite, resting_state
 from beamfem.validation import items
 
@@ -98,6 +98,7 @@ def _state(model: Model, about: State | Solution | None) -> tuple[System, State]
     moving = isinstance(about, Solution) and not about.static
     if given is not None and (moving or np.any(given.v) or np.any(given.a)):
         system = system_of(model, static=False)
+        refuse_frame(system, "linearise about a moving state")
         require_finite("about", given)
         if given.model is not model:
             raise InputError("about must be a state of the same model if it moves")

@@ -276,7 +276,7 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     """Find the lowest modes of vibration, K phi = omega^2 M phi, including those of rigid motions.
 
     K is the tangent stiffness with the loads at the load factor of the state, and M the mass matrix, both in that
-    state.
+    state. In a rotating frame, K has the centrifugal forces; `LinearModel.modes` has Coriolis forces too.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ from beamfem.solve.motion.time_marching import Last, Record, initial_acceleratio
 from beamfem.solve.motion.time_steps import SIDE, stretches
 from beamfem.solve.start.functions_of_time import functions_of_time, name_unresolved
 from beamfem.solve.start.partial_results import kept
-from beamfem.solve.start.start_checks import require_memory
+from beamfem.solve.start.start_checks import refuse_frame, require_memory
 from beamfem.solve.start.start_state import last_state, start_state, transferred_turns
 from beamfem.validation import count, positive, shown
 
@@ -101,6 +101,7 @@ def simulate(
             f"step(motion, begin, end) as bf.Integrator describes it, got {shown(integrator)}"
         )
     system = system_of(model, static=False)
+    refuse_frame(system, "simulate")
     rule = require_rule(integrator, step) if is_scheme(integrator) else ()
     announce_compilation()
     require_memory(model.size, duration, step, save_every)

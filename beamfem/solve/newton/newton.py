@@ -275,7 +275,8 @@ def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton
     """Iterate with the fastest method that the model allows, and with pivoting if that fails."""
     step = PrescribedStep(system, start, load_factor)
     result = None
-    if system.unknowns.pattern is None and Proven.LOSES_DIGITS not in system.proven:
+    banded = system.unknowns.pattern is None and system.model.frame is None
+    if banded and Proven.LOSES_DIGITS not in system.proven:
         problem = BandProblem(system, start, load_factor, newton, step, keep)
         result = find_equilibrium(problem, newton, keep)
         problem.return_scratch()

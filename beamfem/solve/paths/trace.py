@@ -23,7 +23,7 @@ from beamfem.solve.paths.path_record import PathRecord
 from beamfem.solve.start.functions_of_time import SAME, Jump, functions_of_time, jumps_between, kinks_between
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.partial_results import kept
-from beamfem.solve.start.start_checks import refuse_memory
+from beamfem.solve.start.start_checks import refuse_frame, refuse_memory
 from beamfem.solve.statics.preload import first_equilibrium, nothing_acts
 from beamfem.validation import count, finite, function_of_one, optional, positive, shown
 
@@ -120,6 +120,7 @@ def trace_equilibrium(
     newton = require_newton(newton, Newton(iterations=_ITERATIONS))
     system = system_of(model, static=True)
     refuse_memory(system, "trace_equilibrium")
+    refuse_frame(system, "trace_equilibrium")
     if nothing_acts(system):
         require_support(system)
     if not len(system.free_dofs):

@@ -22,6 +22,14 @@ def refuse_memory(system: System, analysis: str) -> None:
         )
 
 
+def refuse_frame(system: System, analysis: str) -> None:
+    """Raise InputError if the model is described in a rotating frame."""
+    if system.model.frame is not None:
+        raise InputError(
+            f"{analysis} does not support models in a RotatingFrame; equilibria and their vibrations are supported"
+        )
+
+
 def refuse_dampers(system: System) -> None:
     """Raise InputError if the force of a connector depends on velocities about rest, which free vibrations neglect."""
     for item in system.connectors.items:

@@ -33,8 +33,10 @@ def plot_modes(modes: "Modes", path: str | PathLike[str] | None = None, most: in
         if mode < len(modes.rigid):
             return f"{mode + 1}: {modes.rigid[mode]}"
         growth = modes.growth[mode]
-        grows = f", grows {growth:.3g}/{modes.model.unit('s')}" if growth > 0.0 else ""
-        return f"{mode + 1}: {modes.frequencies[mode]:.4g} {modes.model.unit('Hz')}{grows}"
+        changes = f", grows {growth:.3g}/{modes.model.unit('s')}" if growth > 0.0 else ""
+        if growth < 0.0:
+            changes = f", damping ratio {modes.ratios[mode]:.3g}"
+        return f"{mode + 1}: {modes.frequencies[mode]:.4g} {modes.model.unit('Hz')}{changes}"
 
     def rows(mode: int, solution: Solution) -> np.ndarray:
         return np.array([len(solution) - 1] if mode < len(modes.rigid) else [len(solution) // 2, 0])

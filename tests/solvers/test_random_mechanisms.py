@@ -110,3 +110,35 @@ def test_mechanisms_are_the_same_rotated_in_other_units_and_in_another_order(see
     for other in others:
         for one, two, accuracy in zip(plain, other, (1e-7, 1e-5, 1e-6, 1e-4), strict=True):
             np.testing.assert_allclose(two, one, rtol=0.0, atol=accuracy * np.abs(one).max(initial=0.0))
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_damped_modes_are_the_same_rotated_in_other_units_and_in_another_order(seed):
+    rates = []
+    for changed in ({}, {"angle": 0.7, "backwards": True}, {"units": Units(1e3)}):
+        model, _ = mechanism(seed, **changed)
+        try:
+            rest = bf.solve_static(model)
+        except bf.ConvergenceError:
+            return
+        modes = bf.linearise(model, rest).modes(4)
+        rates.append(np.sort_complex(modes.growth + 2j * np.pi * modes.frequencies))
+    for other in rates[1:]:
+        assert np.abs(other - rates[0]).max() < 1e-8 * np.abs(rates[0]).max()
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_without_damping_linear_models_have_the_modes_of_solve_modes(seed):
+    """With links as conditions on a null space, and with their multipliers as unknowns."""
+    model, _ = mechanism(seed)
+    try:
+        rest = bf.solve_static(model)
+    except bf.ConvergenceError:
+        return
+    undamped = [replace(part, damping=0.0) if hasattr(part, "damping") else part for part in model.connectors]
+    model = model.with_(connectors=undamped)
+    expected = bf.solve_modes(model, 4, about=rest[-1])
+    found = bf.linearise(model, rest[-1]).modes(4)
+    if np.all(expected.growth == 0.0):  # a diverging mode has a decaying one beside it
+        assert found.frequencies == pytest.approx(expected.frequencies, rel=1e-8)
+        assert np.all(found.growth == 0.0)

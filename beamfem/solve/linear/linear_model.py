@@ -20,7 +20,7 @@ from beamfem.validation import items
 
 
 def scale_of(model: Model, transformation: csr_array) -> np.ndarray:
-    """Return the changes (m,) of coordinates z that move a model by its size or turn sections by 1 rad; see `T`."""
+    """Return the changes (m,) of coordinates z that move a model by its size or turn sections by 1 rad."""
     sizes = dia_array((1.0 / system_of(model, static=True).scale[None], [0]), shape=(model.size, model.size))
     return np.asarray(1.0 / abs(sizes @ transformation).max(axis=0).toarray().ravel())
 

@@ -19,8 +19,7 @@ The examples of all docstrings continue this one, a steel cantilever with a forc
 
 Contents; see help(bf.Beam), for example, for details.
 
-    Model             Model Beam Point Material Rayleigh KelvinVoigt graded
-    Model             Model Beam Point Material graded RotatingFrame
+    Model             Model Beam Point Material Rayleigh KelvinVoigt graded RotatingFrame
     Axes              Line Arc Polyline Chain BSpline Parametric Curve
                       elliptic_arc spline_through_hermite without_removable_knots
     Sections          Rectangle Circle Tube Section Layered Layer SectionLaw
@@ -37,10 +36,8 @@ Contents; see help(bf.Beam), for example, for details.
     Time functions    Interpolated Piecewise
     From files        read_mesh LineMesh Frame read_dxf load
     Solvers           solve_static trace_equilibrium solve_buckling solve_modes simulate
-    Solver settings   Newton GeneralizedAlpha Gauss Radau RigidVelocity
-                      linearise
-                      linearise frequency_response
                       linearise frequency_response reduce
+    Solver settings   Newton GeneralizedAlpha Gauss Radau RigidVelocity
     Results           Solution State Path PathState Bifurcation Modes Buckling Status
                       LinearModel FrequencyResponse
     Along beams       SectionForces BeamStress Fields FieldOnBasis field_on_basis

@@ -46,10 +46,9 @@ def forces_at(solution: "Solution", items: Sequence[Connector]) -> np.ndarray:
     system, times = loading(solution)
     forces = []
     v, a = seen_from_rest(system, solution.p, solution.v, solution.a, times)
-    for *motion, at in zip(solution.p, v, a, times.tolist(), strict=True):
-        gravity = system.connectors.gravity(at)
+    for *state, at in zip(solution.p, v, a, times.tolist(), strict=True):
+        motion, gravity = (state[0], state[1], state[2]), system.connectors.gravity(at)
         forces.append([item.by_point(-item.force_in(motion, at, gravity)[: len(item.dofs)]) for item in items])
-        forces.append([item.by_point(-item.force_in(tuple(motion), at, gravity)[: len(item.dofs)]) for item in bound])
     return np.array(forces).reshape(len(solution), -1, 3)
 
 

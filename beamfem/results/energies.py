@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.cached_properties import cached_property
 from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
+from beamfem.cached_properties import cached_property
 from beamfem.model.beam import Point
 from beamfem.model.load_base import Load, factor
 from beamfem.model.model import Model

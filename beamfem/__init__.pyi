@@ -141,6 +141,7 @@ from .solve.modes.modes import solve_modes as solve_modes
 from .solve.motion.collocation import Gauss as Gauss
 from .solve.motion.collocation import Radau as Radau
 from .solve.motion.dynamics import simulate as simulate
+from .solve.motion.energy_momentum import EnergyMomentum as EnergyMomentum
 from .solve.motion.equations_of_motion import EquationsOfMotion as EquationsOfMotion
 from .solve.motion.equations_of_motion import Integrator as Integrator
 from .solve.motion.integrators import GeneralizedAlpha as GeneralizedAlpha

@@ -87,35 +87,12 @@ class BSpline:
         return unit(self.derivative(self.parameter(arc_length)))
 
     def parameter(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the parameters u at given arc lengths, to round-off.
-
-        Parameters
-        ----------
-        arc_length : array, [m], (n,)
-            Arc lengths from the start; values outside 0 to `length` are taken as the nearer end.
-
-        Returns
-        -------
-        array, (n,)
-            Parameters u.
-        """
+        """Return the parameters u (n,) at arc lengths (n,) [m] to round-off; beyond the ends, that of the nearer."""
         return self._arc_length.parameter(arc_length)
 
     def arc_length(self, u: np.ndarray) -> np.ndarray:
-        """Return the arc lengths at given parameters, to round-off.
+        """Return the arc lengths (n,) [m] at parameters u (n,), to round-off.
 
-        Parameters
-        ----------
-        u : array, (n,)
-            Parameters, from knots[degree] to knots[n].
-
-        Returns
-        -------
-        array, [m], (n,)
-            Arc lengths from the start.
-
-        Examples
-        --------
         >>> spline = bf.BSpline(2, [0, 0, 0, 1, 1, 1], [(0, 0), (1, 1), (2, 0)])
         >>> spline.arc_length(np.array([0.5, 1.0])).round(4)
         array([1.1478, 2.2956])
@@ -129,40 +106,12 @@ class BSpline:
         return np.unique(inside)
 
     def multiplicity(self, knot: float) -> int:
-        """Return how many times a number occurs among the knots.
-
-        Parameters
-        ----------
-        knot : float
-            The number.
-
-        Returns
-        -------
-        int
-            Its multiplicity, 0 if it is not a knot.
-
-        Examples
-        --------
-        >>> bf.BSpline(2, [0, 0, 0, 1, 1, 1], [(0, 0), (1, 1), (2, 0)]).multiplicity(1.0)
-        3
-        """
+        """Return how many times a number occurs among the knots."""
         return self.knots.count(float(knot))
 
     def evaluate(self, u: np.ndarray) -> np.ndarray:
-        """Return the positions at given parameters.
+        """Return the positions r(u) (n, 2) [m] at parameters (n,); beyond the ends, that of the nearer end.
 
-        Parameters
-        ----------
-        u : array, (n,)
-            Parameters; values outside knots[degree] to knots[n] are taken as the nearer end.
-
-        Returns
-        -------
-        array, [m], (n, 2)
-            Positions r(u).
-
-        Examples
-        --------
         >>> spline = bf.BSpline(2, [0, 0, 0, 1, 1, 1], [(0, 0), (1, 1), (2, 0)])
         >>> spline.evaluate(np.array([0.5]))
         array([[1. , 0.5]])
@@ -170,39 +119,18 @@ class BSpline:
         return np.array(self.control_points[0]) + self._homogeneous(u)[0]
 
     def derivative(self, u: np.ndarray) -> np.ndarray:
-        """Return the derivatives of the position with respect to the parameter.
+        """Return dr/du (n, 2) [m] at parameters (n,); where it jumps at a knot, the one after it.
 
-        Parameters
-        ----------
-        u : array, (n,)
-            Parameters; values outside knots[degree] to knots[n] are taken as the nearer end.
-
-        Returns
-        -------
-        array, [m], (n, 2)
-            Derivatives dr/du; at a knot where the derivative jumps, the one after it.
+        Parameters outside knots[degree] to knots[n] are taken as the nearer end.
         """
         position, rate, weight = self._homogeneous(u)
         return (rate[:, :2] - rate[:, 2:] * position) / weight
 
     def hermite(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return values and derivatives of a cubic spline at the ends of its knot spans.
+        """Return parameters (m + 1,), positions [m] and derivatives dr/du [m] (m + 1, 2) at the ends of the knot spans.
 
-        Between two ends the spline is the cubic with these values and derivatives.
-
-        Returns
-        -------
-        u : array, (m + 1,)
-            Parameters of the ends.
-        r : array, [m], (m + 1, 2)
-            Positions there.
-        derivative : array, [m], (m + 1, 2)
-            Derivatives dr/du there.
-
-        Raises
-        ------
-        InputError
-            Unless the degree is 3, all weights are equal, and no interior knot occurs more than twice.
+        Between two ends the spline is the cubic with these values and derivatives. Raises InputError unless the degree
+        is 3, all weights are equal, and no interior knot occurs more than twice.
         """
         advice = (
             "a cubic close to it goes through positions and tangents at arc lengths s: "

@@ -29,11 +29,6 @@ def elliptic_arc(
     start, end : float, [rad]
         Angles a at which the arc starts and ends.
 
-    Returns
-    -------
-    BSpline
-        The arc as a rational spline of degree 2.
-
     Raises
     ------
     InputError

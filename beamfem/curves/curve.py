@@ -43,25 +43,10 @@ class Curve(Protocol):
         ...
 
     def position(self, arc_length: np.ndarray | float) -> np.ndarray:
-        """Return the positions at given arc lengths.
+        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start, or (2,) at one of them.
 
-        Parameters
-        ----------
-        arc_length : array or float, [m], (n,)
-            Arc lengths from the start, from 0 to `length`, or one of them.
+        Raises InputError for arc lengths beyond the ends.
 
-        Returns
-        -------
-        array, [m], (n, 2)
-            Positions (x, y); of one arc length, (2,).
-
-        Raises
-        ------
-        InputError
-            For arc lengths beyond the ends.
-
-        Examples
-        --------
         >>> bf.Line((0, 0), (3, 4)).position(np.array([0.0, 2.5]))
         array([[0. , 0. ],
                [1.5, 2. ]])
@@ -69,25 +54,10 @@ class Curve(Protocol):
         ...
 
     def tangent(self, arc_length: np.ndarray | float) -> np.ndarray:
-        """Return the unit tangents at given arc lengths.
+        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m] from the start, or (2,) at one of them.
 
-        Parameters
-        ----------
-        arc_length : array or float, [m], (n,)
-            Arc lengths from the start, from 0 to `length`, or one of them.
+        At a corner it is the tangent after it. Raises InputError for arc lengths beyond the ends.
 
-        Returns
-        -------
-        array, [-], (n, 2)
-            Unit tangents; at a corner, the tangent after it. Of one arc length, (2,).
-
-        Raises
-        ------
-        InputError
-            For arc lengths beyond the ends.
-
-        Examples
-        --------
         >>> bf.Line((0, 0), (3, 4)).tangent(np.array([2.5]))
         array([[0.6, 0.8]])
         """

@@ -32,11 +32,6 @@ def spline_through_hermite(
     r_u : array_like, [m], (m + 1, 2)
         Derivatives dr/du at u.
 
-    Returns
-    -------
-    BSpline
-        The cubic spline.
-
     Raises
     ------
     InputError
@@ -68,11 +63,6 @@ def without_removable_knots(spline: BSpline) -> BSpline:
     ----------
     spline : BSpline
         A cubic spline without weights whose interior knots appear at most twice.
-
-    Returns
-    -------
-    BSpline
-        The spline with fewer knots.
 
     Raises
     ------

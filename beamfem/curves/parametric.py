@@ -85,13 +85,8 @@ class Parametric:
     def spline(self) -> BSpline:
         """Return the B-spline of degree 12 that is the same curve to round-off.
 
-        Returns
-        -------
-        BSpline
-            The spline, with its parameter from 0 at the start to 1 at the end.
+        Its parameter goes from 0 at the start to 1 at the end.
 
-        Examples
-        --------
         >>> bf.Parametric(lambda u: (u, np.sin(u)), 0.0, np.pi).spline().degree
         12
         """

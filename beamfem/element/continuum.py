@@ -52,43 +52,21 @@ class _Body:
         return (False,) * 6
 
     def strains(self, at: Axis) -> np.ndarray:
-        """Return the Green-Lagrange strain of the body, as polynomials of the height y.
+        """Return the Green-Lagrange strain of the body, as polynomials of the height y, for an axis at points.
 
-        With the measures (a, b, c, eyy, g0, g1), exx = a + b y + c y^2 and 2 exy = g0 + g1 y; paper, section 3.3.
-
-        Parameters
-        ----------
-        at : Axis, (..., 2)
-            Axis at the points, in any configuration.
-
-        Returns
-        -------
-        array, (..., 6)
-            a [-], b [1/m], c [1/m^2], eyy [-], g0 [-] and g1 [1/m].
+        With the measures (a [-], b [1/m], c [1/m^2], eyy [-], g0 [-], g1 [1/m]) (..., 6), exx = a + b y + c y^2 and 2
+        exy = g0 + g1 y; paper, section 3.3.
         """
         return evaluate(green_lagrange, at.r_s, at.d, at.d_s)
 
     def imposed(self, free: np.ndarray, reference: Axis) -> tuple[np.ndarray, np.ndarray]:
-        """Return the change of the strain measures by free strains.
+        """Return first (m, n, 6) and second (m, m, n, 6) order parts of the measures of m free strains.
 
-        For factors f_i of the free strains, it is the sum of f_i first_i + f_i f_j second_ij over all i and j.
-
+        For factors f_i of the free strains, the measures are the sum of f_i first_i + f_i f_j second_ij over all i, j.
         The free body has r0' + stretch n + shear t, d (1 + thickness), d' (1 + thickness) - curvature n. The measures
         are quadratic in these vectors, so complex steps give both parts without subtraction.
 
-        Parameters
-        ----------
-        free : array, (m, n, 4)
-            Stretch [-], shear [-], curvature [1/m] and thickness stretch [-] of m free strains at n points.
-        reference : Axis, (n, 2)
-            Reference axis at the points.
-
-        Returns
-        -------
-        first : array, (m, n, 6)
-            Part linear in the free strains.
-        second : array, (m, m, n, 6)
-            Part quadratic in them.
+        free (m, n, 4): stretch [-], shear [-], curvature [1/m] and thickness stretch [-] at n points of the reference.
         """
         along, across = section_frame(reference.d)
         stretch, shear, curvature, thickness = np.moveaxis(free, -1, 0)[..., None]
@@ -105,22 +83,7 @@ class _Body:
     def points(self, degree: int, director_degree: int) -> int:
         """Return the number of Gauss points that integrate the energy of a straight element exactly.
 
-        The energy is quartic in r0' and in d: 2 max(degree - 1, director_degree) + 1 points.
-
-        Parameters
-        ----------
-        degree, director_degree : int
-            Polynomial degrees of the centreline r0 and of the director d.
-
-        Returns
-        -------
-        int
-            Number of points.
-
-        Examples
-        --------
-        >>> bf.ContinuumMechanics().points(degree=3, director_degree=1)
-        5
+        The energy is quartic in r0' and in d, of the polynomial degrees `degree` and `director_degree`.
         """
         return 2 * max(degree - 1, director_degree) + 1
 
@@ -155,26 +118,10 @@ class ContinuumMechanics(_Body):
     def stiffness(
         self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis
     ) -> np.ndarray:
-        """Return the section stiffness at points of the reference axis.
+        """Return the stiffness (..., 6, 6) [N to N m^4] at points of the reference axis, in the order of `strains`.
 
         It is the integral of B^T D B over the section, where B(y) maps the measures to (exx, eyy, 2 exy), and D is the
         stiffness of the material.
-
-        Parameters
-        ----------
-        section : CrossSection
-            The section.
-        material : Material or None
-            Material of the beam.
-        coordinates : Gradients, Rotation or ShearFree
-            Nodal coordinates of the element.
-        reference : Axis, (..., 2)
-            Reference axis at the points.
-
-        Returns
-        -------
-        array, (..., 6, 6)
-            Stiffness in the order of `strains`, [N] to [N m^4].
         """
         return _over_section(section, material, reference, self._law)
 
@@ -183,27 +130,9 @@ class ContinuumMechanics(_Body):
         return np.array([[lam + 2.0 * mu, lam, 0.0], [lam, lam + 2.0 * mu, 0.0], [0.0, 0.0, mu]])
 
     def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
-        """Return the second Piola-Kirchhoff stress of given Green-Lagrange strains.
+        """Return the second Piola-Kirchhoff stress [Pa] of Green-Lagrange strains exx, eyy and exy.
 
-        S = lambda tr(E) 1 + 2 mu E (St. Venant-Kirchhoff).
-
-        Parameters
-        ----------
-        xx, yy, xy : array, [-]
-            Strain components of points of the body; xy is half the engineering shear strain.
-        material : Material
-            Material at the points.
-
-        Returns
-        -------
-        xx, yy, xy : array, [Pa]
-            Stress components.
-
-        Examples
-        --------
-        >>> strain = np.array([1e-3]), np.zeros(1), np.zeros(1)
-        >>> bf.ContinuumMechanics().stress(*strain, steel)[0].round(-6) / 1e6  # MPa
-        array([283.])
+        S = lambda tr(E) 1 + 2 mu E (St. Venant-Kirchhoff); exy is half the engineering shear strain.
         """
         return tuple(np.tensordot(self._law(material), np.array([xx, yy, 2.0 * xy]), axes=1))
 
@@ -226,26 +155,10 @@ class SplitContinuum(UncoupledStress, _Body):
     def stiffness(
         self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis
     ) -> np.ndarray:
-        """Return the section stiffness at points of the reference axis.
+        """Return the stiffness (..., 6, 6) [N to N m^4] at points of the reference axis, in the order of `strains`.
 
         Over the section the modulus of exx, eyy and 2 exy is E, E and k_s mu; with gradients, the centreline adds the
         Poisson coupling of plane stress to a and eyy.
-
-        Parameters
-        ----------
-        section : CrossSection
-            The section.
-        material : Material or None
-            Material of the beam.
-        coordinates : Gradients, Rotation or ShearFree
-            Nodal coordinates of the element.
-        reference : Axis, (..., 2)
-            Reference axis at the points.
-
-        Returns
-        -------
-        array, (..., 6, 6)
-            Stiffness in the order of `strains`, [N] to [N m^4].
         """
 
         def uncoupled(part: Material) -> np.ndarray:

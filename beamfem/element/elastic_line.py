@@ -34,43 +34,19 @@ class ElasticLine(UncoupledStress):
     thickness_measures: ClassVar[tuple[bool, ...]] = (False, False, False, True)
 
     def strains(self, at: Axis) -> np.ndarray:
-        """Return the strain measures of the line.
+        """Return stretch [-], curvature [1/m], shear [-] and thickness strain [-] (..., 4) of an axis at points.
 
         They are |r0'| - 1, (r0' x r0'') / |r0'|^2, r0'.d and (d.d - 1) / 2; paper, section 3.4.
-
-        Parameters
-        ----------
-        at : Axis, (..., 2)
-            Axis at the points, in any configuration.
-
-        Returns
-        -------
-        array, (..., 4)
-            Stretch [-], curvature [1/m], shear [-] and thickness strain [-].
         """
         return evaluate(elastic_line, at.r_s, at.d, at.r_ss)
 
     def stiffness(
         self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis
     ) -> np.ndarray:
-        """Return the section stiffness at points of the reference axis.
+        """Return the section stiffness (..., 4, 4) at points of the reference axis, in the order of `strains`.
 
-        Parameters
-        ----------
-        section : CrossSection
-            The section.
-        material : Material or None
-            Material of the beam.
-        coordinates : Gradients, Rotation or ShearFree
-            Nodal coordinates of the element.
-        reference : Axis, (..., 2)
-            Reference axis at the points.
-
-        Returns
-        -------
-        array, (..., 4, 4)
-            Stiffness in the order of `strains`, with the diagonal E A [N], E I [N m^2], G A [N] and E A [N], zero
-            without gradients, and with the coupling of stretch and curvature [N m].
+        Its diagonal is E A [N], E I [N m^2], G A [N] and E A [N], zero without gradients; stretch and curvature are
+        coupled [N m].
         """
         rigidity = section.rigidity(material)
         thickness = rigidity.axial if isinstance(coordinates, Gradients) else 0.0
@@ -79,47 +55,17 @@ class ElasticLine(UncoupledStress):
         return np.broadcast_to(matrix, (*reference.r_s.shape[:-1], 4, 4))
 
     def imposed(self, free: np.ndarray, reference: Axis) -> tuple[np.ndarray, np.ndarray]:
-        """Return the strain measures of free strains.
+        """Return first (m, n, 4) and second (m, m, n, 4) order parts of the measures of free strains (m, n, 4).
 
-        For factors f_i of the free strains, they are the sum of f_i first_i + f_i f_j second_ij over all i and j. A
-        thickness stretch t has the thickness strain t + t^2 / 2.
-
-        Parameters
-        ----------
-        free : array, (m, n, 4)
-            Stretch [-], shear [-], curvature [1/m] and thickness stretch [-] of m free strains at n points.
-        reference : Axis, (n, 2)
-            Reference axis at the points.
-
-        Returns
-        -------
-        first : array, (m, n, 4)
-            Part linear in the free strains.
-        second : array, (m, m, n, 4)
-            Part quadratic in them, with the thickness strain only.
+        A thickness stretch t has the thickness strain t + t^2 / 2; see `ContinuumMechanics.imposed`.
         """
         products = np.zeros((len(free), *free.shape))
         products[..., 3] = 0.5 * free[:, None, :, 3] * free[None, :, :, 3]
         return free[:, :, [0, 2, 1, 3]], products
 
     def points(self, degree: int, director_degree: int) -> int:
-        """Return the number of Gauss points of full integration.
+        """Return the number of Gauss points of full integration, exact for curvature and shear of a straight line.
 
-        They are exact for curvature and shear of a straight line at small strain: degree + 1.
-
-        Parameters
-        ----------
-        degree, director_degree : int
-            Polynomial degrees of the centreline r0 and of the director d.
-
-        Returns
-        -------
-        int
-            Number of points.
-
-        Examples
-        --------
-        >>> bf.ElasticLine().points(degree=3, director_degree=1)
-        4
+        degree, director_degree: polynomial degrees of the centreline r0 and of the director d.
         """
         return degree + 1

@@ -157,20 +157,10 @@ class Element:
         return tables_of(self.field, self._energy_points[0])
 
     def energy_stiffness(self, stiffness: np.ndarray, jacobian: np.ndarray) -> np.ndarray:
-        """Return the part of the section stiffness that counts at the points of the strain energy.
+        """Return the part (ne, nq, ns, ns) of the section stiffness that counts at the points of the strain energy.
 
-        Parameters
-        ----------
-        stiffness : array, (ne, nq, ns, ns)
-            Section stiffness at the points of `energy_points`, see `stiffness` of the elastic forces.
-        jacobian : array, [m], (ne, nq)
-            Length of the reference axis per unit of xi.
-
-        Returns
-        -------
-        array, (ne, nq, ns, ns)
-            The stiffness, zero for strain measures that are not integrated at a point; the rules of "lobatto" also
-            change the weights of others.
+        It is zero for strain measures that are not integrated at a point; the rules of "lobatto" also change the
+        weights of others. jacobian (ne, nq) [m]: length of the reference axis per unit of xi.
         """
         if self.integration == "lobatto":
             return lobatto.energy_stiffness(self.forces, self.coordinates, stiffness, jacobian)

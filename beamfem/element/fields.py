@@ -34,37 +34,14 @@ class Field(Protocol):
     def director_degree(self) -> int: ...  # polynomial degree of d
 
     def centreline(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
-        """Return the shape functions of the centreline r0, or a derivative of them by xi.
+        """Return the shape functions (nq, nr) of the centreline r0, or a derivative of them up to the second.
 
-        Parameters
-        ----------
-        xi : array, [-], (nq,)
-            Positions on the unit element.
-        derivative : int, default 0
-            Order of the derivative by xi, up to 2.
-
-        Returns
-        -------
-        array, (nq, nr)
-            Values for each nodal vector that interpolates it, node by node.
+        They belong to the nodal vectors that interpolate it, node by node; xi (nq,): positions on the unit element.
         """
         ...
 
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
-        """Return the shape functions of the director d, or a derivative of them by xi.
-
-        Parameters
-        ----------
-        xi : array, [-], (nq,)
-            Positions on the unit element.
-        derivative : int, default 0
-            Order of the derivative by xi, up to 2.
-
-        Returns
-        -------
-        array, (nq, nd)
-            Values for each nodal vector that interpolates it, node by node.
-        """
+        """Return the shape functions (nq, nd) of the director d, or a derivative of them; see `centreline`."""
         ...
 
     def director_rule(self) -> tuple[np.ndarray, np.ndarray]: ...  # nodes of d (nd,) and weights (nd,) on [0, 1]
@@ -106,24 +83,8 @@ class Cubic:
         return np.array([0.0, 1.0])
 
     def centreline(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
-        """Return the shape functions of the centreline r0, or a derivative of them by xi.
+        """Return the Hermite cubics (nq, 4) for r and r_x of both nodes, or a derivative; paper, eqs. (2) to (4).
 
-        They are the Hermite cubics; paper, eqs. (2) to (4).
-
-        Parameters
-        ----------
-        xi : array, [-], (nq,)
-            Positions on the unit element.
-        derivative : int, default 0
-            Order of the derivative by xi, up to 2.
-
-        Returns
-        -------
-        array, (nq, nr)
-            Values for r and r_x of the first node, r and r_x of the second.
-
-        Examples
-        --------
         >>> bf.Cubic().centreline(np.array([0.5]))
         array([[ 0.5  ,  0.125,  0.5  , -0.125]])
         """
@@ -137,27 +98,7 @@ class Cubic:
         return np.stack(rows, axis=-1)
 
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
-        """Return the shape functions of the director d, or a derivative of them by xi.
-
-        They are 1 - xi and xi.
-
-        Parameters
-        ----------
-        xi : array, [-], (nq,)
-            Positions on the unit element.
-        derivative : int, default 0
-            Order of the derivative by xi, up to 2.
-
-        Returns
-        -------
-        array, (nq, nd)
-            Values for r_y of the first and of the second node.
-
-        Examples
-        --------
-        >>> bf.Cubic().director(np.array([0.25]))
-        array([[0.75, 0.25]])
-        """
+        """Return 1 - xi and xi (nq, 2) for r_y of both nodes, or a derivative; see `Field.director`."""
         return Lagrange(1).director(xi, derivative)
 
     def director_rule(self) -> tuple[np.ndarray, np.ndarray]:
@@ -233,24 +174,10 @@ class Lagrange:
         return _lobatto(self.order)
 
     def centreline(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
-        """Return the shape functions of the centreline r0, or a derivative of them by xi.
+        """Return the Lagrange polynomials (nq, order + 1) of the Gauss-Lobatto nodes, or a derivative.
 
-        They are the Lagrange polynomials of the Gauss-Lobatto nodes; paper, eqs. (8) to (10), for order 1.
+        See `Field.centreline`; paper, eqs. (8) to (10), for order 1.
 
-        Parameters
-        ----------
-        xi : array, [-], (nq,)
-            Positions on the unit element.
-        derivative : int, default 0
-            Order of the derivative by xi, up to 2.
-
-        Returns
-        -------
-        array, (nq, nr)
-            Values for r of each node.
-
-        Examples
-        --------
         >>> bf.Lagrange(order=2).centreline(np.array([0.25])).round(3)
         array([[ 0.375,  0.75 , -0.125]])
         """
@@ -259,27 +186,7 @@ class Lagrange:
         return _table(self.order, points.tobytes(), points.shape, derivative).copy()
 
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
-        """Return the shape functions of the director d, or a derivative of them by xi.
-
-        They are those of the centreline.
-
-        Parameters
-        ----------
-        xi : array, [-], (nq,)
-            Positions on the unit element.
-        derivative : int, default 0
-            Order of the derivative by xi, up to 2.
-
-        Returns
-        -------
-        array, (nq, nd)
-            Values for r_y of each node.
-
-        Examples
-        --------
-        >>> bf.Lagrange(order=1).director(np.array([0.25]))
-        array([[0.75, 0.25]])
-        """
+        """Return the same as `centreline`, for r_y of each node."""
         return self.centreline(xi, derivative)
 
     def director_rule(self) -> tuple[np.ndarray, np.ndarray]:

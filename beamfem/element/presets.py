@@ -17,11 +17,6 @@ def ANCF(forces: Forces | None = None, integration: Integration | None = None) -
     integration : {"full", "reduced", "lobatto"}, optional
         Integration of the strain energy, see `Element`.
 
-    Returns
-    -------
-    Element
-        Element for `Beam`.
-
     References
     ----------
     Omar and Shabana 2001.
@@ -44,11 +39,6 @@ def ANCFCRBF(forces: Forces | None = None, integration: Integration | None = Non
         Elastic forces, by default `ContinuumMechanics()`.
     integration : {"full", "reduced", "lobatto"}, optional
         Integration of the strain energy, see `Element`.
-
-    Returns
-    -------
-    Element
-        Element for `Beam`.
 
     References
     ----------
@@ -73,11 +63,6 @@ def BilinearANCF(forces: Forces | None = None, integration: Integration = "full"
     integration : {"full", "reduced"}, default "full"
         Integration of the strain energy, see `Element`.
 
-    Returns
-    -------
-    Element
-        Element for `Beam`.
-
     References
     ----------
     Paper, eqs. (8) to (10).
@@ -100,11 +85,6 @@ def BilinearCRBF(forces: Forces | None = None, integration: Integration = "full"
         Elastic forces, by default `ContinuumMechanics()`.
     integration : {"full", "reduced"}, default "full"
         Integration of the strain energy, see `Element`.
-
-    Returns
-    -------
-    Element
-        Element for `Beam`.
 
     References
     ----------
@@ -130,11 +110,6 @@ def CRBF(order: int, forces: Forces | None = None, integration: Integration = "r
         Elastic forces, by default `Structural()`.
     integration : {"full", "reduced"}, default "reduced"
         Integration of the strain energy, see `Element`.
-
-    Returns
-    -------
-    Element
-        Element for `Beam`.
 
     Raises
     ------
@@ -170,11 +145,6 @@ def ShearRigid(
         Elastic forces, by default `Structural()`.
     integration : {"full", "reduced", "lobatto"}, optional
         Integration of the strain energy, see `Element`; by default "reduced" with continuum forces.
-
-    Returns
-    -------
-    Element
-        Element for `Beam`.
 
     References
     ----------

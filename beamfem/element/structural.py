@@ -33,43 +33,19 @@ class Structural(UncoupledStress):
     thickness_measures: ClassVar[tuple[bool, ...]] = (False, False, False, True)
 
     def strains(self, at: Axis) -> np.ndarray:
-        """Return the strain measures of the section along t = d / |d| with the normal n.
+        """Return stretch [-], shear [-], curvature [1/m] and thickness stretch [-] (..., 4) of an axis at points.
 
-        They are r0'.n - 1, r0'.t, (d x d') / |d|^2 and |d| - 1; Reissner 1972, Simo and Vu-Quoc 1986.
-
-        Parameters
-        ----------
-        at : Axis, (..., 2)
-            Axis at the points, in any configuration.
-
-        Returns
-        -------
-        array, (..., 4)
-            Stretch [-], shear [-], curvature [1/m] and thickness stretch [-].
+        With t = d / |d| and the normal n of the section, they are r0'.n - 1, r0'.t, (d x d') / |d|^2 and |d| - 1.
         """
         return evaluate(structural, at.r_s, at.d, at.d_s)
 
     def stiffness(
         self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis
     ) -> np.ndarray:
-        """Return the section stiffness at points of the reference axis.
+        """Return the section stiffness (..., 4, 4) at points of the reference axis, in the order of `strains`.
 
-        Parameters
-        ----------
-        section : CrossSection
-            The section.
-        material : Material or None
-            Material of the beam.
-        coordinates : Gradients, Rotation or ShearFree
-            Nodal coordinates of the element.
-        reference : Axis, (..., 2)
-            Reference axis at the points.
-
-        Returns
-        -------
-        array, (..., 4, 4)
-            Stiffness in the order of `strains`, with the diagonal E A [N], k_s G A [N], E I [N m^2] and E A [N], zero
-            if the nodes keep the length of d, and with the coupling of stretch and curvature [N m].
+        Its diagonal is E A [N], k_s G A [N], E I [N m^2] and E A [N], zero if the nodes keep the length of d; stretch
+        and curvature are coupled [N m].
         """
         rigidity = section.rigidity(material)
         matrix = np.zeros((*reference.r_s.shape[:-1], 4, 4))
@@ -80,45 +56,16 @@ class Structural(UncoupledStress):
         return matrix
 
     def imposed(self, free: np.ndarray, reference: Axis) -> tuple[np.ndarray, np.ndarray]:
-        """Return the strain measures of free strains, which are these strains.
+        """Return first (m, n, 4) and second (m, m, n, 4) order parts of the measures of free strains (m, n, 4).
 
-        For factors f_i of the free strains, they are the sum of f_i first_i + f_i f_j second_ij over all i and j.
-
-        Parameters
-        ----------
-        free : array, (m, n, 4)
-            Stretch [-], shear [-], curvature [1/m] and thickness stretch [-] of m free strains at n points.
-        reference : Axis, (n, 2)
-            Reference axis at the points.
-
-        Returns
-        -------
-        first : array, (m, n, 4)
-            Part linear in the free strains.
-        second : array, (m, m, n, 4)
-            Part quadratic in them, which is zero.
+        The free strains are the measures themselves; see `ContinuumMechanics.imposed`.
         """
         return free, np.zeros((len(free), *free.shape))
 
     def points(self, degree: int, director_degree: int) -> int:
-        """Return the number of Gauss points of full integration.
+        """Return the number of Gauss points of full integration, that of the continuum.
 
-        The number is 2 max(degree - 1, director_degree) + 1, as for the continuum.
-
-        Parameters
-        ----------
-        degree, director_degree : int
-            Polynomial degrees of the centreline r0 and of the director d.
-
-        Returns
-        -------
-        int
-            Number of points.
-
-        Examples
-        --------
-        >>> bf.Structural().points(degree=3, director_degree=1)
-        5
+        degree, director_degree: polynomial degrees of the centreline r0 and of the director d.
         """
         return 2 * max(degree - 1, director_degree) + 1
 

@@ -175,23 +175,7 @@ class Beam:
         return fulfils(self.section, CrossSection)
 
     def section_at(self, arc_length: float) -> CrossSection:
-        """Return the section at an arc length.
-
-        Parameters
-        ----------
-        arc_length : float, [m]
-            Arc length from the start.
-
-        Returns
-        -------
-        Section
-            The section there.
-
-        Raises
-        ------
-        InputError
-            If a user's function does not return a section.
-        """
+        """Return the section at an arc length [m]. Raises InputError if a user's function returns anything else."""
         if self.prismatic:
             return cast(CrossSection, self.section)
         section = called("section", cast(Tapered, self.section), arc_length)
@@ -219,20 +203,8 @@ class Beam:
         return ConstitutiveLaw(cast(SectionLaw, section), self.material)
 
     def at(self, fraction: float) -> "Point":
-        """Return the point at a fraction of the arc length.
+        """Return the point at a fraction of the arc length, from 0 to 1.
 
-        Parameters
-        ----------
-        fraction : float, [-]
-            Fraction from 0 to 1.
-
-        Returns
-        -------
-        Point
-            The point.
-
-        Examples
-        --------
         >>> beam.at(0.5).reference
         array([1., 0.])
         """
@@ -252,8 +224,6 @@ class Beam:
         Its boundaries are "start" and "end". If the section jumps, its subdomains are the parts between the jumps, "0",
         "1" and so on from the start.
 
-        Examples
-        --------
         >>> beam.mesh.p[0]
         array([0. , 0.5, 1. , 1.5, 2. ])
         """

@@ -89,37 +89,16 @@ class Contribution(Protocol):
         ...
 
     def force(self, at: At) -> np.ndarray:
-        """Return the resisting forces at the points, then the conditions.
+        """Return fx, fy [N] and moment [N m] that resist at each point, then the conditions (3 m + k,).
 
-        They have the sign of internal forces: a spring that pulls a point back to the left has a positive fx. A
+        Forces have the sign of internal forces: a spring that pulls a point back to the left has a positive fx. A
         condition is a function of q that is zero when it is satisfied; its multiplier times its derivative by q is part
         of the forces.
-
-        Parameters
-        ----------
-        at : At
-            State of evaluation.
-
-        Returns
-        -------
-        array, (3 m + k,)
-            fx, fy [N] and moment [N m] at each point, then the conditions.
         """
         ...
 
     def energy(self, at: At) -> tuple[float, float]:
-        """Return the kinetic and the potential energy of the connector.
-
-        Parameters
-        ----------
-        at : At
-            State of evaluation.
-
-        Returns
-        -------
-        (float, float), [J]
-            Kinetic and potential energy.
-        """
+        """Return the kinetic and the potential energy [J]."""
         ...
 
 
@@ -141,18 +120,7 @@ class Remembering(Contribution, Protocol):
         ...
 
     def remember(self, at: At) -> Sequence[float]:
-        """Return the history variables after an accepted step.
-
-        Parameters
-        ----------
-        at : At
-            State at the end of the step.
-
-        Returns
-        -------
-        sequence of float, (h,)
-            The history variables.
-        """
+        """Return the history variables (h,) after an accepted step, from the state at its end."""
         ...
 
 

@@ -10,7 +10,7 @@ _ELEMENT = 64  # bytes per element: its fraction as a float in a tuple, and in i
 
 
 def graded(elements: int, ratio: float) -> tuple[float, ...]:
-    """Return the ends of elements whose lengths grow geometrically, for `Beam(elements=...)`.
+    """Return the ends of elements whose lengths grow geometrically, as fractions for `Beam(elements=...)`.
 
     Parameters
     ----------
@@ -18,11 +18,6 @@ def graded(elements: int, ratio: float) -> tuple[float, ...]:
         Number of elements.
     ratio : float, [-]
         Length of the last element over that of the first; below 1 the lengths decrease.
-
-    Returns
-    -------
-    tuple of float, [-], (elements + 1,)
-        Fractions of the arc length from 0 to 1.
 
     Raises
     ------

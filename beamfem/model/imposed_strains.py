@@ -41,53 +41,22 @@ class ImposedStrain(AlongBeam, Load):
 
     @abstractmethod
     def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the strains of the unconstrained beam.
+        """Return the strains (n, 4) of the unconstrained beam at arc lengths (n,) [m].
 
-        Parameters
-        ----------
-        arc_length : array, [m], (n,)
-            Arc lengths from the start.
-
-        Returns
-        -------
-        array, (n, 4)
-            Stretch [-], shear [-], curvature [1/m] and thickness stretch [-].
+        They are stretch [-], shear [-], curvature [1/m] and thickness stretch [-].
         """
 
     def heat(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the change of temperature, by which layers expand with their own coefficients; zero unless overridden.
+        """Return temperature on the axis [K] and its gradient over the section [K/m] (n, 2); zero unless overridden.
 
-        Parameters
-        ----------
-        arc_length : array, [m], (n,)
-            Arc lengths from the start.
-
-        Returns
-        -------
-        array, (n, 2)
-            Change of temperature on the axis [K] and its gradient over the section [K/m].
+        By it layers expand with their own coefficients.
         """
         return np.zeros((len(arc_length), 2))
 
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return the values of a field named in `along`.
+        """Return the values (n,) of a field named in `along` at arc lengths (n,) [m].
 
-        Parameters
-        ----------
-        name : str
-            Name of the field.
-        arc_length : array, [m], (n,)
-            Arc lengths from the start.
-
-        Returns
-        -------
-        array, (n,)
-            Values, in the unit of the field.
-
-        Raises
-        ------
-        InputError
-            If a function does not return finite numbers.
+        Raises InputError if a function does not return finite numbers.
         """
         value, what = getattr(self, name), f"{name} of {type(self).__name__}"
         if not callable(value):

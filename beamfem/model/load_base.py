@@ -75,49 +75,23 @@ class Load(ABC):
 
     @abstractmethod
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return the shapes to draw for the load in a state of the model.
+        """Return the shapes to draw for the load in a state, see `beamfem.model.load_shapes`.
 
-        Parameters
-        ----------
-        weight : float, [-]
-            Factor by which the size of the load is multiplied.
-        placed : Placed
-            The state, with the rotations and directions of the axis there.
-
-        Returns
-        -------
-        tuple of Force, Moment, ForcesAlong, Acceleration or Strains
-            The shapes, see `beamfem.model.load_shapes`.
+        weight [-]: factor of the size of the load; placed: the state, with rotations and directions of the axis.
         """
 
     def acting(self, arc_length: np.ndarray) -> Mapping[str, np.ndarray]:
-        """Return what acts on beams from outside, along `axes` and without the factor of the load.
+        """Return what acts on beams from outside at arc lengths (n,) [m], along `axes`, without the load's factor.
 
-        Parameters
-        ----------
-        arc_length : array, [m], (n,)
-            Arc lengths of the reference from the start of a beam.
-
-        Returns
-        -------
-        mapping
-            "force" [N], "line_force" [N/m] or "acceleration" [m/s^2], (n, 2), and "moment" [N m], (n, 1); nothing for
-            imposed strains.
+        "force" [N], "line_force" [N/m] or "acceleration" [m/s^2] (n, 2), and "moment" [N m] (n, 1), by name; nothing
+        for imposed strains.
         """
         return {}
 
     def work(self, displaced: Displaced) -> np.ndarray:
-        """Return the work from the reference to states of the model; that of imposed strains is in the strain energy.
+        """Return the work (steps,) [J] of a conservative load from the reference, without its factor.
 
-        Parameters
-        ----------
-        displaced : Displaced
-            The states, with the displacements of the beams.
-
-        Returns
-        -------
-        array, [J], (steps,)
-            Work of a conservative load, without its factor.
+        That of imposed strains is in the strain energy.
         """
         return np.zeros(len(displaced))
 
@@ -375,38 +349,12 @@ class LineLoad(AlongBeam, Load):
 
     @abstractmethod
     def forces(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the forces per length, along `axes`.
-
-        Parameters
-        ----------
-        arc_length : array, [m], (n,)
-            Arc lengths of the reference from the start.
-
-        Returns
-        -------
-        array, [N/m], (n, 2)
-            Forces per length.
-        """
+        """Return the forces per length (n, 2) [N/m] at arc lengths (n,) [m] of the reference, along `axes`."""
 
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return the values of a function named in `along`.
+        """Return the values (n, ...) of a function named in `along` at arc lengths (n,) [m].
 
-        Parameters
-        ----------
-        name : str
-            Name of the field.
-        arc_length : array, [m], (n,)
-            Arc lengths of the reference from the start.
-
-        Returns
-        -------
-        array, (n, ...)
-            Values, in the unit of the field.
-
-        Raises
-        ------
-        InputError
-            If the function does not return finite numbers, as many at every arc length.
+        Raises InputError if it does not return finite numbers, as many at every arc length.
         """
         function, what = getattr(self, name), f"{name} of {type(self).__name__}"
         results = [called(what, function, s) for s in arc_length.tolist()]

@@ -149,25 +149,9 @@ class Model:
 
         The new model has the same mesh and numbering unless a load needs a node elsewhere, and the same tables of
         solvers if the loads differ only in their size: point loads at the same points, gravity, uniform loads along
-        beams. Any other load, such as a pressure or a temperature, has to be the same object.
+        beams. Any other load, such as a pressure or a temperature, has to be the same object. Raises InputError and
+        UnknownPointError, as `Model`.
 
-        Parameters
-        ----------
-        loads : sequence
-            All loads of the new model.
-
-        Returns
-        -------
-        Model
-            The new model.
-
-        Raises
-        ------
-        InputError, UnknownPointError
-            As for a `Model`.
-
-        Examples
-        --------
         >>> for force in (-1e3, -2e3, -3e3):
         ...     loaded = model.with_loads([bf.PointForce(beam.end, (0.0, force))])
         ...     tip = bf.solve_static(loaded).displacement(beam.end)[-1]
@@ -184,23 +168,8 @@ class Model:
     ) -> "Model":
         """Return the model with other supports, loads, connectors or masses; the mesh is shared if nodes are the same.
 
-        Parameters
-        ----------
-        supports, loads, connectors, masses : sequence, optional
-            All of them in the new model; what is not given is unchanged.
+        What is not given is unchanged. Raises InputError and UnknownPointError, as `Model`, and if nothing is given.
 
-        Returns
-        -------
-        Model
-            The new model, see `with_loads`.
-
-        Raises
-        ------
-        InputError, UnknownPointError
-            As for a `Model`, and if nothing is given.
-
-        Examples
-        --------
         >>> propped = model.with_(supports=[*model.supports, bf.Roller(beam.end)])
         """
         given = {"supports": supports, "loads": loads, "connectors": connectors, "masses": masses}
@@ -312,8 +281,6 @@ class Model:
 
         A name that is no SI unit is returned as it is.
 
-        Examples
-        --------
         >>> steel = bf.Material(2e5, 0.3, 7.8e-9)
         >>> strip = bf.Beam(bf.Line((0, 0), (500, 0)), 4, bf.CRBF(3), bf.Rectangle(20, 4), steel)
         >>> bf.Model([strip], units="N, mm").unit("Pa")
@@ -365,8 +332,6 @@ class Model:
     def mass(self) -> float:
         """Mass [kg] of the beams and of the concentrated masses.
 
-        Examples
-        --------
         >>> round(bf.Model([beam], masses=[bf.PointMass(beam.end, mass=5.0)]).mass, 3)
         83.5
         """
@@ -385,8 +350,6 @@ class Model:
 
         Raises InputError for anything but a beam, UnknownPointError for a beam that is not in the model.
 
-        Examples
-        --------
         >>> model.number_of(beam)
         0
         """
@@ -404,8 +367,6 @@ class Model:
 
         Raises InputError for anything but a point, UnknownPointError for a point on a beam that is not in the model.
 
-        Examples
-        --------
         >>> model.mesh_of(beam.end).elements
         4
         """
@@ -509,8 +470,6 @@ class Model:
         Nothing is solved, so mechanisms and overloaded models can be drawn too. path: file to write (PNG, SVG, PDF).
         Raises MissingPackageError without matplotlib.
 
-        Examples
-        --------
         >>> figure = model.plot("model.png")
         """
         from beamfem.view.drawing import plot_model

@@ -30,17 +30,9 @@ class Support(ABC):
         """Return the shapes to draw."""
 
     def energy(self, displaced: Displaced) -> np.ndarray:
-        """Return the energy of springs along a beam; that of springs at points is summed over all nodal coordinates.
+        """Return the energy (steps,) [J] of springs along a beam, zero in the reference.
 
-        Parameters
-        ----------
-        displaced : Displaced
-            States of the model, with the displacements of the beams.
-
-        Returns
-        -------
-        array, [J], (steps,)
-            Energy, zero in the reference.
+        That of springs at points is summed over all nodal coordinates.
         """
         return np.zeros(len(displaced))
 
@@ -66,23 +58,17 @@ class PointSupport(Support):
         require_point_of(self)
 
     def prescribed(self) -> Mapping[str, Value]:
-        """Return the prescribed values by direction; no direction unless overridden.
+        """Return the prescribed "ux", "uy" [m] and "rotation" [rad] by name; none unless overridden.
 
-        Returns
-        -------
-        mapping
-            "ux", "uy" [m] and "rotation" [rad]: numbers, which grow with the load factor in statics, or functions of
-            time [s]. "normal": 0.0 constrains the displacement along `direction`; no other value is possible.
+        Values are numbers, which grow with the load factor in statics, or functions of time [s]. "normal": 0.0
+        constrains the displacement along `direction`; no other value is possible.
         """
         return {}
 
     def springs(self) -> Mapping[str, float]:
-        """Return the stiffness of the springs to the ground by direction; no spring unless overridden.
+        """Return the stiffness of springs to the ground by name; none unless overridden.
 
-        Returns
-        -------
-        mapping
-            Stiffness, none of them zero: "ux", "uy" [N/m] and "rotation" [N m/rad].
+        They are "ux", "uy" [N/m] and "rotation" [N m/rad], none of them zero.
         """
         return {}
 

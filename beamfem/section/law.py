@@ -25,37 +25,15 @@ class SectionLaw(Protocol):
     """
 
     def resultants(self, strain: np.ndarray, material: Material | None) -> np.ndarray:
-        """Return the section forces for given strains.
+        """Return normal force [N], shear force [N] and moment [N m] (n, 3), zero at zero strain.
 
-        Parameters
-        ----------
-        strain : array, real or complex, (n, 3)
-            Stretch [-], shear [-] and change of curvature [1/m] from the stress-free state.
-        material : Material or None
-            Material of the beam.
-
-        Returns
-        -------
-        array, (n, 3)
-            Normal force [N], shear force [N] and moment [N m], zero at zero strain.
+        strain (n, 3), real or complex: stretch [-], shear [-] and change of curvature [1/m] from the stress-free state;
+        material: that of the beam.
         """
         ...
 
     def energy(self, strain: np.ndarray, material: Material | None) -> np.ndarray:
-        """Return the strain energy per length, of which `resultants` is the derivative.
-
-        Parameters
-        ----------
-        strain : array, real or complex, (n, 3)
-            Strains, as for `resultants`.
-        material : Material or None
-            Material of the beam.
-
-        Returns
-        -------
-        array, [J/m], (n,)
-            Strain energy per reference length.
-        """
+        """Return the strain energy per reference length (n,) [J/m], of which `resultants` is the derivative."""
         ...
 
 
@@ -79,64 +57,22 @@ class RememberingLaw(Protocol):
         ...
 
     def resultants(self, strain: np.ndarray, material: Material | None, history: np.ndarray, dt: float) -> np.ndarray:
-        """Return the section forces for given strains, an analytic function of the strains.
+        """Return the section forces (n, 3), an analytic function of the strains, see `SectionLaw.resultants`.
 
-        Parameters
-        ----------
-        strain : array, real or complex, (n, 3)
-            Stretch [-], shear [-] and change of curvature [1/m] from the stress-free state.
-        material : Material or None
-            Material of the beam.
-        history : array, (n, k)
-            History variables of the same points after the last accepted step.
-        dt : float, [s]
-            Time since then; 0 in statics, and when an accepted state is evaluated again.
-
-        Returns
-        -------
-        array, (n, 3)
-            Normal force [N], shear force [N] and moment [N m].
+        history (n, k): after the last accepted step; dt [s]: time since then, 0 in statics, and when an accepted state
+        is evaluated again.
         """
         ...
 
     def remember(self, strain: np.ndarray, material: Material | None, history: np.ndarray, dt: float) -> np.ndarray:
-        """Return the history variables after an accepted step.
+        """Return the history variables (n, k) after an accepted step to strains (n, 3).
 
-        Parameters
-        ----------
-        strain : array, (n, 3)
-            Strains at the end of the step, as for `resultants`.
-        material : Material or None
-            Material of the beam.
-        history : array, (n, k)
-            History variables before the step.
-        dt : float, [s]
-            Duration of the step; 0 in statics.
-
-        Returns
-        -------
-        array, (n, k)
-            History variables after the step.
+        history (n, k): before the step; dt [s]: its duration, 0 in statics.
         """
         ...
 
     def energy(self, strain: np.ndarray, material: Material | None, history: np.ndarray) -> np.ndarray:
-        """Return the stored energy, and the energy dissipated since the start.
-
-        Parameters
-        ----------
-        strain : array, (n, 3)
-            Strains, as for `resultants`.
-        material : Material or None
-            Material of the beam.
-        history : array, (n, k)
-            History variables of the same points.
-
-        Returns
-        -------
-        array, [J/m], (n, 2)
-            Stored and dissipated energy per reference length.
-        """
+        """Return the energy (n, 2) [J/m] stored, and that dissipated since the start, per reference length."""
         ...
 
 

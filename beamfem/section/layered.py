@@ -110,23 +110,10 @@ class Layered:
         return float(self._edges[0]), float(self._edges[-1])
 
     def rigidity(self, material: Material | None = None) -> Rigidity:
-        """Return the stiffness of all layers together about the axis of the beam.
+        """Return the stiffness of all layers about the axis of the beam; they need no material.
 
         The coupling is C = -sum E S_i, as a positive curvature compresses the side of positive y.
 
-        Parameters
-        ----------
-        material : Material, optional
-            Not used, as the layers have their own materials.
-
-        Returns
-        -------
-        Rigidity
-            Axial stiffness sum E A_i [N], shear stiffness k_s sum G A_i [N], bending stiffness sum E I_i [N m^2] and
-            coupling C [N m].
-
-        Examples
-        --------
         >>> strip = bf.Layered([bf.Layer(steel, 0.001), bf.Layer(steel, 0.002)], width=0.02)
         >>> round(strip.rigidity().axial / 1e6, 3)  # MN
         12.6
@@ -137,42 +124,14 @@ class Layered:
         return Rigidity(float(axial), float(shear), float(bending), -float(first))
 
     def inertia(self, material: Material | None = None) -> Inertia:
-        """Return the inertia of all layers together about the axis of the beam.
-
-        Parameters
-        ----------
-        material : Material, optional
-            Not used, as the layers have their own materials.
-
-        Returns
-        -------
-        Inertia
-            Mass [kg/m], its first moment [kg] and rotary inertia [kg m] per length.
-
-        Examples
-        --------
-        >>> strip = bf.Layered([bf.Layer(steel, 0.001), bf.Layer(steel, 0.002)], width=0.02)
-        >>> round(strip.inertia().mass, 3)
-        0.471
-        """
+        """Return the inertia of all layers per length about the axis of the beam."""
         mass, first, rotary = (
             float(sum(m.density * moments[n] for m, moments in self.moments(material))) for n in range(3)
         )
         return Inertia(mass, first, rotary)
 
     def moments(self, material: Material | None = None) -> list[tuple[Material, np.ndarray]]:
-        """Return the area moments of each layer about the axis of the beam.
-
-        Parameters
-        ----------
-        material : Material, optional
-            Not used, as the layers have their own materials.
-
-        Returns
-        -------
-        list of (Material, array), (5,)
-            The material of each layer with the integrals of 1, y, ..., y^4 [m^2 to m^6] over it.
-        """
+        """Return the material of each layer with its area moments, see `CrossSection.moments`."""
         edges = self._edges
         return [
             (layer.material, self.width * np.array([(high**n - low**n) / n for n in range(1, 6)]))
@@ -180,42 +139,15 @@ class Layered:
         ]
 
     def materials_at(self, y: np.ndarray, material: Material | None = None) -> list[tuple[Material, np.ndarray]]:
-        """Return which layer, and so which material, is at given heights.
+        """Return the material of each layer with a mask of the heights y (n,) [m] in it.
 
-        Parameters
-        ----------
-        y : array, [m], (n,)
-            Heights above the axis of the beam; those beyond a face count as in the layer next to it.
-        material : Material, optional
-            Not used, as the layers have their own materials.
-
-        Returns
-        -------
-        list of (Material, array of bool), (n,)
-            The material of each layer with a mask of the heights in it; a face between two layers is in the upper one.
-
-        Examples
-        --------
-        >>> strip = bf.Layered([bf.Layer(steel, 0.001), bf.Layer(steel, 0.002)], width=0.02)
-        >>> [inside.tolist() for _, inside in strip.materials_at(np.array([-0.001, 0.001]))]
-        [[True, False], [False, True]]
+        Heights beyond a face count as in the layer next to it; a face between two layers is in the upper one.
         """
         index = np.clip(np.searchsorted(self._edges, y, side="right") - 1, 0, len(self.layers) - 1)
         return [(layer.material, index == number) for number, layer in enumerate(self.layers)]
 
     def strips(self, material: Material | None = None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
-        """Return a Gauss rule over the height of each layer.
-
-        Parameters
-        ----------
-        material : Material, optional
-            Not used, as the layers have their own materials.
-
-        Returns
-        -------
-        list of (Material, array, array), (n,)
-            The material of each layer with heights y [m] and weights [m^2] of the rule.
-        """
+        """Return a Gauss rule over the height of each layer, see `CrossSection.strips`."""
         result = []
         for layer, low, high in zip(self.layers, self._edges[:-1], self._edges[1:], strict=True):
             heights, weights = gauss_between(low, high, _STRIPS)
@@ -223,18 +155,7 @@ class Layered:
         return result
 
     def parts(self, material: Material | None = None) -> tuple[Part, ...]:
-        """Return each layer as a rectangle with its Young's modulus, from the bottom up.
-
-        Parameters
-        ----------
-        material : Material, optional
-            Not used, as the layers have their own materials.
-
-        Returns
-        -------
-        tuple of Part
-            One part per layer, with its Young's modulus [Pa] and its outline.
-        """
+        """Return each layer as a rectangle with its Young's modulus [Pa], from the bottom up."""
         edges = self._edges.tolist()
         return tuple(
             Part(layer.material.youngs_modulus, RectangleOutline(self.width, low, high))

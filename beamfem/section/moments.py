@@ -98,23 +98,16 @@ class Section:
 
         Parameters
         ----------
-        axial : float, [N]
-            Axial stiffness E A.
-        shear : float, [N]
-            Shear stiffness k_s G A.
+        axial, shear : float, [N]
+            Stiffness E A and k_s G A.
         bending : float, [N m^2]
-            Bending stiffness E I.
+            Stiffness E I.
         mass : float, [kg/m]
             Mass per length.
         rotary_inertia : float, [kg m]
             Rotary inertia per length.
         coupling : float, [N m], default 0
             Coupling C of stretch with curvature.
-
-        Returns
-        -------
-        StiffnessSection
-            The section.
 
         Raises
         ------
@@ -148,25 +141,8 @@ class Section:
         return float(np.sqrt(12.0 * self.second_moment / self.area))
 
     def rigidity(self, material: Material | None) -> Rigidity:
-        """Return the stiffness of the section about its centroid.
+        """Return E A [N], k_s G A [N] and E I [N m^2] about the centroid. Raises InputError without a material.
 
-        Parameters
-        ----------
-        material : Material or None
-            Material of the beam.
-
-        Returns
-        -------
-        Rigidity
-            Axial stiffness E A [N], shear stiffness k_s G A [N] and bending stiffness E I [N m^2].
-
-        Raises
-        ------
-        InputError
-            Without a material.
-
-        Examples
-        --------
         >>> rigidity = bf.Rectangle(0.05, 0.1).rigidity(steel)
         >>> round(rigidity.axial / 1e6), round(rigidity.bending / 1e3)  # MN, kN m^2
         (1050, 875)
@@ -177,90 +153,25 @@ class Section:
         return Rigidity(modulus * self.area, shear, modulus * self.second_moment)
 
     def inertia(self, material: Material | None) -> Inertia:
-        """Return the inertia of the section about its centroid.
-
-        Parameters
-        ----------
-        material : Material or None
-            Material of the beam.
-
-        Returns
-        -------
-        Inertia
-            Mass rho A [kg/m] and rotary inertia rho I [kg m] per length; the first moment is zero.
-
-        Raises
-        ------
-        InputError
-            Without a material.
-
-        Examples
-        --------
-        >>> round(bf.Rectangle(0.05, 0.1).inertia(steel).mass, 2)
-        39.25
-        """
+        """Return rho A [kg/m] and rho I [kg m] about the centroid. Raises InputError without a material."""
         density = required(material).density
         return Inertia(density * self.area, 0.0, density * self.second_moment)
 
     def moments(self, material: Material | None) -> list[tuple[Material, np.ndarray]]:
-        """Return the area moments of the section about its centroid.
+        """Return the material with (A, 0, I, 0, I4), see `CrossSection.moments`.
 
-        Parameters
-        ----------
-        material : Material or None
-            Material of the beam.
-
-        Returns
-        -------
-        list of (Material, array), (5,)
-            The material with (A, 0, I, 0, I4), the integrals of 1, y, ..., y^4 [m^2 to m^6].
-
-        Raises
-        ------
-        InputError
-            Without a material.
+        Raises InputError without a material.
         """
         return [(required(material), np.array([self.area, 0.0, self.second_moment, 0.0, self.fourth_moment]))]
 
     def materials_at(self, y: np.ndarray, material: Material | None) -> list[tuple[Material, np.ndarray]]:
-        """Return the material at given heights, which is the same at all of them.
-
-        Parameters
-        ----------
-        y : array, [m], (n,)
-            Heights above the axis of the beam.
-        material : Material or None
-            Material of the beam.
-
-        Returns
-        -------
-        list of (Material, array of bool), (n,)
-            The material with True for every height.
-
-        Raises
-        ------
-        InputError
-            Without a material.
-        """
+        """Return the material, which is the same at all heights. Raises InputError without a material."""
         return [(required(material), np.ones_like(y, dtype=bool))]
 
     def strips(self, material: Material | None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
-        """Return a Gauss rule over the height of the rectangle with the same area and second moment.
+        """Return a Gauss rule over the rectangle with the same area and second moment, see `CrossSection.strips`.
 
-        Parameters
-        ----------
-        material : Material or None
-            Material of the beam.
-
-        Returns
-        -------
-        list of (Material, array, array), (n,)
-            The material with heights y [m] and weights [m^2] of the rule.
-
-        Raises
-        ------
-        InputError
-            Without a material.
+        Raises InputError without a material.
         """
         half = 0.5 * self._equivalent_height
         heights, weights = gauss_between(-half, half, _STRIPS)
@@ -269,20 +180,7 @@ class Section:
     def parts(self, material: Material | None) -> tuple[Part, ...]:
         """Return the section as one part, given by its moments and, if it is known, its height.
 
-        Parameters
-        ----------
-        material : Material or None
-            Material of the beam.
-
-        Returns
-        -------
-        tuple of Part
-            One part with its Young's modulus [Pa] and its outline.
-
-        Raises
-        ------
-        InputError
-            Without a material.
+        Raises InputError without a material.
         """
         low, high = self.bounds
         moments = (self.area, 0.0, self.second_moment, 0.0, float(self.fourth_moment or 0.0))

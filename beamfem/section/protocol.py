@@ -68,104 +68,25 @@ class CrossSection(Protocol):
         ...
 
     def rigidity(self, material: Material | None) -> Rigidity:
-        """Return the stiffness of the section about the axis of the beam.
-
-        Parameters
-        ----------
-        material : Material or None
-            Material of the beam.
-
-        Returns
-        -------
-        Rigidity
-            Axial stiffness E A [N], shear stiffness k_s G A [N], bending stiffness E I [N m^2] and coupling [N m].
-
-        Raises
-        ------
-        InputError
-            If the section needs a material and gets none.
-        """
+        """Return the stiffness of the section about the axis of the beam."""
         ...
 
     def inertia(self, material: Material | None) -> Inertia:
-        """Return the inertia of the section about the axis of the beam.
-
-        Parameters
-        ----------
-        material : Material or None
-            Material of the beam.
-
-        Returns
-        -------
-        Inertia
-            Mass [kg/m], its first moment [kg] and rotary inertia [kg m] per length.
-
-        Raises
-        ------
-        InputError
-            If the section needs a material and gets none.
-        """
+        """Return the inertia of the section per length about the axis of the beam."""
         ...
 
     def moments(self, material: Material | None) -> list[tuple[Material, np.ndarray]]:
-        """Return the area moments of the part of each material about the axis of the beam.
-
-        Parameters
-        ----------
-        material : Material or None
-            Material of the beam.
-
-        Returns
-        -------
-        list of (Material, array), (5,)
-            Each material with the integrals of 1, y, y^2, y^3 and y^4 [m^2 to m^6] over its part.
-
-        Raises
-        ------
-        InputError
-            If the section needs a material and gets none.
-        """
+        """Return each material with the integrals of 1, y, ..., y^4 (5,) [m^2 to m^6] over its part, y from axis."""
         ...
 
     def materials_at(self, y: np.ndarray, material: Material | None) -> list[tuple[Material, np.ndarray]]:
-        """Return which material is at given heights.
-
-        Parameters
-        ----------
-        y : array, [m], (n,)
-            Heights above the axis of the beam.
-        material : Material or None
-            Material of the beam.
-
-        Returns
-        -------
-        list of (Material, array of bool), (n,)
-            Each material with a mask of the heights in its part.
-
-        Raises
-        ------
-        InputError
-            If the section needs a material and gets none.
-        """
+        """Return each material with a mask (n,) of those of the heights y (n,) [m] that are in its part."""
         ...
 
     def strips(self, material: Material | None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
-        """Return a quadrature rule over the height of the part of each material, for bodies with a curved reference.
+        """Return a quadrature over the height of the part of each material, for bodies with a curved reference.
 
-        Parameters
-        ----------
-        material : Material or None
-            Material of the beam.
-
-        Returns
-        -------
-        list of (Material, array, array), (n,)
-            Each material with heights y [m] and weights [m^2] of the rule over its part.
-
-        Raises
-        ------
-        InputError
-            If the section needs a material and gets none.
+        It has heights y (n,) [m] and weights (n,) [m^2].
         """
         ...
 
@@ -175,21 +96,8 @@ class HasParts(Protocol):
     """A section whose shape is known, at least in part."""
 
     def parts(self, material: Material | None) -> tuple[Part, ...]:
-        """Return the parts of the section, from which the stress over its height follows.
+        """Return the parts from the bottom up, from which the stress over the height follows.
 
-        Parameters
-        ----------
-        material : Material or None
-            Material of the beam.
-
-        Returns
-        -------
-        tuple of Part
-            The parts from the bottom up, each with its Young's modulus [Pa] and its outline.
-
-        Raises
-        ------
-        InputError
-            If the section needs a material and gets none.
+        Raises InputError if the section needs a material and gets none.
         """
         ...

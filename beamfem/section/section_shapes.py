@@ -26,7 +26,7 @@ class ShapedSection(Section):
 
 
 def Rectangle(width: float, height: float, shear_factor: float = 5 / 6) -> Section:
-    """Return a rectangular section.
+    """Return a rectangular section, with A = width height and I = width height^3 / 12.
 
     Parameters
     ----------
@@ -36,11 +36,6 @@ def Rectangle(width: float, height: float, shear_factor: float = 5 / 6) -> Secti
         Size along y.
     shear_factor : float, [-], default 5/6
         Shear correction factor k_s.
-
-    Returns
-    -------
-    Section
-        Section with A = width height and I = width height^3 / 12.
 
     Raises
     ------
@@ -73,11 +68,6 @@ def Circle(diameter: float, shear_factor: float = 0.9) -> Section:
     shear_factor : float, [-], default 9/10
         Shear correction factor k_s; 9/10 follows from the energy of Jourawski's shear stress.
 
-    Returns
-    -------
-    Section
-        The section.
-
     Raises
     ------
     InputError
@@ -105,11 +95,6 @@ def Tube(diameter: float, thickness: float, shear_factor: float = 0.5) -> Sectio
         Wall thickness.
     shear_factor : float, [-], default 1/2
         Shear correction factor k_s; 1/2 is for a thin wall, 9/10 for a full circle.
-
-    Returns
-    -------
-    Section
-        The section.
 
     Raises
     ------

@@ -176,29 +176,9 @@ class Modes:
         """Return one period of a mode as a Solution to draw or export.
 
         For a rigid mode it is one second of its motion, for a divergence the time in which it grows by the factor e. It
-        is exact for small amplitudes.
+        is exact for small amplitudes. amplitude [m]: largest displacement of a node, by default a tenth of the longest
+        beam; frames: number of rows. Raises InputError for a mode that does not exist, or less than two frames.
 
-        Parameters
-        ----------
-        mode : int, default 0
-            Row of the mode.
-        amplitude : float, [m], optional
-            Largest displacement of a node, by default a tenth of the longest beam.
-        frames : int, default 25
-            Number of rows.
-
-        Returns
-        -------
-        Solution
-            The motion.
-
-        Raises
-        ------
-        InputError
-            For a mode that does not exist, or less than two frames.
-
-        Examples
-        --------
         >>> motion = bf.solve_modes(model, count=2).solution(mode=1, amplitude=0.05)
         >>> len(motion)
         25
@@ -228,8 +208,6 @@ class Modes:
 
         Raises MissingPackageError without pandas.
 
-        Examples
-        --------
         >>> list(bf.solve_modes(model, count=2).to_pandas().columns)
         ['frequency', 'growth', 'rigid']
         """
@@ -238,18 +216,12 @@ class Modes:
         return as_pandas(("frequency", "growth", "rigid"), rows)
 
     def to_xarray(self, beam: Beam | None = None) -> Any:
-        """Return frequencies and shapes along a beam, or along all beams, over the modes.
+        """Return frequencies [Hz], growth [1/s] and rigid motions (mode,), and shapes ux, uy (mode, station), as a
+        Dataset.
 
-        Raises InputError for a beam of another model, MissingPackageError without xarray.
+        Shapes are along a beam, or along all beams, scaled as `modes`, the real part of complex ones. Raises InputError
+        for a beam of another model, MissingPackageError without xarray.
 
-        Returns
-        -------
-        xarray.Dataset
-            Frequency [Hz], growth [1/s] and rigid motion (mode,), and shapes ux, uy (mode, station),
-            scaled as `modes`, the real part of complex ones.
-
-        Examples
-        --------
         >>> bf.solve_modes(model, count=2).to_xarray(beam)["frequency"].values.round(1)
         array([ 20.8, 129.1])
         """
@@ -263,8 +235,6 @@ class Modes:
         Dark: the mode at its largest; pale: half a period later; dashed: the reference. path: file to write (PNG, SVG,
         PDF). Raises InputError if there are no modes to draw, MissingPackageError without matplotlib.
 
-        Examples
-        --------
         >>> figure = bf.solve_modes(model, count=2).plot("modes.png")
         """
         from beamfem.view.mode_shapes import plot_modes
@@ -288,11 +258,6 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
         Static equilibrium to vibrate about, whose loads and stresses are then taken into account (prestress, gravity):
         a state, or a solution for its last state; it may come from a model with other supports. By default the
         reference at load factor 0.
-
-    Returns
-    -------
-    Modes
-        Frequencies and mode shapes.
 
     Raises
     ------

@@ -69,11 +69,6 @@ def trace_equilibrium(
     newton : Newton, optional
         Tolerances of the iteration.
 
-    Returns
-    -------
-    Path
-        The equilibria, with limit points and bifurcations.
-
     Raises
     ------
     InputError

@@ -100,25 +100,9 @@ class Buckling:
     def solution(self, mode: int = 0, amplitude: float | None = None) -> Solution:
         """Return the critical state and the same state with a mode added, as a Solution to draw or export.
 
-        Parameters
-        ----------
-        mode : int, default 0
-            Row of the mode.
-        amplitude : float, [m], optional
-            Largest displacement, by default a tenth of the longest beam.
+        amplitude [m]: largest displacement, by default a tenth of the longest beam. Raises InputError if there is no
+        critical point.
 
-        Returns
-        -------
-        Solution
-            Two rows: the critical state, and the state with the mode.
-
-        Raises
-        ------
-        InputError
-            If there is no critical point.
-
-        Examples
-        --------
         >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e3, 0.0))])
         >>> len(bf.solve_buckling(column).solution(mode=0))
         2
@@ -138,8 +122,6 @@ class Buckling:
 
         Raises MissingPackageError without pandas.
 
-        Examples
-        --------
         >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e3, 0.0))])
         >>> list(bf.solve_buckling(column).to_pandas().columns)
         ['load_factor', 'kind', 'uncertainty']
@@ -148,15 +130,10 @@ class Buckling:
         return as_pandas(("load_factor", "kind", "uncertainty"), rows)
 
     def to_xarray(self, beam: Beam | None = None) -> Any:
-        """Return load factors and shapes along a beam, or along all beams, over the critical points.
+        """Return load factors [-], kinds and uncertainty (mode,), and shapes ux, uy (mode, station), as a Dataset.
 
-        Raises InputError for a beam of another model, MissingPackageError without xarray.
-
-        Returns
-        -------
-        xarray.Dataset
-            Load factor [-], kind and uncertainty [-] (mode,), and shapes ux, uy (mode, station),
-            scaled as `modes`.
+        Shapes are along a beam, or along all beams, scaled as `modes`. Raises InputError for a beam of another model,
+        MissingPackageError without xarray.
         """
         from beamfem.io.mode_table import buckling_to_xarray
 
@@ -168,8 +145,6 @@ class Buckling:
         Pale: the critical state; dark: the same state plus the mode; dashed: the reference. path: file to write (PNG,
         SVG, PDF). Raises InputError if there are no modes to draw, MissingPackageError without matplotlib.
 
-        Examples
-        --------
         >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e3, 0.0))])
         >>> figure = bf.solve_buckling(column).plot("buckling.png")
         """
@@ -194,11 +169,6 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         Number of critical points.
     about : State or Solution, optional
         Stable equilibrium to start from, a solution for its last state; by default the equilibrium at load factor 0.
-
-    Returns
-    -------
-    Buckling
-        Critical load factors and modes.
 
     Raises
     ------

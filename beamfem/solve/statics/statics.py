@@ -71,11 +71,6 @@ def solve_static(
         structure does, at limit points by a jump. There is a row at the critical point. At a symmetric bifurcation
         either side is taken; `statistics.ended` names it, and a small imperfection chooses it.
 
-    Returns
-    -------
-    Solution
-        One row for each load step.
-
     Raises
     ------
     InputError

@@ -35,12 +35,10 @@ class Curve(Protocol):
     @property
     def length(self) -> float:
         """Length of the axis [m]."""
-        ...
 
     @property
     def corners(self) -> tuple[float, ...]:
         """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
-        ...
 
     def position(self, arc_length: np.ndarray | float) -> np.ndarray:
         """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start, or (2,) at one of them.
@@ -51,7 +49,6 @@ class Curve(Protocol):
         array([[0. , 0. ],
                [1.5, 2. ]])
         """
-        ...
 
     def tangent(self, arc_length: np.ndarray | float) -> np.ndarray:
         """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m] from the start, or (2,) at one of them.
@@ -61,7 +58,6 @@ class Curve(Protocol):
         >>> bf.Line((0, 0), (3, 4)).tangent(np.array([2.5]))
         array([[0.6, 0.8]])
         """
-        ...
 
 
 def along(method: Callable[[Any, np.ndarray], np.ndarray]) -> Callable[[Any, np.ndarray | float], np.ndarray]:

@@ -38,11 +38,9 @@ class Field(Protocol):
 
         They belong to the nodal vectors that interpolate it, node by node; xi (nq,): positions on the unit element.
         """
-        ...
 
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
         """Return the shape functions (nq, nd) of the director d, or a derivative of them; see `centreline`."""
-        ...
 
     def director_rule(self) -> tuple[np.ndarray, np.ndarray]: ...  # nodes of d (nd,) and weights (nd,) on [0, 1]
 

@@ -28,18 +28,15 @@ class Factorised(Protocol):
     @property
     def negative_pivots(self) -> int:
         """Number of negative eigenvalues of a symmetric tangent (Sylvester's law of inertia)."""
-        ...
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
-        ...
 
     def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
         """Return the Newton correction (n,) for the residual (n,) of the state of the tangent. Raises LinAlgError.
 
         Also return the stress resultants (ne, nq, ns) of each block after it if they are separate unknowns, else None.
         """
-        ...
 
 
 class Tangent(Protocol):
@@ -47,15 +44,12 @@ class Tangent(Protocol):
 
     def factorised(self, rotated: Rotated) -> Factorised:
         """Return the factors. Raises LinAlgError."""
-        ...
 
     def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:
         """Return x with A x = right. Raises LinAlgError."""
-        ...
 
     def sparse(self, rotated: Rotated) -> csr_array:
         """Return the matrix (n, n) with the normals of inclined rollers rotated to x and constrained there."""
-        ...
 
 
 @dataclass(frozen=True)

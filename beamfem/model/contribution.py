@@ -76,17 +76,14 @@ class Contribution(Protocol):
     @property
     def points(self) -> tuple[Point, ...]:
         """Points (m,) of beams on which the forces act."""
-        ...
 
     @property
     def unknowns(self) -> int:
         """Number k of multipliers, 0 for forces without conditions."""
-        ...
 
     @property
     def conservative(self) -> bool:
         """Whether the force at rest has a potential, so that the stiffness is symmetric."""
-        ...
 
     def force(self, at: At) -> np.ndarray:
         """Return fx, fy [N] and moment [N m] that resist at each point, then the conditions (3 m + k,).
@@ -95,11 +92,9 @@ class Contribution(Protocol):
         condition is a function of q that is zero when it is satisfied; its multiplier times its derivative by q is part
         of the forces.
         """
-        ...
 
     def energy(self, at: At) -> tuple[float, float]:
         """Return the kinetic and the potential energy [J]."""
-        ...
 
 
 @runtime_checkable
@@ -117,11 +112,9 @@ class Remembering(Contribution, Protocol):
     @property
     def memory(self) -> Sequence[float]:
         """Initial history variables (h,)."""
-        ...
 
     def remember(self, at: At) -> Sequence[float]:
         """Return the history variables (h,) after an accepted step, from the state at its end."""
-        ...
 
 
 def require_connector(connector: Contribution) -> None:

@@ -17,12 +17,10 @@ class Stations(Protocol):
     @property
     def rotation(self) -> np.ndarray:
         """Rotations of the sections from the reference (steps, n) [rad]."""
-        ...
 
     @property
     def slope(self) -> np.ndarray:
         """Derivatives r0' (steps, n, 2) [-]."""
-        ...
 
 
 class Placed(Protocol):
@@ -35,15 +33,12 @@ class Placed(Protocol):
 
     def at(self, point: Point) -> Stations:
         """Return the state at a point."""
-        ...
 
     def along(self, beam: Beam, arc_length: np.ndarray) -> Stations:
         """Return the state at arc lengths (n,) [m] of a beam."""
-        ...
 
     def stations(self, beam: Beam) -> np.ndarray:
         """Return the arc lengths (n,) [m] at which loads along a beam are integrated."""
-        ...
 
 
 class Displaced(Protocol):
@@ -51,24 +46,19 @@ class Displaced(Protocol):
 
     def __len__(self) -> int:
         """Return the number of states."""
-        ...
 
     @property
     def first_moments(self) -> Iterable[np.ndarray]:
         """Integral of the displacement over the mass of each beam (steps, 2) [kg m]."""
-        ...
 
     def displacement(self, point: Point) -> np.ndarray:
         """Return the displacement of a point (steps, 2) [m]."""
-        ...
 
     def rotation(self, point: Point) -> np.ndarray:
         """Return the rotation of the section at a point (steps,) [rad]."""
-        ...
 
     def along(self, beam: Beam) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return displacements (steps, n, 2) [m] at points along a beam, and their weights and arc lengths (n,) [m]."""
-        ...
 
 
 def in_plane(vectors: np.ndarray, axes: Axes, at: Stations) -> np.ndarray:

@@ -30,11 +30,9 @@ class SectionLaw(Protocol):
         strain (n, 3), real or complex: stretch [-], shear [-] and change of curvature [1/m] from the stress-free state;
         material: that of the beam.
         """
-        ...
 
     def energy(self, strain: np.ndarray, material: Material | None) -> np.ndarray:
         """Return the strain energy per reference length (n,) [J/m], of which `resultants` is the derivative."""
-        ...
 
 
 @runtime_checkable
@@ -54,7 +52,6 @@ class RememberingLaw(Protocol):
     @property
     def memory(self) -> Sequence[float]:
         """Initial history variables (k,) of a point of the beam."""
-        ...
 
     def resultants(self, strain: np.ndarray, material: Material | None, history: np.ndarray, dt: float) -> np.ndarray:
         """Return the section forces (n, 3), an analytic function of the strains, see `SectionLaw.resultants`.
@@ -62,18 +59,15 @@ class RememberingLaw(Protocol):
         history (n, k): after the last accepted step; dt [s]: time since then, 0 in statics, and when an accepted state
         is evaluated again.
         """
-        ...
 
     def remember(self, strain: np.ndarray, material: Material | None, history: np.ndarray, dt: float) -> np.ndarray:
         """Return the history variables (n, k) after an accepted step to strains (n, 3).
 
         history (n, k): before the step; dt [s]: its duration, 0 in statics.
         """
-        ...
 
     def energy(self, strain: np.ndarray, material: Material | None, history: np.ndarray) -> np.ndarray:
         """Return the energy (n, 2) [J/m] stored, and that dissipated since the start, per reference length."""
-        ...
 
 
 @dataclass(frozen=True, eq=False)

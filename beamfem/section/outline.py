@@ -21,11 +21,9 @@ class Outline(Protocol):
 
     def below(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the integrals of 1 [m^2] and y [m^3] over the part below the heights y."""
-        ...
 
     def quadrature(self, points: int) -> tuple[np.ndarray, np.ndarray]:
         """Return heights [m] and weights [m^2] of a quadrature over the part; points: requested number."""
-        ...
 
 
 @dataclass(frozen=True)

@@ -60,35 +60,28 @@ class CrossSection(Protocol):
     @property
     def shear_factor(self) -> float:
         """Shear correction factor k_s [-]."""
-        ...
 
     @property
     def bounds(self) -> tuple[float, float]:
         """Heights y [m] of the lower and the upper face of the body that is drawn, from the axis."""
-        ...
 
     def rigidity(self, material: Material | None) -> Rigidity:
         """Return the stiffness of the section about the axis of the beam."""
-        ...
 
     def inertia(self, material: Material | None) -> Inertia:
         """Return the inertia of the section per length about the axis of the beam."""
-        ...
 
     def moments(self, material: Material | None) -> list[tuple[Material, np.ndarray]]:
         """Return each material with the integrals of 1, y, ..., y^4 (5,) [m^2 to m^6] over its part, y from axis."""
-        ...
 
     def materials_at(self, y: np.ndarray, material: Material | None) -> list[tuple[Material, np.ndarray]]:
         """Return each material with a mask (n,) of those of the heights y (n,) [m] that are in its part."""
-        ...
 
     def strips(self, material: Material | None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
         """Return a quadrature over the height of the part of each material, for bodies with a curved reference.
 
         It has heights y (n,) [m] and weights (n,) [m^2].
         """
-        ...
 
 
 @runtime_checkable
@@ -100,4 +93,3 @@ class HasParts(Protocol):
 
         Raises InputError if the section needs a material and gets none.
         """
-        ...

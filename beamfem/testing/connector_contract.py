@@ -154,10 +154,7 @@ def _same(item: Connector, one: np.ndarray, other: np.ndarray) -> bool:
 def _require_same(
     item: Connector, name: str, of: str, exact: np.ndarray, slopes: np.ndarray, errors: np.ndarray
 ) -> None:
-    """Compare derivatives (r, d + k); the rows are forces and conditions, or an energy.
-
-    errors (r,): see `_slopes`.
-    """
+    """Compare derivatives (r, d + k); the rows are forces and conditions, or an energy. errors (r,): see `_slopes`."""
     number, scale = len(item.dofs), _scales_of(item)[: exact.shape[1]]
     rows = _scales_of(item) if len(exact) > 1 else np.ones(1)
     errors = errors * rows

@@ -228,11 +228,9 @@ class Problem(Protocol):
 
     def correct(self) -> Correction:
         """Linearise and take the next correction, or several until one is small. Raises LinAlgError."""
-        ...
 
     def check(self, correction: Correction) -> Termination | None:
         """Return why the iteration ends after a correction, None if it goes on."""
-        ...
 
 
 class SingleCorrections(ABC):

@@ -175,26 +175,21 @@ class Equilibrium(Protocol):
     @property
     def state(self) -> np.ndarray:
         """The state reached."""
-        ...
 
     def correct(self) -> Correction:
         """Take the next correction, or several until one is small. Raises LinAlgError."""
-        ...
 
     def balance(self) -> Balance:
         """Return the balance of forces in the state reached."""
-        ...
 
     def after_first(self) -> tuple[float, int]:
         """Return the size of the first correction and the negative pivots of the second tangent."""
-        ...
 
     def count_after_linear(self) -> int:
         """Return the negative pivots of the tangent at the start with the stress resultants of a linear step.
 
         -1 if it is singular. It is called at most once, if the second tangent has another count.
         """
-        ...
 
 
 class _Search:

@@ -9,7 +9,7 @@ from scipy.linalg.lapack import dgetrf, dgetrs
 from scipy.sparse import coo_array, csc_array, csr_array
 
 from beamfem.linalg.lapack import LinAlgError
-from beamfem.linalg.tangent import UNROTATED, BandTangent, Factorised, Rotated, SparseTangent
+from beamfem.linalg.tangent import UNROTATED, BandTangent, Factorised, Rotated, SparseTangent, Tangent
 from beamfem.precision.saddle import SaddleTangent
 
 
@@ -67,7 +67,7 @@ class BorderedFactors:
 
 
 @dataclass(frozen=True)
-class BorderedTangent:
+class BorderedTangent(Tangent):
     """A band matrix with a border, which other solvers than that of time steps take as a sparse matrix."""
 
     band: BandTangent
@@ -77,10 +77,6 @@ class BorderedTangent:
         """Return the factors. Raises LinAlgError."""
         whole, multipliers = SparseTangent(self._whole()), self.border.multipliers
         return (SaddleTangent(whole, multipliers) if multipliers else whole).factorised(rotated)
-
-    def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:
-        """Return x with A x = right. Raises LinAlgError."""
-        return self.factorised(rotated).solve(right)
 
     def sparse(self, rotated: Rotated) -> csr_array:
         """Return the matrix (n + k, n + k) with the normals of inclined rollers rotated to x and constrained there."""

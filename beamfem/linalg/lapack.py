@@ -12,19 +12,6 @@ from scipy.sparse import csc_array
 from scipy.sparse.csgraph import structural_rank
 from scipy.sparse.linalg import SuperLU, splu
 
-__all__ = [
-    "LinAlgError",
-    "cholesky",
-    "eig",
-    "eigh",
-    "null_space",
-    "qr",
-    "solve_banded",
-    "solve_triangular",
-    "svd",
-    "symmetric_factors",
-]
-
 
 def _told_apart(function: Callable[..., Any]) -> Callable[..., Any]:
     """Return a function of scipy that raises LinAlgError instead of ValueError if one of its arrays is not finite."""

@@ -37,6 +37,7 @@ class Factorised(Protocol):
 
         Also return the stress resultants (ne, nq, ns) of each block after it if they are separate unknowns, else None.
         """
+        return self.solve(-unbalanced), None
 
 
 class Tangent(Protocol):
@@ -47,13 +48,14 @@ class Tangent(Protocol):
 
     def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:
         """Return x with A x = right. Raises LinAlgError."""
+        return self.factorised(rotated).solve(right)
 
     def sparse(self, rotated: Rotated) -> csr_array:
         """Return the matrix (n, n) with the normals of inclined rollers rotated to x and constrained there."""
 
 
 @dataclass(frozen=True)
-class BandFactors:
+class BandFactors(Factorised):
     """Factors of a band matrix.
 
     rows: the matrix with inclined rollers constrained; lu: its factors without pivoting; plain: whether these are
@@ -72,7 +74,6 @@ class BandFactors:
         return int((self.lu[:, self.lu.shape[1] // 2] < 0.0).sum())
 
     def solve(self, right: np.ndarray) -> np.ndarray:
-        """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
         x = right.copy()
         _rotate(rotate_in, x, self.rotated)
         if self.plain:
@@ -88,13 +89,9 @@ class BandFactors:
         _rotate(rotate_back, x, self.rotated)
         return x
 
-    def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
-        """Return the Newton correction (n,) for a residual (n,), and None; see `Factorised`. Raises LinAlgError."""
-        return self.solve(-unbalanced), None
-
 
 @dataclass(frozen=True)
-class BandTangent:
+class BandTangent(Tangent):
     """A band matrix, rows of 2 w + 1 entries; reach (n,): see `kernels.band.elimination`."""
 
     rows: np.ndarray
@@ -108,19 +105,14 @@ class BandTangent:
         ratio = band(half).factor(n, n, half, 0, self.reach, lu, _NOTHING, np.empty(n))
         return BandFactors(rows, lu, ratio > SMALLEST_PIVOT, rotated)
 
-    def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:
-        """Return x with A x = right. Raises LinAlgError."""
-        return self.factorised(rotated).solve(right)
-
     def sparse(self, rotated: Rotated) -> csr_array:
-        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and constrained there."""
         rows = _constrained(self.rows, rotated)
         half = rows.shape[1] // 2
         return csr_array(dia_array((diagonals(rows), np.arange(half, -half - 1, -1)), shape=(len(rows), len(rows))))
 
 
 @dataclass(frozen=True)
-class SparseFactors:
+class SparseFactors(Factorised):
     """Factors of a sparse matrix."""
 
     lu: SuperLU
@@ -132,7 +124,6 @@ class SparseFactors:
         return int((self.lu.U.diagonal() < 0.0).sum())
 
     def solve(self, right: np.ndarray) -> np.ndarray:
-        """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
         x = right.copy()
         _rotate(rotate_in, x, self.rotated)
         x = self.lu.solve(x)
@@ -141,13 +132,9 @@ class SparseFactors:
         _rotate(rotate_back, x, self.rotated)
         return np.asarray(x)
 
-    def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
-        """Return the Newton correction (n,) for a residual (n,), and None; see `Factorised`. Raises LinAlgError."""
-        return self.solve(-unbalanced), None
-
 
 @dataclass(frozen=True)
-class SparseTangent:
+class SparseTangent(Tangent):
     """A sparse matrix."""
 
     matrix: csc_array
@@ -163,12 +150,7 @@ class SparseTangent:
         lu = superlu(matrix, full_diagonal=not len(rotated[0]), **settings, options={"SymmetricMode": True})
         return SparseFactors(lu, rotated)
 
-    def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:
-        """Return x with A x = right. Raises LinAlgError."""
-        return self.factorised(rotated).solve(right)
-
     def sparse(self, rotated: Rotated) -> csr_array:
-        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and constrained there."""
         first, _ = rotated
         if not len(first):
             return csr_array(self.matrix)

@@ -87,7 +87,7 @@ class MixedFactors:
 
 
 @dataclass(frozen=True, eq=False)
-class MixedTangent:
+class MixedTangent(Tangent):
     """A tangent in mixed form.
 
     zeros (n, n): tangent without the elastic part; slopes (m, n): weights times derivatives of the strains by the
@@ -152,10 +152,6 @@ class MixedTangent:
             resultant = np.fmin(1.0 / (size * strains), 1.0 / np.sqrt(flexible))
         return np.concatenate([size * length, np.where(np.isfinite(resultant), resultant, 1.0)])
 
-    def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:
-        """Return x with A x = right. Raises LinAlgError."""
-        return self.factorised(rotated).solve(right)
-
     def lost(self, rotated: Rotated) -> float:
         """Return the relative error of a solution with the plain tangent, for random forces on all coordinates.
 
@@ -166,7 +162,6 @@ class MixedTangent:
         return float(np.max(np.abs(plain.solve(force) - exact)) / np.max(np.abs(exact)))
 
     def sparse(self, rotated: Rotated) -> csr_array:
-        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and constrained there."""
         return self.plain.sparse(rotated)
 
 

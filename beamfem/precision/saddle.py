@@ -5,11 +5,19 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import block_array, csc_array, csr_array, dia_array
 
-from beamfem.linalg.tangent import UNROTATED, Rotated, SparseFactors, SparseTangent, Stresses, rotation_to_normals
+from beamfem.linalg.tangent import (
+    UNROTATED,
+    Factorised,
+    Rotated,
+    SparseFactors,
+    SparseTangent,
+    Tangent,
+    rotation_to_normals,
+)
 
 
 @dataclass(frozen=True)
-class SaddleFactors:
+class SaddleFactors(Factorised):
     """Factors of [K + G^T c G, G^T; G, 0], which has as many negative eigenvalues as [K, G^T; G, 0] (Sylvester).
 
     K has no stiffness in directions that only conditions constrain. The added term gives them stiffness, so that no
@@ -34,13 +42,9 @@ class SaddleFactors:
         whole[: -self.multipliers] += self.stiffening @ whole[-self.multipliers :]
         return np.asarray(rotation.T @ self.factors.solve(whole))
 
-    def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
-        """Return the Newton correction (n,) for a residual (n,), and None; see `Factorised`. Raises LinAlgError."""
-        return self.solve(-unbalanced), None
-
 
 @dataclass(frozen=True)
-class SaddleTangent:
+class SaddleTangent(Tangent):
     """A sparse matrix whose last rows and columns belong to Lagrange multipliers."""
 
     whole: SparseTangent
@@ -59,10 +63,5 @@ class SaddleTangent:
         whole = csc_array(block_array([[stiffness, matrix[:-k, -k:]], [conditions, None]]))
         return SaddleFactors(SparseTangent(whole).factorised(UNROTATED), stiffening, k, rotated)
 
-    def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:
-        """Return x with A x = right. Raises LinAlgError."""
-        return self.factorised(rotated).solve(right)
-
     def sparse(self, rotated: Rotated) -> csr_array:
-        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and constrained there."""
         return self.whole.sparse(rotated)

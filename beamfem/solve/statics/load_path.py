@@ -2,7 +2,7 @@
 
 from collections import deque
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -15,7 +15,7 @@ from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 from beamfem.solve.continuation.crossings import Crossing
 from beamfem.solve.continuation.steps import Step, longest_step, take_step, too_small
 from beamfem.solve.newton.iteration import Newton
-from beamfem.solve.statics.static_record import is_unstable
+from beamfem.solve.statics.static_record import StaticRecord, is_unstable
 
 LOCATED = 1e-6  # of the load factor, within which a row is the critical point
 _FIRST_STEP = 1e-2  # along the path, see Continuation
@@ -28,22 +28,8 @@ _GAIN = 1e-7  # of the load factor: a path that would gain less before it turns 
 _MOST_STEPS = 10_000  # each moves the structure by up to half its size or half a radian
 
 
-@dataclass(frozen=True, eq=False)
-class Followed:
-    """A point of the path, the iterations it took, and the number of steps rejected on the way."""
-
-    point: PathPoint
-    iterations: int
-    cuts: int
-
-
 class PathLostError(BeamfemError):
-    """The path could not be followed: the reason, the iterations and the rejected steps."""
-
-    def __init__(self, reason: str, iterations: int, cuts: int) -> None:
-        super().__init__(reason)
-        self.iterations = iterations
-        self.cuts = cuts
+    """The path could not be followed; the message gives the reason."""
 
 
 class OutOfReachError(PathLostError):
@@ -53,35 +39,33 @@ class OutOfReachError(PathLostError):
 class BifurcatesError(BeamfemError):
     """The path loses its stability at the bifurcation y (n + 1,); modes (k, n + 1): those that lose their stiffness."""
 
-    def __init__(self, y: np.ndarray, modes: np.ndarray, iterations: int, cuts: int) -> None:
+    def __init__(self, y: np.ndarray, modes: np.ndarray) -> None:
         super().__init__(f"the path loses its stability at a bifurcation at load factor {y[-1]:.6g}")
         self.y = y
         self.modes = modes
-        self.iterations = iterations
-        self.cuts = cuts
 
 
 class TurnsBackError(BeamfemError):
     """The path turns back at the limit point y (n + 1,); beyond (n + 1,): a point of the path after it."""
 
-    def __init__(self, limit: np.ndarray, beyond: np.ndarray, iterations: int, cuts: int) -> None:
+    def __init__(self, limit: np.ndarray, beyond: np.ndarray) -> None:
         super().__init__(f"the path turns back at load factor {limit[-1]:.6g}")
         self.limit = limit
         self.beyond = beyond
-        self.iterations = iterations
-        self.cuts = cuts
 
 
 class PathFollower:
-    """The path of a system from the equilibrium p (n,), followed by arc length; step lengths carry over.
+    """The path of a system from the last row of a record, followed by arc length; step lengths carry over.
 
-    leaves: whether the path ends at the bifurcation at which it loses its stability.
+    done: counts the iterations and the rejected steps; leaves: whether the path ends at the bifurcation at which it
+    loses its stability.
     """
 
-    def __init__(self, system: System, newton: Newton, p: np.ndarray, load_factor: float, leaves: bool = False) -> None:
+    def __init__(self, system: System, newton: Newton, done: StaticRecord, leaves: bool = False) -> None:
         self.system = system
         self.newton = newton
-        self.start = p, load_factor
+        self.done = done
+        self.start = done.state, done.reached
         self.leaves = leaves
         self.size = _FIRST_STEP
         self.left: np.ndarray | None = None  # limit point (n + 1,) of the last jump
@@ -92,7 +76,7 @@ class PathFollower:
         """The continuation of the path; its unit of length is the effect of the loads at its start."""
         return begin(self.system, *self.start, self.newton)[0]
 
-    def follow(self, p: np.ndarray, load_factor: float, beyond: float, end: float) -> Iterator[Followed]:
+    def follow(self, p: np.ndarray, load_factor: float, beyond: float, end: float) -> Iterator[PathPoint]:
         """Yield the points from the equilibrium p (n,) to the first one at or above the load factor `beyond`.
 
         end: the largest load factor allowed. Raises TurnsBackError at a limit point; BifurcatesError where an unstable
@@ -105,34 +89,35 @@ class PathFollower:
             line = replace(self.line, piece=(load_factor, end)) if self.line.functions_of_time else self.line
             point = line.linearised(np.append(p, load_factor), growing)
         except LinAlgError:
-            raise PathLostError("the tangent is singular there", 0, 0) from None
+            raise PathLostError("the tangent is singular there") from None
         before: PathPoint | None = None
         while point.load_factor < beyond:
             self._require_pace(point.load_factor)
+            cuts = self.done.cuts
             try:
-                step, iterations, cuts = _step(line, point, self.size, end)
+                step = self._step(line, point, end)
             except PathLostError as lost:
                 if before is None or not _at_maximum(line, before, point):
                     raise
-                raise TurnsBackError(point.y, 2.0 * point.y - before.y, lost.iterations, lost.cuts) from lost
+                raise TurnsBackError(point.y, 2.0 * point.y - before.y) from lost
             before = point
-            self.passed.extend((cuts + 1) * [point.load_factor])
+            self.passed.extend((self.done.cuts - cuts + 1) * [point.load_factor])
             self.size = step.next_size
             point = step.segment.after
             extrema = sorted([*step.limits, *step.segment.turned])
             turn = min(extrema, default=1.0)
             if self.leaves and not is_unstable(self.system.symmetric, before.negative_pivots):
-                _require_stable(step, turn, end, iterations, cuts)
+                _require_stable(step, turn, end)
             above = [x for x, at in step.segment.found.items() if x <= turn and at.load_factor > end]
             if above:
                 rising = Segment(line, before, step.segment.at(max(above)))
-                point = _at_load(rising, end, step.crossings, iterations, cuts)
+                point = _at_load(rising, end, step.crossings)
             elif extrema:
                 limit = step.segment.critical(extrema[0])
                 if np.array_equal(limit, point.y):
-                    point = _step(line, point, self.size, np.inf)[0].segment.after
-                raise TurnsBackError(limit, point.y, iterations, cuts)
-            yield Followed(point, iterations, cuts)
+                    point = self._step(line, point, np.inf).segment.after
+                raise TurnsBackError(limit, point.y)
+            yield point
 
     def _require_pace(self, load_factor: float) -> None:
         """Raise PathLostError if far too many further steps would be needed, intermediate load steps included."""
@@ -142,13 +127,30 @@ class PathFollower:
             if _SLOWER * before <= gained <= _FASTER * before and half * (1.0 - load_factor) > _MOST_STEPS * gained:
                 raise OutOfReachError(
                     f"its last steps gained {gained / half:.1e} of the load factor each; at that pace load factor 1 is "
-                    "out of reach: the loads are far too large for the structure, or not in its units",
-                    0,
-                    0,
+                    "out of reach: the loads are far too large for the structure, or not in its units"
                 )
 
+    def _step(self, line: Continuation, point: PathPoint, end: float) -> Step:
+        """Return the longest accepted step from a point.
 
-def _require_stable(step: Step, limit: float, end: float, iterations: int, cuts: int) -> None:
+        Functions of the load factor may turn at `end`, so a step that would pass it ends there.
+        """
+        size = min(self.size, longest_step(line, point))
+        slope = float(point.tangent[-1])
+        while True:
+            ends = bool(line.functions_of_time) and point.load_factor + size * slope > end
+            size = (end - point.load_factor) / slope if ends else size
+            outcome = take_step(line, point, size, end if ends else None)
+            self.done.iterations += outcome.iterations
+            if isinstance(outcome, Step):
+                return outcome
+            self.done.cuts += 1
+            size *= 0.5
+            if too_small(line, point, size):
+                raise PathLostError(f"{outcome.reason}, with steps along it cut to round-off")
+
+
+def _require_stable(step: Step, limit: float, end: float) -> None:
     """Raise BifurcatesError if a step from a stable point loses its stability at a bifurcation below `end`.
 
     limit: fraction up to which the load factor grows.
@@ -157,7 +159,7 @@ def _require_stable(step: Step, limit: float, end: float, iterations: int, cuts:
     if first is None or first.fraction > limit or first.y[-1] > (1.0 - LOCATED) * end:
         return
     modes = [crossing.mode for crossing in step.crossings if crossing.fraction == first.fraction]
-    raise BifurcatesError(first.y, np.array(modes), iterations, cuts)
+    raise BifurcatesError(first.y, np.array(modes))
 
 
 def _at_maximum(line: Continuation, before: PathPoint, point: PathPoint) -> bool:
@@ -172,31 +174,10 @@ def _at_maximum(line: Continuation, before: PathPoint, point: PathPoint) -> bool
     return gain <= _GAIN * abs(point.load_factor)
 
 
-def _at_load(segment: Segment, target: float, crossings: Sequence[Crossing], iterations: int, cuts: int) -> PathPoint:
+def _at_load(segment: Segment, target: float, crossings: Sequence[Crossing]) -> PathPoint:
     """Return the point with a load factor, which may be one of the bifurcations. Raises PathLostError."""
     modes = [crossing.mode for crossing in crossings if abs(crossing.y[-1] - target) <= LOCATED * abs(target)]
     try:
         return segment.critical_at_load(target, modes) if modes else segment.at_load(target)
     except SegmentLostError as error:
-        raise PathLostError(str(error), iterations, cuts) from error
-
-
-def _step(line: Continuation, point: PathPoint, size: float, end: float) -> tuple[Step, int, int]:
-    """Return the longest accepted step up to `size`, the iterations of all attempts, and the number rejected.
-
-    Functions of the load factor may turn at `end`, so a step that would pass it ends there.
-    """
-    size = min(size, longest_step(line, point))
-    iterations = cuts = 0
-    slope = float(point.tangent[-1])
-    while True:
-        ends = bool(line.functions_of_time) and point.load_factor + size * slope > end
-        size = (end - point.load_factor) / slope if ends else size
-        outcome = take_step(line, point, size, end if ends else None)
-        iterations += outcome.iterations
-        if isinstance(outcome, Step):
-            return outcome, iterations, cuts
-        cuts += 1
-        size *= 0.5
-        if too_small(line, point, size):
-            raise PathLostError(f"{outcome.reason}, with steps along it cut to round-off", iterations, cuts)
+        raise PathLostError(str(error)) from error

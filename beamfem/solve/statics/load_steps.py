@@ -195,7 +195,7 @@ def reach(
     # with history, the result depends on the steps, so the end of each requested step is a stop, even if it is cut
     requested = [*stops, *(step * np.arange(1, round(1.0 / step))).tolist()] if remembers else stops
     ahead = sorted({stop for stop in requested if SAME < stop < end - SAME} | {end})
-    follower = PathFollower(system, newton, done.state, done.reached, leaves=snap == "jump")
+    follower = PathFollower(system, newton, done, leaves=snap == "jump")
     cuts, refused = 0, done.reached
     longest = step if remembers else 1.0
     with progress("load factor", end) as report:
@@ -296,24 +296,15 @@ def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float],
     to: the load factor to reach, and the largest one allowed for rows.
     """
     try:
-        for followed in follower.follow(*_start(done, follower), *to):
-            done.iterations += followed.iterations
-            done.cuts += followed.cuts
-            point = followed.point
+        for point in follower.follow(*_start(done, follower), *to):
             if point.load_factor > done.reached:
                 done.add(point.load_factor, point.y[:-1], point.negative_pivots, Termination.CONVERGED)
     except BifurcatesError as bifurcation:
-        done.iterations += bifurcation.iterations
-        done.cuts += bifurcation.cuts
         leave(follower.system, done, bifurcation, to[1], follower.newton)
     except TurnsBackError as turn:
-        done.iterations += turn.iterations
-        done.cuts += turn.cuts
         if not _merges(follower, done, turn.limit, turn.beyond, to[1]):
             _jump(follower, done, turn, snap)
     except PathLostError as lost:
-        done.iterations += lost.iterations
-        done.cuts += lost.cuts
         reached = np.append(done.state, done.reached)
         lost_near_by = len(done.rows) > 1 and not isinstance(lost, OutOfReachError)
         if lost_near_by and _merges(follower, done, reached, 2.0 * reached - np.append(done.rows[-2][1], 0.0), to[1]):

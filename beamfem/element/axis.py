@@ -23,3 +23,9 @@ def dot(u: np.ndarray, v: np.ndarray) -> np.ndarray:
 def cross(u: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Return the planar cross product over the last axis."""
     return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
+
+
+def section_frame(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the unit vectors along the section's normal and along d (..., 2)."""
+    across = d / np.linalg.norm(d, axis=-1, keepdims=True)
+    return np.stack([across[..., 1], -across[..., 0]], axis=-1), across

@@ -4,8 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamfem.element.axis import Axis, dot
-from beamfem.element.structural import section_frame
+from beamfem.element.axis import Axis, dot, section_frame
 from beamfem.physics.measures import evaluate, green_lagrange
 
 Strain = tuple[np.ndarray, np.ndarray, np.ndarray]  # exx, eyy and 2 exy

@@ -4,12 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.element.axis import Axis, cross, dot
+from beamfem.element.axis import Axis, cross, dot, section_frame
 from beamfem.element.coordinates import across
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, length_rule, r_slots, slots
 from beamfem.element.forces import Forces
-from beamfem.element.structural import section_frame
 from beamfem.errors import InputError
 from beamfem.mesh.beam_grid import Grid
 from beamfem.model.beam import Beam

@@ -6,7 +6,7 @@ import numpy as np
 
 from beamfem.curves import Line
 from beamfem.element.coordinates import ShearFree
-from beamfem.element.structural import Structural
+from beamfem.element.forces import Structural
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.section.law import ConstitutiveLaw, SectionLaw

@@ -8,7 +8,6 @@ from beamfem.curves import Line
 from beamfem.element.coordinates import ShearFree
 from beamfem.element.forces import Structural
 from beamfem.errors import InputError
-from beamfem.material import Material
 from beamfem.section.law import ConstitutiveLaw, SectionLaw
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import LARGEST, SMALLEST, fulfils, members
@@ -88,10 +87,7 @@ def require_magnitudes(beam: "Beam", section: CrossSection) -> None:
     E I / h and E I / h^3; the mass of an element and its rotary inertia over h^2; and for bodies, the section moments
     times E over powers of h.
     """
-    quantities = _formed(beam, section)
-    if all(SMALLEST <= value <= LARGEST for value in quantities):
-        return
-    for name, value in zip(_names(beam, section), quantities, strict=True):
+    for name, value in _quantities(beam, section):
         if not SMALLEST <= value <= LARGEST:
             raise InputError(
                 f"{name} of {beam!r} is {value:g}, beyond what double precision can square ({SMALLEST:.1g} to "
@@ -99,7 +95,7 @@ def require_magnitudes(beam: "Beam", section: CrossSection) -> None:
             )
 
 
-def _formed(beam: "Beam", section: CrossSection) -> list[float]:
+def _quantities(beam: "Beam", section: CrossSection) -> list[tuple[str, float]]:
     """Return the quantities as Python floats, whose products and quotients overflow without a warning."""
     curve = beam.curve
     length = float(curve.length)
@@ -108,35 +104,31 @@ def _formed(beam: "Beam", section: CrossSection) -> list[float]:
     else:
         reach = max(float(np.abs(curve.position(np.linspace(0.0, length, _SAMPLES))).max()), 1.0)
     h = length * beam.shortest
+    lengths = [("the length", length), ("the largest coordinate", reach), ("the length h of the shortest element", h)]
     if not h > 0.0:
-        return [length, reach, h]
-    axial, shear, bending, mass, rotary = _resistance(section, beam.material)
-    quantities = [length, reach, h, axial, axial / h, axial * h, shear, shear / h, shear * h]
-    quantities += (bending / h, bending / h / h / h, mass * h, rotary / h)
-    if beam.element.forces.fills_body:
-        with np.errstate(over="ignore", under="ignore"):
-            parts = section.moments(beam.material)
-        for material, moments in parts:
-            area, second, fourth = (material.youngs_modulus * moments[order].item() / h for order in (0, 2, 4))
-            quantities += [area, second / h / h, fourth / h / h / h / h]
-    return quantities
-
-
-def _resistance(section: CrossSection, material: Material | None) -> tuple[float, ...]:
-    """Return E A, k_s G A [N], E I [N m^2], mass [kg/m] and rotary inertia [kg m]."""
+        return lengths
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
-        rigidity, inertia = section.rigidity(material), section.inertia(material)
-    return tuple(map(float, (rigidity.axial, rigidity.shear, rigidity.bending, inertia.mass, inertia.rotary)))
-
-
-def _names(beam: "Beam", section: CrossSection) -> list[str]:
-    names = ["the length", "the largest coordinate", "the length h of the shortest element"]
-    if not beam.curve.length * beam.shortest > 0.0:
-        return names
-    for stiffness in ("E A", "k_s G A"):
-        names += [stiffness, f"{stiffness} / h", f"{stiffness} h"]
-    names += ["E I / h", "E I / h^3", "the mass of an element", "the rotary inertia of an element over h^2"]
-    if beam.element.forces.fills_body:
-        for _ in section.moments(beam.material):
-            names += [f"E times the moment of order {order} over h^{order + 1}" for order in (0, 2, 4)]
-    return names
+        rigidity, inertia = section.rigidity(beam.material), section.inertia(beam.material)
+        parts = section.moments(beam.material) if beam.element.forces.fills_body else []
+    axial, shear, bending = float(rigidity.axial), float(rigidity.shear), float(rigidity.bending)
+    result = [
+        *lengths,
+        ("E A", axial),
+        ("E A / h", axial / h),
+        ("E A h", axial * h),
+        ("k_s G A", shear),
+        ("k_s G A / h", shear / h),
+        ("k_s G A h", shear * h),
+        ("E I / h", bending / h),
+        ("E I / h^3", bending / h / h / h),
+        ("the mass of an element", float(inertia.mass) * h),
+        ("the rotary inertia of an element over h^2", float(inertia.rotary) / h),
+    ]
+    for material, moments in parts:
+        area, second, fourth = (material.youngs_modulus * moments[order].item() / h for order in (0, 2, 4))
+        result += [
+            ("E times the moment of order 0 over h^1", area),
+            ("E times the moment of order 2 over h^3", second / h / h),
+            ("E times the moment of order 4 over h^5", fourth / h / h / h / h),
+        ]
+    return result

@@ -13,7 +13,9 @@ from beamfem.validation import convert, finite, positive, vector
 class Arc:
     """Circular axis about a center.
 
-    It runs clockwise if end_angle < start_angle; more than a full turn is allowed.
+    It runs clockwise if end_angle < start_angle; more than a full turn is allowed. Raises InputError if the radius is
+    not positive or the angles are equal. Warns with SeveralTurnsWarning for more than one full turn, which angles in
+    degrees often cause.
 
     Parameters
     ----------
@@ -23,16 +25,6 @@ class Arc:
         Radius.
     start_angle, end_angle : float, [rad]
         Angles from the x-axis at which the axis starts and ends.
-
-    Raises
-    ------
-    InputError
-        If the radius is not positive or the angles are equal.
-
-    Warns
-    -----
-    SeveralTurnsWarning
-        For more than one full turn, which angles in degrees often cause.
 
     Examples
     --------

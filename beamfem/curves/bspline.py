@@ -18,7 +18,8 @@ class BSpline:
     """Axis along a B-spline, rational (NURBS) or not, by arc length.
 
     The axis is r(u) = sum N_i(u) w_i P_i / sum N_i(u) w_i. An interior knot that appears as often as the degree, and at
-    which the tangent jumps, is a corner.
+    which the tangent jumps, is a corner. Raises InputError for data that is not a connected spline, and if dr/du
+    vanishes (a cusp). Source: L. Piegl, W. Tiller, The NURBS Book, 2nd ed., Springer 1997, chapters 2 to 4.
 
     Parameters
     ----------
@@ -30,15 +31,6 @@ class BSpline:
         Control points P.
     weights : sequence of float, [-], (n,), optional
         Weights w > 0, by default 1.
-
-    Raises
-    ------
-    InputError
-        For data that is not a connected spline, and if dr/du vanishes (a cusp).
-
-    References
-    ----------
-    L. Piegl, W. Tiller, The NURBS Book, 2nd ed., Springer 1997, chapters 2 to 4.
 
     Examples
     --------

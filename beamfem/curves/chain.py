@@ -17,17 +17,12 @@ class Chain:
     """Axis along consecutive curves.
 
     There is a corner wherever the tangent jumps between two curves. A gap of up to 1e-5 of the total length is treated
-    as rounding and closed by moving the curves after it.
+    as rounding and closed by moving the curves after it. Raises InputError if a gap is larger.
 
     Parameters
     ----------
     curves : sequence of Curve
         The curves in order.
-
-    Raises
-    ------
-    InputError
-        If a gap is larger.
 
     Examples
     --------

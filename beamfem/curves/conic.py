@@ -18,7 +18,9 @@ def elliptic_arc(
     """Return an elliptic arc as an exact rational spline.
 
     The arc is center + first cos a + second sin a, with a from start to end. Each piece of at most a quarter turn is a
-    rational parabola whose middle weight is the cosine of half its angle.
+    rational parabola whose middle weight is the cosine of half its angle. Raises InputError if start equals end or the
+    semi-diameters are parallel. Warns with SeveralTurnsWarning for more than one full turn, which angles in degrees
+    often cause.
 
     Parameters
     ----------
@@ -28,16 +30,6 @@ def elliptic_arc(
         Conjugate semi-diameters (x, y), which are the semi-axes if they are perpendicular.
     start, end : float, [rad]
         Angles a at which the arc starts and ends.
-
-    Raises
-    ------
-    InputError
-        If start equals end or the semi-diameters are parallel.
-
-    Warns
-    -----
-    SeveralTurnsWarning
-        For more than one full turn, which angles in degrees often cause.
 
     Examples
     --------

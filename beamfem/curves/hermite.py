@@ -21,7 +21,8 @@ def spline_through_hermite(
 ) -> BSpline:
     """Return the cubic spline with given positions and derivatives.
 
-    It is exactly the cubic of each span; interior knots are double (see `without_removable_knots`).
+    It is exactly the cubic of each span; interior knots are double (see `without_removable_knots`). Raises InputError
+    if u does not increase or the numbers of values do not match.
 
     Parameters
     ----------
@@ -31,11 +32,6 @@ def spline_through_hermite(
         Positions (x, y) at u.
     r_u : array_like, [m], (m + 1, 2)
         Derivatives dr/du at u.
-
-    Raises
-    ------
-    InputError
-        If u does not increase or the numbers of values do not match.
 
     Examples
     --------
@@ -57,17 +53,13 @@ def without_removable_knots(spline: BSpline) -> BSpline:
     """Return the same cubic with one knot in place of two wherever its second derivative does not jump.
 
     A knot is removed if that moves no control point by more than 1e-13 of the largest coordinate, times the ratio of
-    the spans beside it: d^2r/du^2 may jump by 6 / (h_left h_right) of this. The ends of the result are clamped.
+    the spans beside it: d^2r/du^2 may jump by 6 / (h_left h_right) of this. The ends of the result are clamped. Raises
+    InputError unless `spline.hermite()` exists.
 
     Parameters
     ----------
     spline : BSpline
         A cubic spline without weights whose interior knots appear at most twice.
-
-    Raises
-    ------
-    InputError
-        Unless `spline.hermite()` exists.
 
     Examples
     --------

@@ -14,15 +14,12 @@ from beamfem.validation import vector
 class Line:
     """Straight axis.
 
+    Raises InputError if they coincide.
+
     Parameters
     ----------
     start, end : (float, float), [m]
         Positions (x, y) of the ends.
-
-    Raises
-    ------
-    InputError
-        If they coincide.
 
     Examples
     --------

@@ -24,7 +24,8 @@ _AGREES = 1e-6
 class Parametric:
     """Smooth axis given by a function, r(u) = function(u) = (x, y), by arc length.
 
-    The axis runs backwards if end < start. Results files hold the curve as its `spline()`, not as the function.
+    The axis runs backwards if end < start. Results files hold the curve as its `spline()`, not as the function. Raises
+    InputError for values that are not finite, a corner or kink (make a Chain), and if dr/du vanishes.
 
     Parameters
     ----------
@@ -34,11 +35,6 @@ class Parametric:
         Values of u at the ends.
     derivative : callable, optional
         dr/du in the same form; by default that of polynomials of degree 12 that approximate the function to round-off.
-
-    Raises
-    ------
-    InputError
-        For values that are not finite, a corner or kink (make a Chain), and if dr/du vanishes.
 
     Examples
     --------

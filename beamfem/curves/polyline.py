@@ -14,15 +14,12 @@ from beamfem.reprs import brief
 class Polyline:
     """Straight axis from point to point, with a corner wherever the direction changes.
 
+    Raises InputError for fewer than two points, or if two consecutive ones coincide.
+
     Parameters
     ----------
     points : sequence of (float, float), [m], (n, 2)
         Points in order.
-
-    Raises
-    ------
-    InputError
-        For fewer than two points, or if two consecutive ones coincide.
 
     Examples
     --------

@@ -13,12 +13,7 @@ from beamfem.validation import flag
 
 @dataclass(frozen=True)
 class Gradients:
-    """p = e: position vector gradients as coordinates, with a constant mass matrix.
-
-    References
-    ----------
-    Omar and Shabana 2001.
-    """
+    """p = e: position vector gradients as coordinates, with a constant mass matrix. Source: Omar and Shabana 2001."""
 
     name: ClassVar[str] = "gradients"
     code: ClassVar[int] = GRADIENTS
@@ -28,9 +23,7 @@ class Gradients:
 class Rotation:
     """Rotations as coordinates: r_y = (-sin t, cos t), with t relative to the reference.
 
-    References
-    ----------
-    Paper, eqs. (5) to (7), (11), (12).
+    Source: paper, eqs. (5) to (7), (11), (12).
     """
 
     name: ClassVar[str] = "rotation"
@@ -41,16 +34,12 @@ class Rotation:
 class ShearFree:
     """Coordinates without shear at the nodes: r_x = s (cos t, sin t), r_y = (-sin t, cos t).
 
-    The field must have r_x.
+    The field must have r_x. Source: paper, sections 1.5 and 3.5.
 
     Parameters
     ----------
     stretchable : bool, default True
         Whether s is a coordinate; otherwise it stays as in the reference (1 by arc length).
-
-    References
-    ----------
-    Paper, sections 1.5 and 3.5.
     """
 
     stretchable: bool = True

@@ -25,6 +25,9 @@ STRAINS = 3  # of a nonlinear section law: stretch, shear and curvature, which p
 class Element:
     """A beam element: a field, its nodal coordinates and the elastic forces.
 
+    Raises InputError for an invalid combination, or a field of your own whose shape functions do not interpolate its
+    nodal values, or do not represent rigid motions and a constant stretch.
+
     Parameters
     ----------
     field : Cubic, Lagrange or Field
@@ -40,12 +43,6 @@ class Element:
         default is "lobatto" for the cubic field with structural forces or the elastic line, and "full" otherwise.
     label : str, optional
         Name for legends and files.
-
-    Raises
-    ------
-    InputError
-        For an invalid combination, or a field of your own whose shape functions do not interpolate its nodal values,
-        or do not represent rigid motions and a constant stretch.
 
     Examples
     --------

@@ -63,12 +63,7 @@ def slots(vectors: tuple[str, ...], nodes: int, wanted: tuple[str, ...]) -> np.n
 
 @dataclass(frozen=True)
 class Cubic:
-    """Hermite cubics in r and r_x, linear in r_y.
-
-    References
-    ----------
-    Paper, eqs. (2) to (4); Omar and Shabana 2001.
-    """
+    """Hermite cubics in r and r_x, linear in r_y. Source: paper, eqs. (2) to (4); Omar and Shabana 2001."""
 
     name: ClassVar[str] = "cubic"
     vectors: ClassVar[tuple[str, ...]] = ("r", "r_x", "r_y")
@@ -134,14 +129,12 @@ def _table(order: int, points: bytes, shape: tuple[int, ...], derivative: int) -
 class Lagrange:
     """Polynomials of one order in r and in r_y through Gauss-Lobatto nodes.
 
+    Source: paper, eqs. (8) to (10), for order 1.
+
     Parameters
     ----------
     order : int, default 1
         Polynomial order, 1 to 8.
-
-    References
-    ----------
-    Paper, eqs. (8) to (10), for order 1.
     """
 
     order: int = 1

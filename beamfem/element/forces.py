@@ -38,10 +38,7 @@ class Structural(UncoupledStress):
     """Geometrically exact beam with the section along d.
 
     The stiffnesses are E A for stretch, k_s G A for shear, E I for curvature and, with gradients, E A for thickness.
-
-    References
-    ----------
-    Reissner 1972; Simo and Vu-Quoc 1986.
+    Source: Reissner 1972; Simo and Vu-Quoc 1986.
     """
 
     name: ClassVar[str] = "structural"
@@ -94,10 +91,7 @@ class ElasticLine(UncoupledStress):
     """Elastic line with stretch |r_x| - 1, curvature (r_x x r_xx) / |r_x|^2, r_x.r_y and (r_y.r_y - 1) / 2.
 
     The stiffnesses are E A, E I, G A and, with gradients, E A. The curvature is the derivative of the angle of r_x by
-    the reference arc length, so that M = E I dtheta/ds; the section is normal to r_x, and r_y only follows it.
-
-    References
-    ----------
+    the reference arc length, so that M = E I dtheta/ds; the section is normal to r_x, and r_y only follows it. Source:
     Paper, section 3.4.
     """
 
@@ -198,16 +192,12 @@ class ContinuumMechanics(_Body):
     """Green-Lagrange strain and St. Venant-Kirchhoff stress of the whole body.
 
     The bending stiffness is E I times (1 - nu) / ((1 + nu)(1 - 2 nu)), in plane stress 1 / (1 - nu^2), because eyy
-    cannot vary over y.
+    cannot vary over y. Source: paper, section 3.3.
 
     Parameters
     ----------
     plane_stress : bool, default False
         Use lambda = E nu / (1 - nu^2) instead of the 3D value.
-
-    References
-    ----------
-    Paper, section 3.3.
 
     Examples
     --------
@@ -248,11 +238,7 @@ class SplitContinuum(UncoupledStress, _Body):
 
     Over the section the stress is E exx, E eyy, 2 k_s mu exy; on the centreline, the Poisson coupling of plane stress
     is added. The bending stiffness is E I. If rotations keep the thickness constant, there is no coupling, and the
-    axial stiffness is E A.
-
-    References
-    ----------
-    Gerstmayr, Matikainen and Mikkola 2008.
+    axial stiffness is E A. Source: Gerstmayr, Matikainen and Mikkola 2008.
     """
 
     name: ClassVar[str] = "split"

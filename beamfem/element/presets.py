@@ -10,16 +10,14 @@ from beamfem.validation import flag
 def ANCF(forces: Forces | None = None, integration: Integration | None = None) -> Element:
     """Return the ANCF element: cubic field with gradients as coordinates, 6 coordinates per node.
 
+    Source: Omar and Shabana 2001.
+
     Parameters
     ----------
     forces : ContinuumMechanics, SplitContinuum, ElasticLine or Structural, optional
         Elastic forces, by default `ContinuumMechanics()`.
     integration : {"full", "reduced", "lobatto"}, optional
         Integration of the strain energy, see `Element`.
-
-    References
-    ----------
-    Omar and Shabana 2001.
 
     Examples
     --------
@@ -33,16 +31,14 @@ def ANCF(forces: Forces | None = None, integration: Integration | None = None) -
 def ANCFCRBF(forces: Forces | None = None, integration: Integration | None = None) -> Element:
     """Return the ANCF-CRBF element: cubic field with rotations as coordinates, 5 coordinates per node.
 
+    Source: paper, section 3.
+
     Parameters
     ----------
     forces : ContinuumMechanics, SplitContinuum, ElasticLine or Structural, optional
         Elastic forces, by default `ContinuumMechanics()`.
     integration : {"full", "reduced", "lobatto"}, optional
         Integration of the strain energy, see `Element`.
-
-    References
-    ----------
-    Paper, section 3.
 
     Examples
     --------
@@ -56,16 +52,14 @@ def ANCFCRBF(forces: Forces | None = None, integration: Integration | None = Non
 def BilinearANCF(forces: Forces | None = None, integration: Integration = "full") -> Element:
     """Return the bilinear ANCF element: bilinear field with gradients as coordinates, 4 coordinates per node.
 
+    Source: paper, eqs. (8) to (10).
+
     Parameters
     ----------
     forces : ContinuumMechanics, SplitContinuum or Structural, optional
         Elastic forces, by default `ContinuumMechanics()`.
     integration : {"full", "reduced"}, default "full"
         Integration of the strain energy, see `Element`.
-
-    References
-    ----------
-    Paper, eqs. (8) to (10).
 
     Examples
     --------
@@ -79,16 +73,14 @@ def BilinearANCF(forces: Forces | None = None, integration: Integration = "full"
 def BilinearCRBF(forces: Forces | None = None, integration: Integration = "full") -> Element:
     """Return the bilinear CRBF element: bilinear field with rotations as coordinates, 3 coordinates per node.
 
+    Source: paper, section 4.
+
     Parameters
     ----------
     forces : ContinuumMechanics, SplitContinuum or Structural, optional
         Elastic forces, by default `ContinuumMechanics()`.
     integration : {"full", "reduced"}, default "full"
         Integration of the strain energy, see `Element`.
-
-    References
-    ----------
-    Paper, section 4.
 
     Examples
     --------
@@ -102,6 +94,8 @@ def BilinearCRBF(forces: Forces | None = None, integration: Integration = "full"
 def CRBF(order: int, forces: Forces | None = None, integration: Integration = "reduced") -> Element:
     """Return the CRBF element: field of any order in r and r_y with rotations as coordinates, 3 coordinates per node.
 
+    Raises InputError for an order outside 1 to 8, or an invalid combination. Suggested in the paper, section 4.
+
     Parameters
     ----------
     order : int
@@ -110,15 +104,6 @@ def CRBF(order: int, forces: Forces | None = None, integration: Integration = "r
         Elastic forces, by default `Structural()`.
     integration : {"full", "reduced"}, default "reduced"
         Integration of the strain energy, see `Element`.
-
-    Raises
-    ------
-    InputError
-        For an order outside 1 to 8, or an invalid combination.
-
-    References
-    ----------
-    Suggested in the paper, section 4.
 
     Examples
     --------
@@ -135,7 +120,7 @@ def ShearRigid(
     """Return the shear-rigid element: cubic field without shear at its nodes, 4 or 3 coordinates per node.
 
     Full integration makes it 1.2 times too stiff in shear, and also in stretch if the length of r_x is not a
-    coordinate.
+    coordinate. Source: paper, sections 1.5 and 3.5.
 
     Parameters
     ----------
@@ -145,10 +130,6 @@ def ShearRigid(
         Elastic forces, by default `Structural()`.
     integration : {"full", "reduced", "lobatto"}, optional
         Integration of the strain energy, see `Element`; by default "reduced" with continuum forces.
-
-    References
-    ----------
-    Paper, sections 1.5 and 3.5.
 
     Examples
     --------

@@ -74,6 +74,9 @@ _ENDS = 1e-9  # of the length: tolerance of the ends of a mesh
 class Beam:
     """A beam along a curve, which is its stress-free configuration.
 
+    Raises InputError for an invalid value, also if the squares of the stiffness, mass or lengths exceed double
+    precision.
+
     Parameters
     ----------
     curve : Curve
@@ -92,11 +95,6 @@ class Beam:
         Name of the beam in messages, tables and files, by default its number in the model.
     damping : Rayleigh or KelvinVoigt, optional
         Damping in motions, by default only that of the material.
-
-    Raises
-    ------
-    InputError
-        For an invalid value, also if the squares of the stiffness, mass or lengths exceed double precision.
 
     Notes
     -----
@@ -280,17 +278,14 @@ class Beam:
 class Point:
     """A point of a beam's axis.
 
+    Raises InputError for a fraction outside 0 to 1.
+
     Parameters
     ----------
     beam : Beam
         The beam.
     fraction : float, [-]
         Fraction of the arc length, from 0 to 1.
-
-    Raises
-    ------
-    InputError
-        For a fraction outside 0 to 1.
 
     Examples
     --------

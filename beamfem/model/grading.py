@@ -12,17 +12,14 @@ _ELEMENT = 64  # bytes per element: its fraction as a float in a tuple, and in i
 def graded(elements: int, ratio: float) -> tuple[float, ...]:
     """Return the ends of elements whose lengths grow geometrically, as fractions for `Beam(elements=...)`.
 
+    Raises InputError if the number or the ratio is not positive, or an element would have no length.
+
     Parameters
     ----------
     elements : int
         Number of elements.
     ratio : float, [-]
         Length of the last element over that of the first; below 1 the lengths decrease.
-
-    Raises
-    ------
-    InputError
-        If the number or the ratio is not positive, or an element would have no length.
 
     Examples
     --------

@@ -94,7 +94,8 @@ _ONE = {"masses": "mass"}  # the names of one, where it is not the plural withou
 class Model:
     """Beams with supports, loads and joints, meshed and numbered.
 
-    Supports, joints, point loads, connectors and kinks of loads along beams place a mesh node at their point.
+    Supports, joints, point loads, connectors and kinks of loads along beams place a mesh node at their point. Warns
+    with UnitsWarning if a Young's modulus, a density, gravity or a section cannot be meant in the units that are named.
 
     Parameters
     ----------
@@ -122,11 +123,6 @@ class Model:
         For an invalid value.
     UnknownPointError
         For a support, load, joint or connector on a beam that is not in the model.
-
-    Warns
-    -----
-    UnitsWarning
-        If a Young's modulus, a density, gravity or a section cannot be meant in the units that are named.
 
     Examples
     --------

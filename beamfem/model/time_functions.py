@@ -18,15 +18,12 @@ from beamfem.validation import function_of_one
 class Interpolated:
     """Linear interpolation between given times or arc lengths, constant outside.
 
+    Raises InputError for fewer than two points, or times that do not increase.
+
     Parameters
     ----------
     points : sequence of (float, float), (n, 2)
         Increasing times [s] or arc lengths [m], each with its value.
-
-    Raises
-    ------
-    InputError
-        For fewer than two points, or times that do not increase.
 
     Examples
     --------
@@ -64,7 +61,7 @@ class Piecewise:
     """A function that is smooth between kinks, at which its slope or value may jump.
 
     For a section or a load along a beam it depends on the arc length, and elements end at the kinks. Any function with
-    an attribute `kinks` works in the same way.
+    an attribute `kinks` works in the same way. Raises InputError for kinks that do not increase.
 
     Parameters
     ----------
@@ -72,11 +69,6 @@ class Piecewise:
         Function of time [s] or arc length [m].
     kinks : sequence of float, (n,)
         Increasing times [s] or arc lengths [m] of the kinks.
-
-    Raises
-    ------
-    InputError
-        For kinks that do not increase.
 
     Examples
     --------

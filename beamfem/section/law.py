@@ -39,14 +39,10 @@ class SectionLaw(Protocol):
 class RememberingLaw(Protocol):
     """The methods of a section with a history-dependent law, such as plasticity or creep, in place of `SectionLaw`.
 
-    The history variables are part of the state: a rejected step restores them, and a solution has them in every row.
-    A state must therefore determine its section forces: with the history that `remember` returns and dt = 0, these are
+    The history variables are part of the state: a rejected step restores them, and a solution has them in every row. A
+    state must therefore determine its section forces: with the history that `remember` returns and dt = 0, these are
     the section forces of the step and the derivative of the stored energy at this history, and the tangent is the
-    second derivative of that energy. `beamfem.testing.check_law` tests this.
-
-    References
-    ----------
-    Simo and Hughes 1998, chapter 1.
+    second derivative of that energy. `beamfem.testing.check_law` tests this. Source: Simo and Hughes 1998, chapter 1.
     """
 
     @property

@@ -20,17 +20,14 @@ _STRIPS = 6  # Gauss points over each layer
 class Layer:
     """A layer of a layered section.
 
+    Raises InputError for an invalid value.
+
     Parameters
     ----------
     material : Material
         Material of the layer.
     thickness : float, [m]
         Thickness of the layer.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
 
     Examples
     --------
@@ -52,7 +49,7 @@ class Layered:
     """Rectangular layers of one width, each with its own material.
 
     A beam with this section needs no material. A neutral axis that is not on the beam's axis couples stretch with
-    curvature: E A = sum E A_i, C = -sum E S_i, E I = sum E I_i about the axis.
+    curvature: E A = sum E A_i, C = -sum E S_i, E I = sum E I_i about the axis. Raises InputError for an invalid value.
 
     Parameters
     ----------
@@ -64,11 +61,6 @@ class Layered:
         Height of the beam's axis above the bottom, by default mid-height.
     shear_factor : float, [-], default 5/6
         Shear correction factor k_s.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
 
     Examples
     --------

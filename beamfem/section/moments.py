@@ -20,6 +20,8 @@ _STRIPS = 8  # Gauss points over the height, for curved bodies
 class Section:
     """Section given by its area moments.
 
+    Raises InputError for an invalid value.
+
     Parameters
     ----------
     area : float, [m^2]
@@ -36,11 +38,6 @@ class Section:
         rectangle and its faces have no stress.
     centroid : float, [m], optional
         Height of the centroid above the lower face, by default mid-height.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
 
     Examples
     --------
@@ -94,7 +91,7 @@ class Section:
         """Return a section given by its stiffness, which needs no material.
 
         If the neutral axis is not on the beam's axis, there is a coupling: N = E A eps + C kappa and M = C eps + E I
-        kappa.
+        kappa. Raises InputError for an invalid value.
 
         Parameters
         ----------
@@ -108,11 +105,6 @@ class Section:
             Rotary inertia per length.
         coupling : float, [N m], default 0
             Coupling C of stretch with curvature.
-
-        Raises
-        ------
-        InputError
-            For an invalid value.
 
         Examples
         --------

@@ -28,6 +28,8 @@ class ShapedSection(Section):
 def Rectangle(width: float, height: float, shear_factor: float = 5 / 6) -> Section:
     """Return a rectangular section, with A = width height and I = width height^3 / 12.
 
+    Raises InputError for a size that is not positive.
+
     Parameters
     ----------
     width : float, [m]
@@ -36,11 +38,6 @@ def Rectangle(width: float, height: float, shear_factor: float = 5 / 6) -> Secti
         Size along y.
     shear_factor : float, [-], default 5/6
         Shear correction factor k_s.
-
-    Raises
-    ------
-    InputError
-        For a size that is not positive.
 
     Examples
     --------
@@ -59,7 +56,8 @@ def Rectangle(width: float, height: float, shear_factor: float = 5 / 6) -> Secti
 def Circle(diameter: float, shear_factor: float = 0.9) -> Section:
     """Return a full circular section.
 
-    Its moments are A = pi d^2/4, I = pi d^4/64 and I4 = pi d^6/512.
+    Its moments are A = pi d^2/4, I = pi d^4/64 and I4 = pi d^6/512. Raises InputError for a diameter that is not
+    positive.
 
     Parameters
     ----------
@@ -67,11 +65,6 @@ def Circle(diameter: float, shear_factor: float = 0.9) -> Section:
         Diameter d.
     shear_factor : float, [-], default 9/10
         Shear correction factor k_s; 9/10 follows from the energy of Jourawski's shear stress.
-
-    Raises
-    ------
-    InputError
-        For a diameter that is not positive.
 
     Examples
     --------
@@ -87,6 +80,8 @@ def Circle(diameter: float, shear_factor: float = 0.9) -> Section:
 def Tube(diameter: float, thickness: float, shear_factor: float = 0.5) -> Section:
     """Return a circular tube.
 
+    Raises InputError for a size that is not positive, or a wall thicker than half the diameter.
+
     Parameters
     ----------
     diameter : float, [m]
@@ -95,11 +90,6 @@ def Tube(diameter: float, thickness: float, shear_factor: float = 0.5) -> Sectio
         Wall thickness.
     shear_factor : float, [-], default 1/2
         Shear correction factor k_s; 1/2 is for a thin wall, 9/10 for a full circle.
-
-    Raises
-    ------
-    InputError
-        For a size that is not positive, or a wall thicker than half the diameter.
 
     Examples
     --------

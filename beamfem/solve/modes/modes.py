@@ -246,7 +246,8 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     """Find the lowest modes of vibration, K phi = omega^2 M phi, including those of rigid motions.
 
     K is the tangent stiffness with the loads at the load factor of the state, and M the mass matrix, both in that
-    state. In a rotating frame, K has the centrifugal forces; `LinearModel.modes` has Coriolis forces too.
+    state. In a rotating frame, K has the centrifugal forces; `LinearModel.modes` has Coriolis forces too. Warns with
+    LockingWarning if locking changes a frequency by 1 % or more.
 
     Parameters
     ----------
@@ -265,11 +266,6 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
         For an invalid argument, or a state that is not in equilibrium.
     ConvergenceError
         If modes were missed.
-
-    Warns
-    -----
-    LockingWarning
-        If locking changes a frequency by 1 % or more.
 
     Examples
     --------

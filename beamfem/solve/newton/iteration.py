@@ -57,6 +57,8 @@ class NewtonResult(NamedTuple):
 class Newton:
     """Tolerances and options of the Newton iteration.
 
+    Raises InputError for an invalid value. Source: Magisano, Leonetti and Garcea 2017 (independent stresses).
+
     Parameters
     ----------
     tolerance : float, [-], default 1e-10
@@ -67,15 +69,6 @@ class Newton:
         Largest number of iterations.
     independent_stresses : bool, default True
         Whether the geometric tangent takes the section forces that the last correction predicted.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
-
-    References
-    ----------
-    Magisano, Leonetti and Garcea 2017 (independent stresses).
 
     Examples
     --------

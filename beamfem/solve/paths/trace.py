@@ -47,7 +47,8 @@ def trace_equilibrium(
 ) -> Path:
     """Trace the equilibrium path from load factor 0, past limit points, or a branch from a bifurcation.
 
-    Steps along the path are cut and enlarged according to the iterations and the curvature of the path.
+    Steps along the path are cut and enlarged according to the iterations and the curvature of the path. Source: Riks
+    1979; Wagner and Wriggers 1988 (bifurcations); Magisano, Leonetti and Garcea 2017 (stresses).
 
     Parameters
     ----------
@@ -78,10 +79,6 @@ def trace_equilibrium(
     ConvergenceError
         If the path cannot be continued; its `solution` has the path so far. Any other exception during the solve, such
         as one of `until` or KeyboardInterrupt, carries `solution` too.
-
-    References
-    ----------
-    Riks 1979; Wagner and Wriggers 1988 (bifurcations); Magisano, Leonetti and Garcea 2017 (stresses).
 
     Warns
     -----

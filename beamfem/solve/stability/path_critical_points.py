@@ -8,7 +8,7 @@ from scipy.sparse import csr_array
 
 from beamfem.cached_properties import cached_property
 from beamfem.linalg.lapack import LinAlgError, eigh, svd
-from beamfem.solve.continuation.condensed import condensed
+from beamfem.solve.continuation.bifurcations import condensed
 from beamfem.solve.continuation.continuation import PathPoint
 from beamfem.solve.continuation.critical_points import interpolation_weights
 from beamfem.solve.modes.pencil import Pencil

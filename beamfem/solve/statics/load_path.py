@@ -10,9 +10,9 @@ from scipy.linalg import LinAlgError
 from beamfem.assembly.system import System
 from beamfem.cached_properties import cached_property
 from beamfem.errors import BeamfemError
+from beamfem.solve.continuation.bifurcations import Crossing
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
-from beamfem.solve.continuation.crossings import Crossing
 from beamfem.solve.continuation.steps import Step, longest_step, take_step, too_small
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.statics.static_record import StaticRecord, is_unstable

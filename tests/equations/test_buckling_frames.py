@@ -15,8 +15,7 @@ from beamfem.assembly.system import system_of
 from beamfem.linalg import eigenpairs
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.stability import linearised
-from beamfem.solve.stability.loading_path import LoadingPath, PathLostError
-from beamfem.solve.stability.model_size import size_of
+from beamfem.solve.stability.loading_path import LoadingPath, PathLostError, size_of
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 STRIP = bf.Rectangle(0.02, 0.01)

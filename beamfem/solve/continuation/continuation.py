@@ -310,14 +310,12 @@ def begin(
             f"the loads would move this model by {per_load:.1g} times its size, which double precision cannot square; "
             "take loads closer to its stiffness"
         )
-    growing = np.zeros(len(p) + 1)
-    growing[-1] = 1.0
     y = np.append(p, load_factor)
-    moving = Continuation(system, newton, soft, soft, piece).linearised(y, growing).tangent[-1] / soft
+    moving = Continuation(system, newton, soft, soft, piece).linearised(y, plain.load_axis).tangent[-1] / soft
     balanced = soft * moving / np.sqrt(max(1.0 - moving**2, _LARGEST_RATIO**-2))
     # the first tangent of a flat start says nothing about the movement further on
     line = Continuation(system, newton, soft if flat else max(balanced, soft), _LOAD_STEP * soft, piece)
-    return line, line.linearised(y, growing)
+    return line, line.linearised(y, line.load_axis)
 
 
 def _reach(line: Continuation, p: np.ndarray, load_factor: float, stiffness: float, width: float) -> float:

@@ -103,9 +103,7 @@ class Segment:
 
     def at_load(self, load_factor: float) -> PathPoint:
         """Return the point with a load factor that lies between those of the ends. Raises SegmentLostError."""
-        load = np.zeros(len(self.chord))
-        load[-1] = 1.0
-        point = self.at(self._fraction(load_factor), normal=load)
+        point = self.at(self._fraction(load_factor), normal=self.line.load_axis)
         point.y[-1] = load_factor
         return point
 

@@ -11,21 +11,176 @@ from scipy.linalg import LinAlgError
 from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
+from beamfem.precision.roundoff import FEW_DIGITS, remainder
 from beamfem.progress import progress
+from beamfem.results.full_turns import first_turns
 from beamfem.results.path import Bifurcation, Path, PathState
 from beamfem.results.solution_checks import advice, warned
+from beamfem.results.status import Statistics, Status
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 from beamfem.solve.continuation.steps import Refused, Step, longest_step, take_step, too_small
 from beamfem.solve.newton.iteration import Newton, require_newton
-from beamfem.solve.paths.branches import leave
-from beamfem.solve.paths.path_record import PathRecord
 from beamfem.solve.start.functions_of_time import SAME, Jump, functions_of_time, jumps_between, kinks_between
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.partial_results import kept
 from beamfem.solve.start.start_checks import refuse_frame, refuse_memory
 from beamfem.solve.statics.preload import first_equilibrium, nothing_acts
 from beamfem.validation import count, finite, function_of_one, optional, positive, shown
+
+_SAME_POINT = 1e-5  # lengths of the model, radians: bifurcations are located to about 1e-8
+
+
+class PathRecord:
+    """Results so far; rows: points y (n + 1,), whether they are stable, and counted rotations (m,) [rad].
+
+    One call adds a row, so that rows are complete after an interruption.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        # for unsymmetric tangents the signs of pivots do not determine stability
+        self.symmetric = system_of(model, static=True).symmetric
+        self.rows: list[tuple[np.ndarray, bool, np.ndarray]] = []
+        self.limit_points: list[PathState] = []
+        self.bifurcations: list[Bifurcation] = []
+        self.iterations = 0
+        self.cuts = 0
+        self.ended = "the path was not followed to its end"
+        self.status = Status.STOPPED
+
+    def add(self, y: np.ndarray, stable: bool, turned: np.ndarray | None = None) -> None:
+        """Add a point y (n + 1,); turned (m,) [rad]: see `PathState`, by default continued from the last point."""
+        self.rows.append((y, stable, self._turned(y) if turned is None else turned))
+
+    def end(self, why: str) -> None:
+        """Record that the path is complete, and why it ends there."""
+        self.ended, self.status = why, Status.COMPLETED
+
+    @property
+    def last(self) -> PathState:
+        y, stable, _ = self.rows[-1]
+        return self.state(y, stable if self.symmetric else None)
+
+    def add_critical(self, line: Continuation, step: Step, last: PathPoint) -> None:
+        """Add the limit points and bifurcations of a step up to its last point."""
+        segment = step.segment
+        fraction = line.dot(last.y - segment.before.y, segment.chord) / line.dot(segment.chord, segment.chord)
+        for x in step.limits:
+            if x <= fraction:
+                self.limit_points.append(self.state(segment.critical(x)))
+        for crossing in step.crossings:
+            if crossing.fraction <= fraction:
+                state = vars(self.state(crossing.y))
+                self.bifurcations.append(Bifurcation(**state, mode=crossing.mode[:-1], tangent=crossing.tangent))
+
+    def returns_to(self, line: Continuation, start: Bifurcation) -> bool:
+        """Return whether one of the bifurcations found is that from which the branch starts."""
+        changes = [np.append(found.p - start.p, found.at - start.at) for found in self.bifurcations]
+        return any(line.length(change) < _SAME_POINT for change in changes)
+
+    def state(self, y: np.ndarray, stability: bool | None = False) -> PathState:
+        """Return the state of y (n + 1,), coordinates and load factor; stability: whether it is stable, if known."""
+        zeros = np.zeros(self.model.size)
+        turned = self._turned(y)
+        return PathState(y[:-1], zeros, zeros, float(y[-1]), self.model, stability=stability, turned=turned)
+
+    def _turned(self, y: np.ndarray) -> np.ndarray:
+        """Return the rotations (m,) [rad] of `first_turns` in y (n + 1,), continued from the last point."""
+        last = self.rows[-1][2] if self.rows else np.zeros(len(self.model.numbered.uncounted))
+        return first_turns(self.model, y[:-1], last)
+
+    def path(self) -> Path:
+        rows, stable, turned = map(np.array, zip(*self.rows, strict=True))
+        system = system_of(self.model, static=True)
+        digits = remainder(system, rows[-1, :-1], float(rows[-1, -1])).digits
+        ended = self.ended
+        if digits < FEW_DIGITS:
+            ended += f"; round-off leaves {digits:.0f} digits of the forces"
+        statistics = Statistics(self.iterations, len(rows) - 1, self.cuts, ended, self.status, digits=digits)
+        zeros = np.zeros((len(rows), self.model.size))
+        states = rows[:, :-1], zeros, zeros.copy()
+        return Path(
+            self.model,
+            True,
+            rows[:, -1],
+            *states,
+            statistics,
+            stability=stable if self.symmetric else None,
+            turned=turned,
+            limit_points=tuple(self.limit_points),
+            bifurcations=tuple(self.bifurcations),
+        )
+
+
+_FIRST_MODE = 0.02  # distance along the mode of the first search: lengths of the model, radians
+_TRIES = 20
+_ALIKE = 0.1  # [rad]: directions within this angle are the same, since branches bend
+_ALONG = 1e-3  # of a mode: a smaller component normal to the path means that the path is tangential to it
+
+
+def leave(
+    line: Continuation, bifurcation: Bifurcation, direction: int, passed: Callable[[PathPoint], bool]
+) -> PathPoint | str:
+    """Return a point of the branch close to a bifurcation, or why there is none.
+
+    passed: whether a point lies beyond the end of the path; then one closer to the bifurcation is looked for.
+    It is the equilibrium in the plane normal to the mode at a small distance along it. The component of the mode along
+    the path that was followed is removed, so that this path does not meet the plane. If several modes become soft at
+    once, branches leave along some of their combinations only; an equilibrium found in the same direction at two
+    distances is on a branch that starts here, however far it is from the mode.
+    """
+    start = np.append(bifurcation.p, bifurcation.at)
+    try:
+        way = direction * _other_way(line, start, bifurcation)
+    except LinAlgError:
+        return "the tangent is singular"
+    distance, reason = _FIRST_MODE, ""
+    others: list[np.ndarray] = []  # equilibria found away from the mode
+    for _ in range(_TRIES):
+        step = distance * way
+        corrected = line.correct(start + step, line.stresses(start, step), way)
+        reason = corrected.ended.value
+        if corrected.ended.good:
+            moved = corrected.y - start
+            if line.length(moved) < 2.0 * distance:
+                equilibria = [corrected.y]
+            else:
+                reason = "the equilibrium beside it is far away"
+                equilibria = [y for y in others if _same_way(line, y - start, moved)]
+                others.append(corrected.y)
+            try:
+                if equilibria:
+                    found = line.linearised(equilibria[0], equilibria[0] - start)
+                    if not passed(found):
+                        return found
+                    reason, others = "the path ends next to the bifurcation", []
+            except LinAlgError:
+                reason = "the tangent is singular"
+        distance *= 0.5
+    return reason
+
+
+def _same_way(line: Continuation, one: np.ndarray, other: np.ndarray) -> bool:
+    """Return whether two changes of y (n + 1,) have the same direction."""
+    difference = one / line.length(one) - other / line.length(other)
+    return line.length(difference) < _ALIKE
+
+
+def _other_way(line: Continuation, start: np.ndarray, bifurcation: Bifurcation) -> np.ndarray:
+    """Return the unit change of y (n + 1,) that is normal to the path and keeps the balance to first order.
+
+    It is along the mode or, if the path itself is, towards larger load factors. Raises LinAlgError.
+    """
+    along = bifurcation.tangent / line.length(bifurcation.tangent)
+    mode = np.append(bifurcation.mode, 0.0)
+    mode /= line.length(mode)
+    across = mode - line.dot(mode, along) * along
+    if line.length(across) < _ALONG:
+        across = line.linearised(start, line.load_axis).tangent
+        across = across - line.dot(across, mode) * mode
+    return np.asarray(across / line.length(across))
+
 
 _FIRST_STEP = 2e-3  # along the path, see Continuation
 _ITERATIONS = 15  # a shorter step is cheaper than more iterations

@@ -20,7 +20,7 @@ from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.stability.linearised import linear_reach, linear_solution, linearised_loads
 from beamfem.solve.stability.loading_path import InvertedError, LoadingPath, PathLostError
 from beamfem.solve.stability.path_critical_points import LIMIT_POINT, Critical, critical_points
-from beamfem.solve.stability.stable_start import stable_start
+from beamfem.solve.stability.stability import stable_start
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.start_checks import refuse_frame, refuse_memory
 from beamfem.tables import as_pandas

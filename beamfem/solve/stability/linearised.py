@@ -17,7 +17,7 @@ from beamfem.linalg.lapack import eig, eigh, qr
 from beamfem.linalg.tangent import UNROTATED, Factorised
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes, weak_stiffness
 from beamfem.solve.modes.pencil import is_symmetric
-from beamfem.solve.stability.model_size import largest_movement
+from beamfem.solve.stability.loading_path import largest_movement
 from beamfem.solve.start.functions_of_time import functions_of_time
 
 _WIDTH = 1e-4  # of the load factor: loads with amplitudes are differentiated over it

@@ -1,4 +1,4 @@
-"""A loading path: its points, and the stiffness of the softest modes there."""
+"""A loading path: its points, the stiffness of the softest modes there, and sizes of movements along it."""
 
 from dataclasses import dataclass
 
@@ -7,6 +7,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.assembly.system import System
 from beamfem.errors import BeamfemError, ConvergenceError
+from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.continuation.continuation import PathPoint, begin
@@ -14,7 +15,45 @@ from beamfem.solve.continuation.steps import longest_step, too_small
 from beamfem.solve.modes.lowest_modes import lowest_pairs
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.newton.iteration import Newton, Termination
-from beamfem.solve.stability.model_size import largest_displacement, size_of
+
+
+def size_of(system: System) -> float:
+    """Return twice the largest distance [m] of a node from the centre of all beams, the length of a straight one.
+
+    `System.extent` is no measure of results: it is the length of the longest beam, and halves are shorter.
+    """
+    chains = [mesh.position for mesh in system.model.meshes]
+    steps, middles = (np.concatenate([of(chain) for chain in chains]) for of in (_steps, _middles))
+    lengths = np.hypot(*steps.T)
+    centre = lengths @ middles / lengths.sum()
+    return 2.0 * float(np.hypot(*(np.concatenate(chains) - centre).T).max())
+
+
+def largest_displacement(system: System, change: np.ndarray) -> float:
+    """Return the largest displacement [m] of a node by a change (n,)."""
+    places = np.concatenate([block.dof[:, :2] for block in system.blocks])
+    return float(np.hypot(*change[places.T]).max())
+
+
+def largest_movement(system: System, change: np.ndarray) -> float:
+    """Return the largest component of a change (n,): displacements in sizes of the model, gradients, angles [rad]."""
+    padded = np.append(change, 0.0)
+    largest = largest_displacement(system, change) / size_of(system)
+    for block in system.blocks:
+        plain = np.isin(block.node_kind, (GRADIENTS, ROTATED_GRADIENTS))
+        rotations, gradients = block.dof[~plain, 2:], block.dof[plain, 2:].reshape(-1, 2)
+        moved = np.hypot(*padded[gradients].T), np.abs(padded[rotations])
+        largest = max(largest, *(float(values.max(initial=0.0)) for values in moved))
+    return largest
+
+
+def _steps(chain: np.ndarray) -> np.ndarray:
+    return np.diff(chain, axis=0)
+
+
+def _middles(chain: np.ndarray) -> np.ndarray:
+    return 0.5 * (chain[1:] + chain[:-1])
+
 
 _ITERATIONS = 15
 _FIRST_STEP = 0.02

@@ -69,11 +69,7 @@ class Window:
 
     def weights(self, x: float) -> np.ndarray:
         """Return the weights (points,) of the polynomial through all points, at a distance x."""
-        differences = self.at[:, None] - self.at
-        np.fill_diagonal(differences, 1.0)
-        parts = np.tile(x - self.at, (len(self.at), 1)) / differences
-        np.fill_diagonal(parts, 1.0)
-        return np.asarray(parts.prod(axis=1))
+        return interpolation_weights(self.at, x)
 
     @cached_property
     def _soft(self) -> slice:

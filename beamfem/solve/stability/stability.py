@@ -1,13 +1,19 @@
-"""Whether the rows of a static solution are stable."""
+"""Whether states are stable, and the stable equilibrium that a search for buckling starts from."""
 
 import numpy as np
 
-from beamfem.assembly.equations import STATICS, linearise, with_stresses
+from beamfem.assembly.equations import STATICS, linearise, load_change, with_stresses
 from beamfem.assembly.system import System, system_of
+from beamfem.errors import ConvergenceError, InputError
 from beamfem.precision.mixed_tangent import MixedTangent
 from beamfem.precision.roundoff import counts_with_stresses
-from beamfem.results.solution import Solution
+from beamfem.results.solution import Solution, State
 from beamfem.solve.modes.modes import solve_modes
+from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.newton.newton import solve_equilibrium
+from beamfem.solve.start.start_checks import left_over
+from beamfem.solve.start.start_state import resting_state
+from beamfem.solve.statics.preload import first_equilibrium
 
 _MODES = 12  # lowest modes that are checked for flutter under follower loads
 
@@ -34,3 +40,44 @@ def unstable_directions(system: System, p: np.ndarray, load_factor: float, mixed
 
 def _none_grows(solution: Solution, row: int, count: int) -> bool:
     return not np.any(solve_modes(solution.model, count, about=solution[row]).growth > 0.0)
+
+
+_WIDTHS = (1e-6, *np.linspace(0.1, 1.0, 10).tolist(), 3.0, 10.0)  # of the load factor: amplitudes may be flat at first
+_ROUND_OFF = 8.0 * np.finfo(float).eps  # of the largest force: what is left of one along the normal of a roller
+
+
+def stable_start(system: System, about: State | Solution | None) -> tuple[np.ndarray, float]:
+    """Return the state p (n,) and load factor to start from. Raises InputError, ConvergenceError."""
+    p, load_factor = resting_state(system, about)
+    if left_over(system, p, load_factor) > 0.0:
+        if about is None:
+            equilibrium, description = first_equilibrium(system, Newton()), "under the loads that do not scale"
+        else:
+            equilibrium = solve_equilibrium(system, p, load_factor, Newton())
+            description = f"at load factor {load_factor:g} to start from"
+        if not equilibrium.ended.good:
+            raise ConvergenceError(f"no equilibrium {description}: {equilibrium.ended.value}")
+        p = equilibrium.state
+    # imposed strains, as of heat, may load a beam between its supports without moving it
+    imposed = any(block.imposed is not None for block in system.blocks)
+    grows = (_moves(system, load_change(system, p, load_factor, load_factor + width)) for width in _WIDTHS)
+    if not imposed and not any(grows):
+        raise InputError(
+            "no load grows with the load factor, or supports take it up, so none can buckle the model",
+            remedy="add one with scale=True",
+        )
+    unstable = unstable_directions(system, p, load_factor, mixed=False)
+    if unstable > 0 and counts_with_stresses(system, p, load_factor):
+        unstable = unstable_directions(system, p, load_factor, mixed=True)
+    if unstable > 0:
+        raise InputError(
+            f"the state at load factor {load_factor:g} that buckling starts from is unstable already, "
+            f"in {unstable} direction(s)"
+        )
+    return p, load_factor
+
+
+def _moves(system: System, change: np.ndarray) -> bool:
+    """Return whether forces (n,) that grow with the load factor are more than supports take up, and round-off."""
+    acting = np.abs(system.along_free(change)) * system.scale[system.free_dofs]
+    return bool(np.any(acting > _ROUND_OFF * np.max(np.abs(change) * system.scale)))

@@ -83,11 +83,9 @@ class PathFollower:
         path is to be left; PathLostError if no step along the path is accepted elsewhere, OutOfReachError if load
         factor 1 is too far at the present step length.
         """
-        growing = np.zeros(len(p) + 1)
-        growing[-1] = 1.0
         try:
             line = replace(self.line, piece=(load_factor, end)) if self.line.functions_of_time else self.line
-            point = line.linearised(np.append(p, load_factor), growing)
+            point = line.linearised(np.append(p, load_factor), line.load_axis)
         except LinAlgError:
             raise PathLostError("the tangent is singular there") from None
         before: PathPoint | None = None

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import beamfem as bf
-from beamfem.section.section_stiffness import StiffnessSection
+from beamfem.section.moments import StiffnessSection
 
 
 @dataclass(frozen=True)

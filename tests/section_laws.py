@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.section.section_stiffness import StiffnessSection
+from beamfem.section.moments import StiffnessSection
 
 _ITERATIONS = 60
 

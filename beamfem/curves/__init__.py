@@ -3,12 +3,11 @@
 from beamfem.curves.arc import Arc
 from beamfem.curves.bspline import BSpline
 from beamfem.curves.chain import Chain
-from beamfem.curves.conic import elliptic_arc
 from beamfem.curves.curve import Curve
-from beamfem.curves.hermite import spline_through_hermite, without_removable_knots
 from beamfem.curves.line import Line
 from beamfem.curves.parametric import Parametric
 from beamfem.curves.polyline import Polyline
+from beamfem.curves.splines import elliptic_arc, spline_through_hermite, without_removable_knots
 
 __all__ = [
     "Arc",

@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam
 from beamfem.model.jumps import find_jumps
-from beamfem.validation import function_of_one, shown
+from beamfem.validation import called, function_of_one, number_table, shown
 
 
 class _Varying(Protocol):
@@ -77,3 +77,16 @@ def check_along(load: AlongBeam) -> None:
 def ends_and_middle(beam: Beam) -> np.ndarray:
     """Return the arc lengths (3,) [m] at which values that vary along a beam are checked."""
     return np.array([0.0, 0.5, 1.0]) * beam.curve.length
+
+
+def values_along(
+    load: object, member: str, function: Callable[[np.ndarray], np.ndarray], arc_length: np.ndarray, columns: int
+) -> np.ndarray:
+    """Return the values (n, columns) of a member of a load at arc lengths (n,) [m]. Raises InputError for others."""
+    what = f"{member} of {type(load).__name__}"
+    table = number_table(what, called(what, function, arc_length), columns)
+    if len(table) != len(arc_length):
+        raise InputError(
+            f"{what} must have a row for each of the {len(arc_length)} requested arc lengths, got {len(table)} rows"
+        )
+    return table

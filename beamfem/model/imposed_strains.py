@@ -8,9 +8,8 @@ import numpy as np
 
 from beamfem.element.coordinates import ShearFree
 from beamfem.errors import InputError
-from beamfem.model.along_beam import AlongBeam, check_along, ends_and_middle, require_names
+from beamfem.model.along_beam import AlongBeam, check_along, ends_and_middle, require_names, values_along
 from beamfem.model.beam import Beam, require_beam
-from beamfem.model.load_arrays import values_along
 from beamfem.model.load_base import Load
 from beamfem.model.load_shapes import LoadShape, Strains
 from beamfem.model.state_protocols import Placed

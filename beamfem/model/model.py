@@ -19,8 +19,7 @@ from beamfem.model.imposed_strains import ImposedStrain
 from beamfem.model.joints import Joint
 from beamfem.model.load_base import BodyLoad, CompositeLoad, LineLoad, Load, MovingLoad, PointLoad
 from beamfem.model.rotating_frame import RotatingFrame
-from beamfem.model.supports import LineSupport, PointSupport, Support
-from beamfem.model.supports_along import SupportsAlong
+from beamfem.model.supports import LineSupport, PointSupport, Support, SupportsAlong
 from beamfem.units import Units, units_of
 from beamfem.validation import items, members, of_package, shown
 
@@ -177,10 +176,8 @@ class Model:
         return self._with(**changes)
 
     def _with(self, **changes: Any) -> "Model":
-        from beamfem.model.sharing import share
-
         model = replace(self, **changes)
-        share(self, model)
+        _share(self, model)
         return model
 
     def __getstate__(self) -> dict[str, object]:
@@ -476,3 +473,29 @@ class Model:
         from beamfem.view.summary import model_table
 
         return model_table(self)
+
+
+def _share(old: Model, new: Model) -> None:
+    """Give a new model the meshes of an old one if their nodes are the same, and its tables if sizes of loads differ.
+
+    Both have the same beams and joints.
+    """
+    same = all(map(_same, (old.supports, old.at_points, _layouts(old)), (new.supports, new.at_points, _layouts(new))))
+    if same or old.nodes_needed == new.nodes_needed:
+        vars(new)["numbered"] = old.numbered
+    # the stiffness of a connector may depend on gravity
+    if same and (not new.at_points or _same(old.gravity, new.gravity)):
+        vars(new)["tables"] = old.tables
+
+
+def _layouts(model: Model) -> list[Any]:
+    """Return the loads of a model without their sizes, see `Load.layout`."""
+    layouts = (load.layout for load in model.loads)
+    return [layout for layout in layouts if layout is not None]
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Return whether two sequences hold the same objects, or equal points and flags of loads."""
+    return len(one) == len(other) and all(
+        a is b or (type(a) is tuple and a == b) for a, b in zip(one, other, strict=True)
+    )

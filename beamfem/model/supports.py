@@ -1,7 +1,9 @@
 """The base classes of supports, at a point or along a beam."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from bisect import bisect_left, bisect_right
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -174,3 +176,20 @@ def _by_direction(what: str, function: Callable[[], Any], known: tuple[str, ...]
     for direction in values:
         require_known(f"{what} has the unknown direction {shown(direction)}", direction, known)
     return values
+
+
+class SupportsAlong:
+    """The supports at points of a model, sorted along each beam."""
+
+    def __init__(self, supports: Iterable[PointSupport]) -> None:
+        found: defaultdict[int, list[PointSupport]] = defaultdict(list)
+        for support in sorted(supports, key=lambda support: support.point.fraction):
+            found[id(support.point.beam)].append(support)
+        self._beams = {beam: ([support.point.fraction for support in own], own) for beam, own in found.items()}
+
+    def near(self, point: Point, distance: float) -> list[PointSupport]:
+        """Return the supports on a point's beam whose fractions differ from the point's by less than a distance [-]."""
+        fractions, supports = self._beams.get(id(point.beam), ([], []))
+        begin = bisect_left(fractions, point.fraction - distance)
+        end = bisect_right(fractions, point.fraction + distance)
+        return [support for support in supports[begin:end] if abs(support.point.fraction - point.fraction) < distance]

@@ -4,9 +4,8 @@ from beamfem.section.fibre_laws import ElasticPlastic, FibreLaw, FibreLawWithHis
 from beamfem.section.fibres import ElasticFibreSection, Fibres, RememberingFibreSection
 from beamfem.section.law import RememberingLaw, SectionLaw
 from beamfem.section.layered import Layer, Layered
-from beamfem.section.moments import Section
+from beamfem.section.moments import Section, StiffnessSection
 from beamfem.section.section_shapes import Circle, Rectangle, ShapedSection, Tube
-from beamfem.section.section_stiffness import StiffnessSection
 
 __all__ = [
     "Circle",

@@ -3,10 +3,7 @@
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.installed_memory import USABLE_FRACTION, in_gib, installed_memory
 from beamfem.validation import count, positive
-
-_ELEMENT = 64  # bytes per element: its fraction as a float in a tuple, and in intermediate arrays
 
 
 def graded(elements: int, ratio: float) -> tuple[float, ...]:
@@ -27,12 +24,6 @@ def graded(elements: int, ratio: float) -> tuple[float, ...]:
     [0.0, 0.143, 0.429, 1.0]
     """
     number, ratio = count("elements", elements), positive("ratio", ratio)
-    memory = installed_memory()
-    if memory is not None and number * _ELEMENT > USABLE_FRACTION * memory:
-        raise InputError(
-            f"{number:.3g} elements need {in_gib(number * _ELEMENT)} at the least, and this computer has "
-            f"{in_gib(memory)}; take fewer"
-        )
     growth = ratio ** (1.0 / max(number - 1, 1))
     ends = np.cumsum(np.concatenate([[0.0], growth ** np.arange(number)]))
     ends /= ends[-1]

@@ -151,7 +151,6 @@ RESULTS = {
     "mode as True": (lambda s, out: bf.solve_modes(CANTILEVER, 1).solution(True), BAD, "mode must be a whole"),
     "mode of no size": (lambda s, out: bf.solve_modes(CANTILEVER, 1).solution(0, 0.0), BAD, "amplitude must be"),
     "mode of 1e300 m": (lambda s, out: bf.solve_modes(CANTILEVER, 1).solution(0, 1e300), BAD, "cannot square"),
-    "mode of 1e15 frames": (lambda s, out: bf.solve_modes(CANTILEVER, 1).solution(frames=10**15), BAD, "computer has"),
     "mode of one frame": (lambda s, out: bf.solve_modes(CANTILEVER, 1).solution(frames=1), BAD, "at least 2"),
 }
 

@@ -198,11 +198,11 @@ def test_a_start_whose_nodes_a_part_placed_names_it_and_what_keeps_them(before, 
     assert motion.displacement(own.end)[0] == pytest.approx(static.displacement(own.end)[-1], abs=1e-15)
 
 
-def test_many_points_that_placed_nodes_are_counted():
+def test_of_many_points_that_placed_nodes_the_first_is_named():
     own = straight(bf.CRBF(3), 4)
     loads = [bf.PointForce(own.at(share), FORCE) for share in (0.1, 0.2, 0.3, 0.4, 0.6)]
     state = bf.solve_static(parts_of_a_rod(own, loads))[-1]
-    with pytest.raises(bf.InputError, match=r"PointForce at fraction 0\.3 and 2 more, .* at each point to this model"):
+    with pytest.raises(bf.InputError, match=r"PointForce at fraction 0\.1, .* at this point to this model"):
         bf.simulate(parts_of_a_rod(own, []), 1e-4, 1e-4, start=state)
 
 

@@ -24,7 +24,7 @@ from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.modes.participation import participation
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.modes.rigid_modes import unresisted
-from beamfem.solve.start.start_checks import refuse_dampers, require_equilibrium, require_fits_memory
+from beamfem.solve.start.start_checks import refuse_dampers, require_equilibrium
 from beamfem.solve.start.start_state import resting_state
 from beamfem.tables import as_pandas
 from beamfem.validation import count as whole_number
@@ -186,7 +186,6 @@ class Modes:
         mode = number_below("mode", mode, len(self))
         if whole_number("frames", frames) < 2:
             raise InputError("frames must be at least 2")
-        require_fits_memory(frames, self.model.size)
         if amplitude is None:
             amplitude = 0.1 * max(beam.curve.length for beam in self.model.beams)
         amplitude = squared(positive)("amplitude", amplitude)

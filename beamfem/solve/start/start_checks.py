@@ -149,15 +149,5 @@ def require_memory(coordinates: int, duration: float, step: float, save_every: i
     raise InputError(f"{message}; take a larger step, or a shorter duration and continue from the last state")
 
 
-def require_fits_memory(states: int, coordinates: int) -> None:
-    """Raise InputError if this many states of a mode need more memory [bytes] than this computer has."""
-    memory, needed = installed_memory(), float(states) * 2 * _STATE * coordinates
-    if memory is not None and needed > USABLE_FRACTION * memory:
-        raise InputError(
-            f"{states:.3g} frames of {coordinates} coordinates need {in_gib(needed)}, and this computer has "
-            f"{in_gib(memory)}; take fewer"
-        )
-
-
 def _ordinal(number: int) -> str:
     return "one" if number == 1 else f"{number}th"

@@ -20,7 +20,6 @@ from beamfem.solve.start.start_checks import left_over
 from beamfem.value_keys import equal
 
 _SAME_PLACE = 1e-9  # of the length of a beam: tolerance between positions of nodes
-_SEVERAL = 3  # points that a message names
 _ADVICE = "take it from a model of the same beams and elements, whose supports, loads and joints are at the same points"
 
 
@@ -166,27 +165,20 @@ def _divided_equally(old: BeamMesh, new: BeamMesh) -> bool:
 
 
 def _parted(source: Model, target: Model, old: BeamMesh, new: BeamMesh, name: str) -> str:
-    """Return the message that parts inside elements place nodes in one model only; empty if they do not.
+    """Return the message that a part inside an element places a node in one model only; empty if none does.
 
     A divided element has more freedom than a whole one, so that no transfer between them is exact.
     """
-    beam, message = beam_in_words(target.beams, target.number_of(new.beam)), []
-    for one, mesh, other in ((source, old, new), (target, new, old)):
-        requested = required_nodes(one)[one.number_of(mesh.beam)]
+    beam = beam_in_words(target.beams, target.number_of(new.beam))
+    for one, mesh, other, lacks in ((source, old, new, "this model"), (target, new, old, f"the model of {name}")):
         fractions = other.vertices / other.vertices[-1]
-        only = {at: part for at, part in sorted(requested) if np.abs(fractions - at).min() > _SAME_PLACE}
-        if not only:
-            continue
-        parts = ", ".join(f"{part} at fraction {at:.12g}" for at, part in list(only.items())[:_SEVERAL])
-        if len(only) > _SEVERAL:
-            parts += f" and {len(only) - _SEVERAL} more"
-        has, lacks = (f"the model of {name}", "this model") if one is source else ("this model", f"the model of {name}")
-        nodes, point = ("a node", "this point") if len(only) == 1 else ("nodes", "each point")
-        message.append(
-            f"{has} has {nodes} on {beam} for {parts}, and {lacks} has none there; add a PointForce of (0, 0) at "
-            f"{point} to {lacks}"
-        )
-    return "; and ".join(message)
+        for at, part in sorted(required_nodes(one)[one.number_of(mesh.beam)]):
+            if np.abs(fractions - at).min() > _SAME_PLACE:
+                return (
+                    f"there is a node on {beam} for {part} at fraction {at:.12g}, and {lacks} has none there; add a "
+                    f"PointForce of (0, 0) at this point to {lacks}"
+                )
+    return ""
 
 
 def _described(model: Model, mesh: BeamMesh) -> str:

@@ -43,7 +43,9 @@ def negative_eigenvalues(matrix: csr_array) -> int | None:
         front[waiting:, waiting:] = _rows_of(ordered, start, end, rows)
         positions = np.append(np.arange(waiting), waiting + np.searchsorted(rows, active))
         front[np.ix_(positions, positions)] += carried
-        eliminated = _eliminate(front, inside) if end < size else (_negative(front), 0, carried)
+        if end == size:
+            return count + _negative_blocks(*symmetric_factors(front))
+        eliminated = _eliminate(front, inside)
         if eliminated is None:
             fewest = 2 * (end - start)
             continue
@@ -77,11 +79,6 @@ def _eliminate(front: np.ndarray, inside: int) -> tuple[int, int, np.ndarray] | 
     schur = front[inside:, inside:] - (beside[firm].T / values[firm]) @ beside[firm]
     carried = np.block([[np.diag(values[~firm]), beside[~firm]], [beside[~firm].T, schur]])
     return int(np.sum(values[firm] < 0.0)), waiting, carried
-
-
-def _negative(matrix: np.ndarray) -> int:
-    """Return the number of negative eigenvalues of a dense symmetric matrix."""
-    return _negative_blocks(*symmetric_factors(matrix))
 
 
 def _rows_of(upper: csr_array, start: int, end: int, rows: np.ndarray) -> np.ndarray:

@@ -4,7 +4,6 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 from skfem import MeshLine
@@ -88,7 +87,10 @@ class Grid:
 
     def locate(self, fraction: float) -> tuple[int, float]:
         """Return the element at a fraction [-] of the beam's arc length, and xi in [0, 1] in it."""
-        along = self._along(fraction * float(self.vertices[-1]))
+        along = fraction * float(self.vertices[-1])
+        if self.beam.elements == "knots":
+            assert isinstance(self.beam.curve, BSpline)
+            along = float(self.beam.curve.parameter(np.array([along]))[0])
         element = min(max(int(self.parameter.searchsorted(along, side="right")) - 1, 0), self.elements - 1)
         start, end = self.parameter[element : element + 2].tolist()
         return element, min(max((along - start) / (end - start), 0.0), 1.0)
@@ -139,13 +141,6 @@ class Grid:
         near = distances(self.vertices, np.array(jumps)) < _INSIDE * length
         inside = np.where(near, _INSIDE * length, 0.0)
         return np.clip(arc, (self.vertices + inside)[element], (self.vertices - inside)[element + 1])
-
-    def _along(self, arc_length: float) -> float:
-        """Return the mesh coordinate at an arc length [m]."""
-        if self.beam.elements == "knots":
-            assert isinstance(self.beam.curve, BSpline)
-            return float(self.beam.curve.parameter(np.array([arc_length]))[0])
-        return arc_length
 
 
 def make_grid(beam: Beam, fractions: Iterable[float]) -> Grid:
@@ -237,27 +232,6 @@ def _straight_grids(beams: Sequence[Beam], elements: int, field: Field) -> list[
     """Return the grids of straight beams with the same number of equal elements of one field."""
     lines = [beam.curve for beam in beams if isinstance(beam.curve, Line)]
     nodes = np.asarray(field.nodes, dtype=float)  # a user's field may return any sequence
-    division = _divided(lines, elements, nodes)
-    parts = zip(beams, division.vertices, division.arc, division.position, division.tangent, strict=True)
-    return [
-        Grid(beam, ends, ends, 1.0, division.node, arc, position, tangent, division.speed)
-        for beam, ends, arc, position, tangent in parts
-    ]
-
-
-class _Divided(NamedTuple):
-    """Straight lines (n,) divided into equal elements: see `Grid`."""
-
-    vertices: np.ndarray
-    node: np.ndarray
-    arc: np.ndarray
-    position: np.ndarray
-    tangent: np.ndarray
-    speed: np.ndarray
-
-
-def _divided(lines: Sequence[Line], elements: int, nodes: np.ndarray) -> _Divided:
-    """Return straight lines divided into equal elements with nodes (nn,) at these xi in [0, 1]."""
     length = np.array([line.length for line in lines])[:, None]
     start, end = np.array([line.start for line in lines])[:, None], np.array([line.end for line in lines])[:, None]
     last = len(nodes) - 1
@@ -270,4 +244,6 @@ def _divided(lines: Sequence[Line], elements: int, nodes: np.ndarray) -> _Divide
     fraction = (arc / length)[:, :, None]
     position, tangent = (1.0 - fraction) * start + fraction * end, np.empty((*arc.shape, 2))
     tangent[:] = (end - start) / length[:, :, None]
-    return _Divided(vertices, node, arc, position, tangent, np.ones(arc.shape[1]))
+    speed = np.ones(arc.shape[1])
+    parts = zip(beams, vertices, arc, position, tangent, strict=True)
+    return [Grid(beam, ends, ends, 1.0, node, at, r, along, speed) for beam, ends, at, r, along in parts]

@@ -22,7 +22,6 @@ from beamfem.mesh.reference import curvature, reference_axis, sections_at, stati
 from beamfem.model.along_beam import AlongBeam, functions_along, kinks_along
 from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import prescribed_by, remembered, uses_rotations
-from beamfem.model.supports import PointSupport
 from beamfem.section.protocol import CrossSection, HasParts
 from beamfem.value_keys import by_value
 
@@ -254,7 +253,8 @@ def nodes_needed(model: "Model") -> NodesNeeded:
     """Return the nodes that supports, loads and connectors of a model need."""
     asked = zip(model.beams, required_nodes(model), strict=True)
     fractions = [_inside(beam, {fraction for fraction, _ in requested}) for beam, requested in asked]
-    points = [support.point for support in model.point_supports if _turns(support)]
+    turning = (each for each in model.point_supports if "rotation" in (*each.prescribed(), *each.springs()))
+    points = [support.point for support in turning]
     points += [point for connector in model.at_points if uses_rotations(connector) for point in connector.points]
     angled = sorted({(model.number_of(point.beam), point.fraction) for point in points})
     further = sum(
@@ -345,11 +345,6 @@ def _history(grid: Grid, first: int) -> np.ndarray:
         return NO_HISTORY
     shape = grid.elements, grid.beam.element.law_points, len(law.start)
     return np.arange(first, first + prod(shape), dtype=np.int64).reshape(shape)
-
-
-def _turns(support: PointSupport) -> bool:
-    """Return whether a support involves the rotation."""
-    return "rotation" in support.prescribed() or "rotation" in support.springs()
 
 
 def _corners(grid: Grid) -> Sequence[int]:

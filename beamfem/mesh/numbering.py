@@ -42,7 +42,10 @@ def number_nodes(
     angle as a coordinate.
     moving, turning (n, 4): pairs (grid, node, grid, node) with a common position, and with a common rotation.
     """
-    kinds = tuple(_node_kinds(grid) for grid in grids)
+    kinds = tuple(
+        NodeKinds(element.coordinates.code, element.forces.turns_with == "r_x", element.field.vectors, grid.nodes)
+        for element, grid in ((grid.beam.element, grid) for grid in grids)
+    )
     pairs = tuple(map(tuple, moving.tolist())), tuple(map(tuple, turning.tolist()))
     number = _number if sum(kind.nodes for kind in kinds) > _FEW else _cached_number
     numbered = number(kinds, tuple(map(tuple, angled.tolist())), *pairs)
@@ -81,11 +84,6 @@ class Numbered:
     turned: np.ndarray
     parts: tuple[tuple[int, int, int], ...]
     size: int
-
-
-def _node_kinds(grid: Grid) -> NodeKinds:
-    element = grid.beam.element
-    return NodeKinds(element.coordinates.code, element.forces.turns_with == "r_x", element.field.vectors, grid.nodes)
 
 
 def _number(kinds: Sequence[NodeKinds], angled: Pairs, moving: Pairs, turning: Pairs) -> Numbered:

@@ -8,7 +8,6 @@ from beamfem.element.axis import Axis, cross, dot, section_frame
 from beamfem.element.coordinates import across
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, length_rule, r_slots, slots
-from beamfem.element.forces import Forces
 from beamfem.errors import InputError
 from beamfem.mesh.beam_grid import Grid
 from beamfem.model.beam import Beam
@@ -151,8 +150,9 @@ def stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.nd
     beam, forces = grid.beam, grid.beam.element.forces
     if grid.straight and beam.prismatic:
         # the same at all points
-        at, strains = _straight_axis(forces, *grid.tangent[0].tolist())
-        stiffness = _stiffness(beam, 0.0, at)
+        along, none = np.array([grid.tangent[0].tolist()]), np.zeros((1, 2))
+        at = Axis(none, along, none, across(along), none)
+        strains, stiffness = forces.strains(at), _stiffness(beam, 0.0, at)
         return stiffness.repeat(len(element), axis=0), strains.repeat(len(element), axis=0)
     at = reference_axis(grid, element, xi)
     strains = forces.strains(at)
@@ -163,13 +163,6 @@ def stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.nd
         point_axis = Axis(*(getattr(at, name)[i : i + 1] for name in Axis._fields))
         parts.append(_stiffness(beam, arc, point_axis))
     return np.concatenate(parts), strains
-
-
-def _straight_axis(forces: Forces, x: float, y: float) -> tuple[Axis, np.ndarray]:
-    """Return a point of a straight axis along (x, y) and the strain measures (1, ns) there."""
-    along, none = np.array([[x, y]]), np.zeros((1, 2))
-    at = Axis(none, along, none, across(along), none)
-    return at, forces.strains(at)
 
 
 def sections_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> list[CrossSection]:

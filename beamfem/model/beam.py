@@ -126,7 +126,7 @@ class Beam:
             object.__setattr__(self, "elements", _fractions_of(self.elements, self.curve.length))
         elif isinstance(self.elements, str):
             _check_knots(self.elements, self.curve, self.element)
-        elif isinstance(self.elements, int | float | np.generic) or _without_dimensions(self.elements):
+        elif isinstance(self.elements, int | float | np.generic) or getattr(self.elements, "ndim", 1) == 0:
             object.__setattr__(self, "elements", count("elements", self.elements))
         else:
             object.__setattr__(self, "elements", _fractions(self.elements))
@@ -351,10 +351,6 @@ def reference_positions(points: Sequence[Point]) -> np.ndarray:
         start, end = np.array([line.start for line in lines]), np.array([line.end for line in lines])
         result[list(indices)] = (1.0 - fraction) * start + fraction * end
     return result
-
-
-def _without_dimensions(value: object) -> bool:
-    return isinstance(value, np.ndarray) and value.ndim == 0
 
 
 def _fractions(values: Sequence[float] | np.ndarray) -> tuple[float, ...]:

@@ -199,7 +199,8 @@ def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: 
     left = np.zeros(len(p))
     left[free] = system.along_free(unbalanced)
     worst = float(np.max(np.abs(left) * system.scale, initial=0.0))
-    centre = _centre(system, p)
+    nodes = np.concatenate([block.dof[:, :2] for block in system.blocks])
+    centre = tuple(p[nodes].mean(axis=0).tolist())
     for motion in (RigidVelocity((1.0, 0.0)), RigidVelocity((0.0, 1.0)), RigidVelocity((0.0, 0.0), 1.0, centre)):
         size = 1.0 if motion.angular else system.extent
         worst = max(worst, size * abs(float(rigid_rates(system, motion, p) @ left)))
@@ -212,10 +213,3 @@ def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: 
     ):
         return MOST_DIGITS
     return min(max(float(np.log10(acting / worst)), 0.0), MOST_DIGITS) if acting > 0.0 else 0.0
-
-
-def _centre(system: System, p: np.ndarray) -> tuple[float, float]:
-    """Return the mean position of the nodes [m]."""
-    nodes = np.concatenate([block.dof[:, :2] for block in system.blocks])
-    x, y = p[nodes].mean(axis=0)
-    return float(x), float(y)

@@ -87,8 +87,8 @@ def stress_errors(block: Block, names: tuple[str, ...]) -> np.ndarray:
     else:
         of_e[1] = slope[last]
     strain = np.zeros((2, *block.reference.shape))
-    for measure, error in enumerate(_strain_errors(block.measures, of_r, of_d, of_e)):
-        strain[..., measure] = error
+    for measure, vectors in enumerate(depends(block.measures)[0]):
+        strain[..., measure] = _total((of_r, of_d, of_e), vectors)
     return np.einsum("cqij,pcqj->pcqi", np.abs(block.stiffness), strain)
 
 
@@ -100,9 +100,10 @@ def _sums(table: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
 
 def _of_slots(block: Block, names: tuple[str, ...]) -> np.ndarray:
     """Return the force (2, nc, nv) on nodal vectors for unit errors of positions, and of all other vectors."""
-    along, across = _along_and_across(block.scale.shape[1], len(names))
+    slot, per_node = np.arange(block.scale.shape[1]), len(names)
+    along, across = slot[slot % per_node < per_node - 1], slot[per_node - 1 :: per_node]  # interpolate r0, and d
     slope, stress = np.abs(block.slope), stress_errors(block, names).transpose(3, 0, 1, 2)
-    on_r, on_d, on_e = (block.weight * force for force in _forces(block.measures, stress))
+    on_r, on_d, on_e = (block.weight * _total(stress, strains) for strains in depends(block.measures)[1])
     result = np.empty((2, *block.scale.shape))
     on_along = np.einsum("pcq,cqi->pci", on_r, slope[:, :, along])
     on_across = np.einsum("pcq,qi->pci", on_d, np.abs(block.director))
@@ -112,22 +113,6 @@ def _of_slots(block: Block, names: tuple[str, ...]) -> np.ndarray:
         on_across += np.einsum("pcq,cqi->pci", on_e, slope[:, :, across])
     result[:, :, along], result[:, :, across] = on_along, on_across
     return result
-
-
-def _along_and_across(count: int, per_node: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the numbers of the nodal vectors that interpolate r0, and of those that interpolate d, among all."""
-    slot = np.arange(count)
-    return slot[slot % per_node < per_node - 1], slot[per_node - 1 :: per_node]
-
-
-def _strain_errors(measures: int, of_r: np.ndarray, of_d: np.ndarray, of_e: np.ndarray) -> list[np.ndarray]:
-    """Return the errors of the strain measures for errors of r0', d and the third argument, which are of size one."""
-    return [_total((of_r, of_d, of_e), vectors) for vectors in depends(measures)[0]]
-
-
-def _forces(measures: int, s: np.ndarray) -> list[np.ndarray]:
-    """Return the sizes of the forces on r0', d and the third argument for stress resultants (ns, nc, nq)."""
-    return [_total(s, strains) for strains in depends(measures)[1]]
 
 
 def _total(parts: Sequence[np.ndarray] | np.ndarray, chosen: tuple[int, ...]) -> np.ndarray:

@@ -23,7 +23,8 @@ def size_of(system: System) -> float:
     `System.extent` is no measure of results: it is the length of the longest beam, and halves are shorter.
     """
     chains = [mesh.position for mesh in system.model.meshes]
-    steps, middles = (np.concatenate([of(chain) for chain in chains]) for of in (_steps, _middles))
+    steps = np.concatenate([np.diff(chain, axis=0) for chain in chains])
+    middles = np.concatenate([0.5 * (chain[1:] + chain[:-1]) for chain in chains])
     lengths = np.hypot(*steps.T)
     centre = lengths @ middles / lengths.sum()
     return 2.0 * float(np.hypot(*(np.concatenate(chains) - centre).T).max())
@@ -45,14 +46,6 @@ def largest_movement(system: System, change: np.ndarray) -> float:
         moved = np.hypot(*padded[gradients].T), np.abs(padded[rotations])
         largest = max(largest, *(float(values.max(initial=0.0)) for values in moved))
     return largest
-
-
-def _steps(chain: np.ndarray) -> np.ndarray:
-    return np.diff(chain, axis=0)
-
-
-def _middles(chain: np.ndarray) -> np.ndarray:
-    return 0.5 * (chain[1:] + chain[:-1])
 
 
 _ITERATIONS = 15

@@ -26,7 +26,8 @@ def stable_rows(solution: Solution) -> np.ndarray:
         counts = (unstable_directions(system, p, at, mixed) for p, at in zip(solution.p, solution.at, strict=True))
         return np.array([count == 0 for count in counts])
     count = min(_MODES, len(system.free_dofs))
-    return np.array([_none_grows(solution, row, count) for row in range(len(solution))])
+    rows = (solution[row] for row in range(len(solution)))
+    return np.array([not np.any(solve_modes(solution.model, count, about=row).growth > 0.0) for row in rows])
 
 
 def unstable_directions(system: System, p: np.ndarray, load_factor: float, mixed: bool) -> int:
@@ -36,10 +37,6 @@ def unstable_directions(system: System, p: np.ndarray, load_factor: float, mixed
     if mixed and not isinstance(tangent, MixedTangent):
         tangent = with_stresses(system, (p, zeros, zeros), load_factor, STATICS, None, tangent)
     return tangent.factorised(system.rotated).negative_pivots
-
-
-def _none_grows(solution: Solution, row: int, count: int) -> bool:
-    return not np.any(solve_modes(solution.model, count, about=solution[row]).growth > 0.0)
 
 
 _WIDTHS = (1e-6, *np.linspace(0.1, 1.0, 10).tolist(), 3.0, 10.0)  # of the load factor: amplitudes may be flat at first

@@ -14,7 +14,6 @@ from beamfem.errors import ConvergenceError, FreeMotionError
 from beamfem.model.beam import Point, beam_in_words
 from beamfem.model.missing_joints import Pair, in_words, unjoined_ends
 from beamfem.model.model import Model
-from beamfem.model.supports import PointSupport
 
 NEGLIGIBLE = 1e-9  # of the size of the model
 _DENSE_BODIES = 300
@@ -174,7 +173,8 @@ def free_motion(system: System) -> FreeMotion | None:
         return None
     model = system.model
     body = bodies_of(model)
-    if len(body) == 1 and any(_fixes(support) for support in model.point_supports):
+    held = (support.prescribed().keys() for support in model.point_supports)
+    if len(body) == 1 and any({"ux", "uy", "rotation"} <= directions for directions in held):
         system.tables[_PROVEN] = True
         return None
     rows = Conditions(system, body, system.reference)
@@ -212,11 +212,6 @@ def _parts(rows: Conditions, motions: np.ndarray, pair: Pair) -> bool:
     between = own[:, one] - own[:, other]
     apart = between @ np.vstack([rows.moved(pair[0].reference), [0.0, 0.0, 1.0]]).T
     return bool(np.abs(apart).max() > NEGLIGIBLE)
-
-
-def _fixes(support: PointSupport) -> bool:
-    """Return whether a support prescribes displacement and rotation of its point, which no rigid motion leaves."""
-    return {"ux", "uy", "rotation"} <= support.prescribed().keys()
 
 
 def describe(translation: np.ndarray, turn: float, origin: np.ndarray, reach: float) -> str:

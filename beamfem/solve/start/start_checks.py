@@ -139,15 +139,12 @@ def require_memory(coordinates: int, duration: float, step: float, save_every: i
     if memory is None or needed <= USABLE_FRACTION * memory:
         return
     room = USABLE_FRACTION * memory - steps * _STEP
+    every = "one" if save_every == 1 else f"{save_every}th"
     message = (
-        f"{steps:.3g} steps of {coordinates} coordinates, of which every {_ordinal(save_every)} is kept, need "
+        f"{steps:.3g} steps of {coordinates} coordinates, of which every {every} is kept, need "
         f"{in_gib(needed)}, and this computer has {in_gib(memory)}"
     )
     if room > 0.0:
         enough = int(-(-(steps * _STATE * coordinates) // room))
         raise InputError(f"{message}; save_every={enough} would fit")
     raise InputError(f"{message}; take a larger step, or a shorter duration and continue from the last state")
-
-
-def _ordinal(number: int) -> str:
-    return "one" if number == 1 else f"{number}th"

@@ -35,14 +35,13 @@ def changing(model: Model, before: float | None, after: float) -> Model:
     At 0 they are those at the load factor `before`, or zero for None.
     """
     loads = [_changing_load(load, before, after) for load in model.loads]
-    moved = {id(support): _moved(support, before, after) for support in model.point_supports if _moves(support)}
+    moved = {
+        id(support): _moved(support, before, after)
+        for support in model.point_supports
+        if any(callable(value) or value != 0.0 for value in support.prescribed().values())
+    }
     supports = [part for support in model.supports for part in moved.get(id(support), (support,))]
     return model.with_(supports=supports, loads=loads)
-
-
-def _moves(support: PointSupport) -> bool:
-    """Return whether a support prescribes nonzero values."""
-    return any(callable(value) or value != 0.0 for value in support.prescribed().values())
 
 
 def _moved(support: PointSupport, before: float | None, after: float) -> tuple[PointSupport, ...]:

@@ -80,14 +80,10 @@ def first_equilibrium(system: System, newton: Newton) -> NewtonResult:
     if at_rest:
         return NewtonResult(system.reference, 0, Termination.CONVERGED)
     result = solve_equilibrium(system, system.reference, 0.0, newton, keep=0)
-    if result.ended is Termination.NO_DIGITS and _still(system, result.state):
+    moved = float(np.max(np.abs(result.state - system.reference) / system.scale, initial=0.0))
+    if result.ended is Termination.NO_DIGITS and moved <= np.finfo(float).eps:  # as by the tail of a pulse
         return NewtonResult(system.reference, result.iterations, Termination.CONVERGED)
     return result if result.ended.good else _grown(system, newton, result)
-
-
-def _still(system: System, p: np.ndarray) -> bool:
-    """Return whether loads move the reference by less than its last digit, as the tail of a pulse does."""
-    return bool(np.max(np.abs(p - system.reference) / system.scale, initial=0.0) <= np.finfo(float).eps)
 
 
 def nothing_acts(system: System) -> bool:

@@ -231,7 +231,9 @@ def vector(name: str, value: Sequence[float] | np.ndarray) -> tuple[float, float
 def fulfils(item: object, protocol: type) -> bool:
     """Return whether `item` has all members of a protocol; `isinstance` does, in 40 us on Python 3.11."""
     kind: Any = type(item)
-    return kind is not type and (_has_all(kind, protocol) or all(hasattr(item, name) for name in members(protocol)))
+    return not issubclass(kind, type) and (
+        _has_all(kind, protocol) or all(hasattr(item, name) for name in members(protocol))
+    )
 
 
 def of_package(kind: type) -> bool:

@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.curves.curve import along, warn_of_turns
+from beamfem.curves.curve import Curve, along, warn_of_turns
 from beamfem.errors import InputError
 from beamfem.validation import convert, finite, positive, vector
 
 
 @dataclass(frozen=True)
-class Arc:
+class Arc(Curve):
     """Circular axis about a center.
 
     It runs clockwise if end_angle < start_angle; more than a full turn is allowed. Raises InputError if the radius is
@@ -48,23 +48,15 @@ class Arc:
 
     @property
     def length(self) -> float:
-        """Length of the axis [m]."""
         return self.radius * abs(self.end_angle - self.start_angle)
-
-    @property
-    def corners(self) -> tuple[float, ...]:
-        """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
-        return ()
 
     @along
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start, see `Curve.position`."""
         angle = self._angle(arc_length)
         return np.array(self.center) + self.radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
     @along
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m] from the start, see `Curve.tangent`."""
         angle = self._angle(arc_length)
         return self._sense * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
 

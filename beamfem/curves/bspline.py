@@ -7,14 +7,14 @@ import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.curves.arc_length import ArcLength, measure
-from beamfem.curves.curve import along, numbers, points, turned, unit
+from beamfem.curves.curve import Curve, along, numbers, points, turned, unit
 from beamfem.errors import InputError
 from beamfem.reprs import brief
 from beamfem.validation import convert, count, optional
 
 
 @dataclass(frozen=True)
-class BSpline:
+class BSpline(Curve):
     """Axis along a B-spline, rational (NURBS) or not, by arc length.
 
     The axis is r(u) = sum N_i(u) w_i P_i / sum N_i(u) w_i. An interior knot that appears as often as the degree, and at
@@ -57,12 +57,10 @@ class BSpline:
 
     @property
     def length(self) -> float:
-        """Length of the axis [m]."""
         return self._arc_length.length
 
     @cached_property
     def corners(self) -> tuple[float, ...]:
-        """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
         inner = self.breaks[1:-1]
         ends = inner[[self.multiplicity(u) == self.degree for u in inner]] if len(inner) else inner
         jumps = turned(unit(self.derivative(np.nextafter(ends, -np.inf))), unit(self.derivative(ends)))
@@ -70,12 +68,10 @@ class BSpline:
 
     @along
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start, see `Curve.position`."""
         return self.evaluate(self.parameter(arc_length))
 
     @along
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m] from the start, see `Curve.tangent`."""
         return unit(self.derivative(self.parameter(arc_length)))
 
     def parameter(self, arc_length: np.ndarray) -> np.ndarray:

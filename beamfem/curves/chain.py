@@ -13,7 +13,7 @@ from beamfem.validation import fulfils, items, shown
 
 
 @dataclass(frozen=True)
-class Chain:
+class Chain(Curve):
     """Axis along consecutive curves.
 
     There is a corner wherever the tangent jumps between two curves. A gap of up to 1e-5 of the total length is treated
@@ -52,12 +52,10 @@ class Chain:
 
     @property
     def length(self) -> float:
-        """Length of the axis [m]."""
         return float(self._ends[-1])
 
     @cached_property
     def corners(self) -> tuple[float, ...]:
-        """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
         corners = [self._ends[i] + corner for i, curve in enumerate(self.curves) for corner in curve.corners]
         for one, other, joint in zip(self.curves, self.curves[1:], self._ends[1:-1], strict=False):
             if turned(one.tangent(np.array([one.length])), other.tangent(np.array([0.0])))[0]:
@@ -66,12 +64,10 @@ class Chain:
 
     @along
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start, see `Curve.position`."""
         return self._each(arc_length, lambda i, arc: self.curves[i].position(arc) + self._moves[i])
 
     @along
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m] from the start, see `Curve.tangent`."""
         return self._each(arc_length, lambda i, arc: self.curves[i].tangent(arc))
 
     @cached_property

@@ -23,14 +23,9 @@ class Curve(Protocol):
     """A planar curve, as a function of its arc length s from 0 to `length` [m].
 
     At a corner the tangent is that after it; at an arc length just before the corner, that before it.
-
-    Attributes
-    ----------
-    length : float, [m]
-        Length of the axis.
-    corners : tuple of float, [m], (k,)
-        Arc lengths of the corners between the two ends, at which the tangent jumps.
     """
+
+    __slots__ = ()
 
     @property
     def length(self) -> float:
@@ -39,6 +34,7 @@ class Curve(Protocol):
     @property
     def corners(self) -> tuple[float, ...]:
         """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
+        return ()
 
     def position(self, arc_length: np.ndarray | float) -> np.ndarray:
         """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start, or (2,) at one of them.

@@ -10,7 +10,7 @@ from numpy.polynomial import chebyshev
 from beamfem.cached_properties import cached_property
 from beamfem.curves.arc_length import ArcLength, measure
 from beamfem.curves.bspline import BSpline
-from beamfem.curves.curve import along, points, turned, unit
+from beamfem.curves.curve import Curve, along, points, turned, unit
 from beamfem.errors import InputError
 from beamfem.validation import called, convert, finite, shown, vector
 
@@ -111,7 +111,7 @@ _AGREES = 1e-6
 
 
 @dataclass(frozen=True)
-class Parametric:
+class Parametric(Curve):
     """Smooth axis given by a function, r(u) = function(u) = (x, y), by arc length.
 
     The axis runs backwards if end < start. Results files hold the curve as its `spline()`, not as the function. Raises
@@ -150,22 +150,14 @@ class Parametric:
 
     @property
     def length(self) -> float:
-        """Length of the axis [m]."""
         return self._arc_length.length
-
-    @property
-    def corners(self) -> tuple[float, ...]:
-        """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
-        return ()
 
     @along
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start, see `Curve.position`."""
         return self._panels.columns(slice(0, 2))(self._arc_length.parameter(arc_length))
 
     @along
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m] from the start, see `Curve.tangent`."""
         return unit(self._rate(self._arc_length.parameter(arc_length)))
 
     def spline(self) -> BSpline:

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.cached_properties import cached_property
-from beamfem.curves.curve import along, points, turned, unit
+from beamfem.curves.curve import Curve, along, points, turned, unit
 from beamfem.errors import InputError
 from beamfem.reprs import brief
 
 
 @dataclass(frozen=True)
-class Polyline:
+class Polyline(Curve):
     """Straight axis from point to point, with a corner wherever the direction changes.
 
     Raises InputError for fewer than two points, or if two consecutive ones coincide.
@@ -41,17 +41,14 @@ class Polyline:
 
     @property
     def length(self) -> float:
-        """Length of the axis [m]."""
         return float(self._ends[-1])
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
         return tuple(self._ends[1:-1][turned(self._directions[:-1], self._directions[1:])].tolist())
 
     @along
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start, see `Curve.position`."""
         piece = self._piece(arc_length)
         fraction = ((arc_length - self._ends[piece]) / np.diff(self._ends)[piece])[:, None]
         table = np.array(self.points)
@@ -59,7 +56,6 @@ class Polyline:
 
     @along
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m] from the start, see `Curve.tangent`."""
         return self._directions[self._piece(arc_length)]
 
     @cached_property

@@ -62,15 +62,6 @@ class Contribution(Protocol):
     A class attribute or field `rotations = False` is optional. The force then must not depend on rotations, and its
     moments must be zero. Otherwise each point has an angle as a coordinate, which keeps the thickness of elements with
     gradients constant there.
-
-    Attributes
-    ----------
-    points : tuple of Point, (m,)
-        Points of beams that the forces act on.
-    unknowns : int
-        Number k of multipliers.
-    conservative : bool
-        Whether the force at rest has a potential, so that the stiffness is symmetric.
     """
 
     @property
@@ -102,11 +93,6 @@ class Remembering(Contribution, Protocol):
     """A contribution with history, such as friction.
 
     History variables are part of the state: a rejected step restores them, and a result has them row by row.
-
-    Attributes
-    ----------
-    memory : sequence of float, (h,)
-        The initial history variables.
     """
 
     @property

@@ -53,10 +53,6 @@ class ImposedStrain(AlongBeam, Load):
         return np.zeros((len(arc_length), 2))
 
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return the values (n,) of a field named in `along` at arc lengths (n,) [m].
-
-        Raises InputError if a function does not return finite numbers.
-        """
         value, what = getattr(self, name), f"{name} of {type(self).__name__}"
         if not callable(value):
             return np.full(len(arc_length), value)
@@ -64,16 +60,13 @@ class ImposedStrain(AlongBeam, Load):
 
     @property
     def place(self) -> Beam:
-        """The beam that is strained."""
         return self.beam
 
     @property
     def conservative(self) -> bool:
-        """Whether the load has a potential, as every imposed strain has."""
         return True
 
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return the imposed strains to draw, see `Load.shapes`."""
         values: dict[str, tuple[float | None, str]] = {}
         for name, unit in zip(self.along, self.units, strict=True):
             value = getattr(self, name)
@@ -84,7 +77,6 @@ class ImposedStrain(AlongBeam, Load):
         return (Strains(self.beam, type(self).__name__.lower(), values),)
 
     def require_valid(self) -> None:
-        """Raise InputError for invalid members of a user-defined load."""
         super().require_valid()
         kind = type(self).__name__
         require_beam(kind, getattr(self, "beam", None))

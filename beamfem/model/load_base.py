@@ -135,23 +135,18 @@ class BodyLoad(Load):
 
     @property
     def conservative(self) -> bool:
-        """Whether the load has a potential, as every acceleration of all mass has."""
         return True
 
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return the acceleration to draw, see `Load.shapes`."""
         return (Acceleration(weight * np.array(self.vector)),)
 
     def acting(self, arc_length: np.ndarray) -> Mapping[str, np.ndarray]:
-        """Return the acceleration, see `Load.acting`."""
         return {"acceleration": np.array([self.vector])}
 
     def work(self, displaced: Displaced) -> np.ndarray:
-        """Return the work on all mass, see `Load.work`."""
         return np.asarray(sum(moved @ np.array(self.vector) for moved in displaced.first_moments))
 
     def require_valid(self) -> None:
-        """Raise InputError for invalid members of a user-defined load."""
         super().require_valid()
         squared(vector)(f"vector of {type(self).__name__}", getattr(self, "vector", None))
 
@@ -182,12 +177,10 @@ class PointLoad(Load):
 
     @property
     def place(self) -> Point:
-        """The point of application."""
         return self.point
 
     @property
     def axes(self) -> Axes:
-        """Axes of the force: "section" for a follower load, otherwise "plane"."""
         return "section" if self.follower else "plane"
 
     @property
@@ -197,11 +190,9 @@ class PointLoad(Load):
 
     @property
     def conservative(self) -> bool:
-        """Whether the load has a potential, as all have but follower forces."""
         return not (self.follower and any(self.value[:2]))
 
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return the force and the moment to draw, see `Load.shapes`."""
         force, moment = weight * np.array([[self.value[:2]]]), weight * self.value[2]
         shapes: tuple[LoadShape, ...] = ()
         if any(self.value[:2]):
@@ -209,12 +200,10 @@ class PointLoad(Load):
         return (*shapes, Moment(self.point, moment)) if self.value[2] else shapes
 
     def acting(self, arc_length: np.ndarray) -> Mapping[str, np.ndarray]:
-        """Return the force and the moment, see `Load.acting`."""
         value = np.array([self.value])
         return {"force": value[:, :2], "moment": value[:, 2:]}
 
     def work(self, displaced: Displaced) -> np.ndarray:
-        """Return the work of the force and of the moment, see `Load.work`."""
         *force, moment = self.value
         work = super().work(displaced)
         if any(force):
@@ -222,7 +211,6 @@ class PointLoad(Load):
         return work + moment * displaced.rotation(self.point) if moment else work
 
     def require_valid(self) -> None:
-        """Raise InputError for invalid members of a user-defined load."""
         super().require_valid()
         require_point_of(self)
         flag(f"follower of {type(self).__name__}", self.follower)
@@ -364,7 +352,6 @@ class LineLoad(AlongBeam, Load):
 
     @property
     def place(self) -> Beam:
-        """The loaded beam."""
         return self.beam
 
     @property
@@ -379,26 +366,21 @@ class LineLoad(AlongBeam, Load):
 
     @property
     def conservative(self) -> bool:
-        """Whether the load has a potential, as those with the axes "plane" have."""
         return self.axes == "plane"
 
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return the forces along the beam to draw, see `Load.shapes`."""
         at = _arrows(self, placed)
         vectors = in_plane(weight * forces_of(self, at)[None], self.axes, placed.along(self.beam, at))
         return (ForcesAlong(self.beam, at, vectors[0], self.even),)
 
     def acting(self, arc_length: np.ndarray) -> Mapping[str, np.ndarray]:
-        """Return the forces per length, see `Load.acting`."""
         return {"line_force": forces_of(self, arc_length)}
 
     def work(self, displaced: Displaced) -> np.ndarray:
-        """Return the work along the beam, see `Load.work`."""
         moved, weight, arc_length = displaced.along(self.beam)
         return np.asarray(np.einsum("sqc,qc,q->s", moved, forces_of(self, arc_length), weight))
 
     def require_valid(self) -> None:
-        """Raise InputError for invalid members of a user-defined load."""
         super().require_valid()
         kind = type(self).__name__
         require_beam(kind, getattr(self, "beam", None))

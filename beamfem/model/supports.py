@@ -81,11 +81,9 @@ class PointSupport(Support):
 
     @property
     def place(self) -> Point:
-        """The supported point."""
         return self.point
 
     def shapes(self) -> tuple[SupportShape, ...]:
-        """Return the shapes to draw."""
         prescribed, springs = self.prescribed(), self.springs()
         shapes: tuple[SupportShape, ...] = ()
         if prescribed:
@@ -96,7 +94,6 @@ class PointSupport(Support):
         return shapes
 
     def require_valid(self) -> None:
-        """Raise InputError for invalid members of a user-defined support."""
         kind = type(self).__name__
         require_point_of(self)
         prescribed = _by_direction(f"prescribed of {kind}", self.prescribed, (*DIRECTIONS, "normal"))
@@ -135,20 +132,16 @@ class LineSupport(Support):
 
     @property
     def place(self) -> Beam:
-        """The supported beam."""
         return self.beam
 
     def shapes(self) -> tuple[SupportShape, ...]:
-        """Return the shapes to draw."""
         return (SpringsAlong(self.beam, self.stiffness),)
 
     def energy(self, displaced: Displaced) -> np.ndarray:
-        """Return the energy of the springs along the beam, see `Support.energy`."""
         moved, weight, _ = displaced.along(self.beam)
         return np.asarray(0.5 * np.einsum("sqc,c,q->s", moved**2, np.array(self.stiffness), weight))
 
     def require_valid(self) -> None:
-        """Raise InputError for invalid members of a user-defined support."""
         kind = type(self).__name__
         require_beam(kind, getattr(self, "beam", None))
         stiffness = squared(vector)(f"stiffness of {kind}", getattr(self, "stiffness", None))

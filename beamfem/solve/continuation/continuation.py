@@ -253,7 +253,6 @@ class _InPlane(SingleCorrections):
         self.counts = np.iinfo(int).max, 0
 
     def take(self) -> tuple[float, int]:
-        """Take the next correction. Raises LinAlgError if the tangent is singular or the path lies in the plane."""
         line, y = self.line, self.state
         balance, along, factors = line.solve(y, self.stresses)
         negative = factors.negative_pivots if self.counted else 0
@@ -268,7 +267,6 @@ class _InPlane(SingleCorrections):
         return np.inf if away else float(np.max(np.abs(self.state - y) / line.scale)), negative
 
     def balance(self) -> Balance:
-        """Return the balance of forces in the state reached."""
         return balance_of(self.system, self.state[:-1], float(self.state[-1]))
 
     def count_after_linear(self) -> int:

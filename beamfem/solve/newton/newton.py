@@ -100,17 +100,14 @@ class BandProblem:
 
     @property
     def state(self) -> np.ndarray:
-        """The state (n,) reached."""
         return self.space.p.copy()
 
     def balance(self) -> Balance:
-        """Return the balance of forces in the state reached."""
         space, found = self.space, self.space.solver
         force = max(found.force, self.load)
         return Balance(space.p, space.residual, found.unbalanced, force, found.jacobian <= 0.0)
 
     def after_first(self) -> tuple[float, int]:
-        """Return the size of the first correction and the negative pivots of the second tangent."""
         found = self.space.solver
         return found.first_correction, found.negative_pivots_after_first
 
@@ -140,7 +137,6 @@ class PivotedProblem(SingleCorrections):
         self.stresses: Stresses | None = None
 
     def take(self) -> tuple[float, int]:
-        """Take the next correction, see `SingleCorrections`. Raises LinAlgError if the tangent is singular."""
         system, p, zeros, free = self.system, self.state, np.zeros(len(self.state)), self.system.free_dofs
         unbalanced, tangent = linearise(system, p, zeros, zeros, self.load_factor, STATICS, self.stresses)
         factors: Factorised = tangent.factorised(system.rotated)
@@ -157,11 +153,9 @@ class PivotedProblem(SingleCorrections):
         return float(np.max(np.abs(step) / system.scale, initial=0.0)), factors.negative_pivots
 
     def balance(self) -> Balance:
-        """Return the balance of forces in the state reached."""
         return balance_of(self.system, self.state, self.load_factor)
 
     def count_after_linear(self) -> int:
-        """Return the negative pivots at the start with the stresses of a linear step, -1 if singular."""
         return count_after(self.system, self.start, self.linear - self.start, self.load_factor)
 
 

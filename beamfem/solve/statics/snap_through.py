@@ -98,7 +98,6 @@ class _EulerStep(SingleCorrections):
         self.mass = _mass(system, p, load_factor)
 
     def take(self) -> tuple[float, int]:
-        """Take the next correction, see `SingleCorrections`. Raises LinAlgError."""
         system, p, free, zeros = self.system, self.state, self.system.free_dofs, np.zeros(len(self.state))
         unbalanced, tangent = linearise(system, p, zeros, zeros, self.load_factor, (1.0, 0.0, 1.0 / self.time))
         factors = tangent.factorised(system.rotated)
@@ -107,7 +106,6 @@ class _EulerStep(SingleCorrections):
         return float(np.max(np.abs(change) / system.scale[free])), factors.negative_pivots
 
     def check(self, correction: Correction) -> Termination | None:
-        """See `loop.Problem`."""
         if correction.diverges:
             return Termination.DIVERGED
         unstable = self.system.symmetric and correction.negative_pivots > 0

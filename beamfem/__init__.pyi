@@ -146,7 +146,7 @@ from .solve.motion.equations_of_motion import EquationsOfMotion as EquationsOfMo
 from .solve.motion.equations_of_motion import Integrator as Integrator
 from .solve.motion.integrators import GeneralizedAlpha as GeneralizedAlpha
 from .solve.motion.integrators import Scheme as Scheme
-from .solve.newton.iteration import Newton as Newton
+from .solve.newton.newton import Newton as Newton
 from .solve.paths.trace import trace_equilibrium as trace_equilibrium
 from .solve.stability.buckling import Buckling as Buckling
 from .solve.stability.buckling import solve_buckling as solve_buckling

@@ -15,7 +15,7 @@ from beamfem.results.status import Statistics
 from beamfem.solve.continuation import bifurcations as found_by
 from beamfem.solve.continuation.continuation import PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment
-from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.newton.newton import Newton
 from beamfem.solve.stability import path_critical_points as critical
 from beamfem.solve.stability.loading_path import PathLostError
 from beamfem.solve.stability.path_critical_points import BIFURCATION, Critical, Search, Zero, _between, smooth

@@ -9,7 +9,7 @@ from beamfem.assembly.system import System
 from beamfem.solve.continuation.bifurcations import bifurcations
 from beamfem.solve.continuation.continuation import begin
 from beamfem.solve.continuation.critical_points import Segment
-from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.newton.newton import Newton
 from beamfem.solve.paths.trace import trace_equilibrium
 
 SOFT = bf.Material(1.0, 0.0, 1.0)

@@ -10,7 +10,7 @@ from beamfem.assembly.system import System, system_of
 from beamfem.solve.continuation.continuation import begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 from beamfem.solve.continuation.steps import take_step
-from beamfem.solve.newton.iteration import NewtonResult, Termination
+from beamfem.solve.newton.newton import NewtonResult, Termination
 from beamfem.solve.statics import snap_through as snap
 
 

@@ -11,7 +11,7 @@ from shooting import Member, solved
 
 import beamfem as bf
 from beamfem.assembly.system import System
-from beamfem.solve.newton.iteration import NewtonResult, Termination
+from beamfem.solve.newton.newton import NewtonResult, Termination
 from beamfem.solve.statics.load_steps import skips_limit_points
 from beamfem.solve.statics.static_record import StaticRecord
 

@@ -5,8 +5,14 @@ import pytest
 
 import beamfem as bf
 from beamfem.assembly.system import system_of
-from beamfem.solve.newton.iteration import Newton, Termination
-from beamfem.solve.newton.newton import BandProblem, PivotedProblem, PrescribedStep, find_equilibrium
+from beamfem.solve.newton.newton import (
+    BandProblem,
+    Newton,
+    PivotedProblem,
+    PrescribedStep,
+    Termination,
+    find_equilibrium,
+)
 
 SECTION, MATERIAL = bf.Rectangle(0.05, 0.05), bf.Material(1e9, 0.3, 1000.0)
 EI = MATERIAL.youngs_modulus * 0.05**4 / 12.0

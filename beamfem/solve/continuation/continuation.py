@@ -13,8 +13,7 @@ from beamfem.cached_properties import cached_property
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.linalg.tangent import Factorised
 from beamfem.precision.roundoff import loses_digits
-from beamfem.solve.newton.iteration import Balance, Newton, SingleCorrections, Termination, balance_of
-from beamfem.solve.newton.newton import find_equilibrium
+from beamfem.solve.newton.newton import Balance, Newton, SingleCorrections, Termination, balance_of, find_equilibrium
 from beamfem.solve.start.functions_of_time import FunctionOfTime, functions_of_time
 
 _SLOPE_WIDTH = 1e-4  # of the load scale: differences of loads keep digits, and prescribed motions are smooth over it

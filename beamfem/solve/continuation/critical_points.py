@@ -10,7 +10,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.cached_properties import cached_property
 from beamfem.solve.continuation.continuation import Continuation, PathPoint
-from beamfem.solve.newton.iteration import balance_of
+from beamfem.solve.newton.newton import balance_of
 
 _SHARPNESS = 1e-12  # of a segment: accuracy of the fractions of critical points
 _LEVEL = 1e-4  # largest slope of the load factor accepted at a limit point

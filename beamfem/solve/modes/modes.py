@@ -19,10 +19,9 @@ from beamfem.results.locking import frequency_locking
 from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import may_lock, warn_of
 from beamfem.results.status import Statistics, Status, counted
-from beamfem.solve.modes.lowest_modes import WRONG, lowest_pairs
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.modes.participation import participation
-from beamfem.solve.modes.pencil import Pencil
+from beamfem.solve.modes.pencil import WRONG, Pencil, lowest_pairs
 from beamfem.solve.modes.rigid_modes import unresisted
 from beamfem.solve.start.start_checks import refuse_dampers, require_equilibrium
 from beamfem.solve.start.start_state import resting_state

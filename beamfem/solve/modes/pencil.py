@@ -1,18 +1,24 @@
-"""Small vibration about a state: stiffness and mass of the unknown coordinates, counts of eigenvalues."""
+"""Small vibration about a state: its stiffness and mass, and the lowest eigenpairs of K phi = lambda M phi.
+
+They are complete by Sturm counts, and accurate for slender beams.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import LinAlgError
 from scipy.sparse import csr_array
 
 from beamfem.assembly.equations import INERTIA, STATICS, linearise, residual, with_stresses
 from beamfem.assembly.system import Proven, System
 from beamfem.cached_properties import cached_property
+from beamfem.errors import ConvergenceError
+from beamfem.linalg.eigenpairs import Pairs, largest_pairs, nothing_known
+from beamfem.linalg.lapack import LinAlgError, eigh
 from beamfem.linalg.tangent import UNROTATED, Factorised, Stresses, Tangent
-from beamfem.precision.roundoff import LAST_DIGITS, lost_digits
+from beamfem.precision.roundoff import LAST_DIGITS, LOSES, lost_digits
+from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
 
-_RANGE = 80.0  # logarithm of the largest ratio of eigenvalues
+_LOG_RANGE = 80.0  # logarithm of the largest ratio of eigenvalues
 _AWAY = 0.75  # of a shift: least distance of an eigenvalue from it
 _ASYMMETRY = 1e-12
 _FELT = 1e-4  # of the work of random forces: fraction of the round-off of the stiffness above which it is examined
@@ -137,7 +143,7 @@ class Pencil:
             return 0.0
         stiffness, mass = np.abs(self.stiffness.diagonal()), self.mass.diagonal()
         high = np.log(4.0 * float(np.max(stiffness[mass > 0.0] / mass[mass > 0.0])))  # multipliers have none
-        low = high - _RANGE
+        low = high - _LOG_RANGE
         while high - low > np.log(4.0):
             middle = 0.5 * (low + high)
             size = np.exp(middle)
@@ -156,3 +162,162 @@ class Pencil:
         it coincide with a shift for the other side.
         """
         return self.below(_AWAY * shift) == 0
+
+
+_CLUSTER = 1e-9  # eigenvalues with a smaller relative distance cannot be counted separately
+
+
+@dataclass(frozen=True)
+class Complete:
+    """The first `found` eigenvalues are the lowest if none is `missing` below the value of a cut."""
+
+    found: int
+    missing: int
+    cut: float
+
+
+def complete(pencil: Pencil, squares: np.ndarray, count: int, rigid: int) -> Complete:
+    """Return whether at least the first `count` of ascending eigenvalues (m,), m > count, are the lowest ones.
+
+    rigid: number of zero eigenvalues besides. The eigenvalues below the largest gap after the last one are counted. If
+    there is no gap, or some are missing, the last one may belong to a cluster with more members than were asked for:
+    it then does not matter which of them are found, so those below the cluster are counted.
+    """
+    joined = np.diff(squares) <= _CLUSTER * np.abs(squares[1:])
+    above = count + int(np.argmax(np.diff(squares[count - 1 :])))
+    if not joined[above - 1]:
+        cut = 0.5 * (squares[above - 1] + squares[above])
+        if _below(pencil, squares, cut, rigid) == above:
+            return Complete(above, 0, cut)
+    gaps = np.flatnonzero(~joined) + 1
+    first, end = gaps[gaps < count].max(initial=0), gaps[gaps >= count].min(initial=len(squares))
+    cut = squares[first] - _CLUSTER * abs(squares[first])
+    if first > 0:
+        cut = max(cut, 0.5 * (squares[first - 1] + squares[first]))
+    return Complete(int(end), _below(pencil, squares, cut, rigid) - int(first), cut)
+
+
+def _below(pencil: Pencil, squares: np.ndarray, cut: float, rigid: int) -> int:
+    """Return how many eigenvalues there are below a cut, without the zero ones.
+
+    The round-off of the plain tangent moves its eigenvalues, so that those near the cut would be counted at random.
+    """
+    near = np.abs(squares - cut).min() <= LOSES * abs(cut)
+    return (pencil.below_exactly(cut) if near else pencil.below(cut)) - (rigid if cut > 0.0 else 0)
+
+
+_SPARE = 4  # eigenvalues found beyond those asked for, so that a gap can be seen
+_RANGE = 1e6  # largest ratio of eigenvalues that are computed together from the stiffness
+_SEARCHES = 8
+WRONG = 1e-5  # of vectors: largest acceptable error by round-off of the tangent
+_SOLVES = 2  # for vectors with noticeable round-off: each reduces their error to about a hundredth
+
+
+def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | None = None) -> Pairs:
+    """Return the lowest lambda (m,) [1/s^2], ascending, and vectors (unknown, m), of a symmetric pencil, m >= count.
+
+    rigid (unknown, r): M-orthonormal vectors with lambda = 0, which the result does not contain; shift: below all
+    eigenvalues, if one is known. Raises ConvergenceError if some were missed.
+    """
+    n, available = pencil.mass.shape[0], pencil.size - rigid.shape[1]
+    if count == 0:
+        return nothing_known(n)
+    start = pencil.shift(rigid.shape[1]) if shift is None else shift
+    factors = pencil.shifted(start).factorised(pencil.system.rotated)
+    lost = pencil.lost(start, factors)
+    if lost > LOSES:
+        pencil.system.proven.add(Proven.LOSES_DIGITS)
+        start = pencil.shift(rigid.shape[1]) if shift is None else shift
+        factors = pencil.shifted(start).factorised(pencil.system.rotated)
+    wanted = min(count + _SPARE, available)
+    known = rigid
+    correction = np.zeros_like(pencil.p)
+    correction[pencil.system.free_dofs] = -factors.solve(pencil.unbalanced)
+    pairs, missing = nothing_known(n), wanted
+    for _ in range(_SEARCHES):
+        more = largest_pairs(pencil.mass, factors, min(missing, available - len(pairs[0])), known)
+        pairs = _sorted(np.append(pairs[0], start + 1.0 / more[0]), np.column_stack([pairs[1], more[1]]))
+        squares, vectors = _refined(pencil, *_sharpened(pencil, *pairs, start if lost > WRONG else None), correction)
+        if len(squares) == available:
+            return squares, vectors
+        checked = complete(pencil, squares, count, rigid.shape[1])
+        if checked.missing == 0:
+            return squares[: checked.found], vectors[:, : checked.found]
+        missing = max(checked.missing, _SPARE)
+        known = np.column_stack([known, more[1]])
+    below_cut = f"{np.sqrt(max(checked.cut, 0.0)) / (2.0 * np.pi):.6g} {pencil.system.model.unit('Hz')}"
+    raise ConvergenceError(f"modes below {below_cut} were missed")
+
+
+def _sharpened(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray, start: float | None) -> Pairs:
+    """Return the vectors (unknown, m) of eigenvalues far above the lowest after further solves, at a shift below them.
+
+    The factors that found them carry the round-off of the lowest, which grows with the ratio of the eigenvalues.
+    start: shift below all if the round-off of the tangent is noticeable, so that the lowest are solved for as well.
+    """
+    first, *others = _alike(squares)
+    sharp = vectors[:, first]
+    if start is not None:
+        sharp = _solved(pencil, pencil.exact(start), np.empty((len(vectors), 0)), sharp)
+    for part in others:
+        shift = 0.5 * squares[part.start]
+        tangent = pencil.shifted(shift) if start is None else pencil.exact(shift)
+        sharp = np.column_stack([sharp, _solved(pencil, tangent, sharp, vectors[:, part])])
+    return squares, sharp
+
+
+def _solved(pencil: Pencil, tangent: Tangent, known: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Return vectors (n, m) after inverse iterations, without their components along known ones (n, k)."""
+    factors, result = tangent.factorised(pencil.system.rotated), _besides(pencil, known, vectors)
+    for _ in range(_SOLVES):
+        result = np.column_stack([factors.solve(column) for column in (pencil.mass @ result).T])
+        result = _besides(pencil, known, result)
+    return result
+
+
+def _besides(pencil: Pencil, known: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Return vectors (n, m) without their components along known ones (n, k), and with x^T M x = 1."""
+    vectors = vectors - known @ (known.T @ (pencil.mass @ vectors))
+    return np.asarray(vectors / np.sqrt((vectors * (pencil.mass @ vectors)).sum(axis=0)))
+
+
+def _refined(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray, correction: np.ndarray) -> Pairs:
+    """Return eigenpairs recomputed from the stiffness of their vectors, free of the round-off of assembled tangents.
+
+    Vectors with eigenvalues of similar size are treated together (Rayleigh-Ritz), as they may be mixed if these are
+    close.
+    """
+    modes = np.zeros((len(squares), len(pencil.p)))
+    modes[:, pencil.system.free_dofs] = vectors.T
+    stiffness = stiffness_of_modes(pencil.system, pencil.p, pencil.load_factor, modes, correction)
+    mass = vectors.T @ (pencil.mass @ vectors)
+    parts = []
+    for part in _alike(squares):
+        try:
+            values, mixed = eigh(stiffness[part, part], mass[part, part])
+        except LinAlgError:
+            raise ConvergenceError(
+                "the tangent of such a slender model has no reliable digits, so that modes cannot be distinguished"
+            ) from None
+        parts.append((values, vectors[:, part] @ mixed))
+    return _sorted(np.concatenate([values for values, _ in parts]), np.column_stack([x for _, x in parts]))
+
+
+def _alike(squares: np.ndarray) -> list[slice]:
+    """Return parts of ascending eigenvalues, cut at gaps, whose ratio is bounded."""
+    first, result = 0, []
+    while first < len(squares):
+        far = np.flatnonzero(squares[first:] > _RANGE * np.abs(squares[: first + 1]).max())
+        last = len(squares)
+        if len(far):
+            inside = np.arange(first + 1, first + int(far[0]) + 1)
+            fractions = np.abs(squares[inside - 1]) / squares[inside]
+            last = int(inside[np.argmin(fractions)])
+        result.append(slice(first, last))
+        first = last
+    return result
+
+
+def _sorted(values: np.ndarray, vectors: np.ndarray) -> Pairs:
+    order = np.argsort(values, kind="stable")
+    return values[order], vectors[:, order]

@@ -16,7 +16,7 @@ from beamfem.linalg.tangent import UNROTATED, rotation_to_normals
 from beamfem.reprs import brief
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
-from beamfem.solve.newton.iteration import Correction, Termination, iterate
+from beamfem.solve.newton.newton import Correction, Termination, iterate
 from beamfem.validation import count, positive
 
 _NOISE = 1e-9  # of the model: smaller corrections that no longer decrease are round-off

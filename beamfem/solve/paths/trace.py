@@ -20,7 +20,7 @@ from beamfem.results.status import Statistics, Status
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 from beamfem.solve.continuation.steps import Refused, Step, longest_step, take_step, too_small
-from beamfem.solve.newton.iteration import Newton, require_newton
+from beamfem.solve.newton.newton import Newton, require_newton
 from beamfem.solve.start.functions_of_time import SAME, Jump, functions_of_time, jumps_between, kinks_between
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.partial_results import kept

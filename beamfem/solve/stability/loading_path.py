@@ -12,9 +12,8 @@ from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.continuation.continuation import PathPoint, begin
 from beamfem.solve.continuation.steps import longest_step, too_small
-from beamfem.solve.modes.lowest_modes import lowest_pairs
-from beamfem.solve.modes.pencil import Pencil
-from beamfem.solve.newton.iteration import Newton, Termination
+from beamfem.solve.modes.pencil import Pencil, lowest_pairs
+from beamfem.solve.newton.newton import Newton, Termination
 
 
 def size_of(system: System) -> float:

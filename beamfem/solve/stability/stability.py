@@ -9,8 +9,7 @@ from beamfem.precision.mixed_tangent import MixedTangent
 from beamfem.precision.roundoff import counts_with_stresses
 from beamfem.results.solution import Solution, State
 from beamfem.solve.modes.modes import solve_modes
-from beamfem.solve.newton.iteration import Newton
-from beamfem.solve.newton.newton import solve_equilibrium
+from beamfem.solve.newton.newton import Newton, solve_equilibrium
 from beamfem.solve.start.start_checks import left_over
 from beamfem.solve.start.start_state import resting_state
 from beamfem.solve.statics.preload import first_equilibrium

@@ -11,8 +11,7 @@ from beamfem.model.supports import DIRECTIONS, PointSupport, Value
 from beamfem.parts.prescribed import Prescribed
 from beamfem.parts.roller import Roller
 from beamfem.parts.spring import Spring
-from beamfem.solve.newton.iteration import Newton, Termination
-from beamfem.solve.newton.newton import solve_equilibrium
+from beamfem.solve.newton.newton import Newton, Termination, solve_equilibrium
 from beamfem.solve.statics.load_steps import Snap, reach, require_no_jump_of_rotations
 from beamfem.solve.statics.static_record import StaticRecord
 from beamfem.validation import function_value

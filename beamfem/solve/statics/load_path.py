@@ -14,7 +14,7 @@ from beamfem.solve.continuation.bifurcations import Crossing
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 from beamfem.solve.continuation.steps import Step, longest_step, take_step, too_small
-from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.newton.newton import Newton
 from beamfem.solve.statics.static_record import StaticRecord, is_unstable
 
 LOCATED = 1e-6  # of the load factor, within which a row is the critical point

@@ -13,8 +13,7 @@ from beamfem.precision.roundoff import ENOUGH, digits_of, largest_force
 from beamfem.progress import progress
 from beamfem.results.solution_checks import advice, may_turn_back, turned_back
 from beamfem.solve.continuation.steps import leaves_arc
-from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
-from beamfem.solve.newton.newton import solve_equilibrium
+from beamfem.solve.newton.newton import Newton, NewtonResult, Termination, solve_equilibrium
 from beamfem.solve.statics.load_path import (
     BifurcatesError,
     OutOfReachError,

@@ -10,8 +10,7 @@ from beamfem.errors import ConvergenceError, LimitPointError
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.precision.roundoff import largest_force, row_floors
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
-from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
-from beamfem.solve.newton.newton import solve_equilibrium
+from beamfem.solve.newton.newton import Newton, NewtonResult, Termination, solve_equilibrium
 from beamfem.solve.start.mechanisms import FreeMotion, free_motion
 from beamfem.solve.statics.load_jumps import changing
 from beamfem.solve.statics.load_steps import reach

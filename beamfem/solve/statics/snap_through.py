@@ -6,8 +6,15 @@ from beamfem.assembly.equations import INERTIA, linearise, residual
 from beamfem.assembly.system import System
 from beamfem.errors import LimitPointError
 from beamfem.linalg.tangent import UNROTATED
-from beamfem.solve.newton.iteration import Correction, Newton, NewtonResult, SingleCorrections, Termination, iterate
-from beamfem.solve.newton.newton import solve_equilibrium
+from beamfem.solve.newton.newton import (
+    Correction,
+    Newton,
+    NewtonResult,
+    SingleCorrections,
+    Termination,
+    iterate,
+    solve_equilibrium,
+)
 from beamfem.solve.statics.load_path import LOCATED, BifurcatesError
 from beamfem.solve.statics.static_record import StaticRecord
 

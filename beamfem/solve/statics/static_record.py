@@ -8,7 +8,7 @@ from beamfem.precision.roundoff import FEW_DIGITS
 from beamfem.results.full_turns import continued_rotations
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics, Status
-from beamfem.solve.newton.iteration import Termination
+from beamfem.solve.newton.newton import Termination
 
 
 class StaticRecord:

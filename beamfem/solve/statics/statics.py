@@ -14,7 +14,7 @@ from beamfem.model.model import Model
 from beamfem.results.full_turns import start_rotations
 from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import warned
-from beamfem.solve.newton.iteration import Newton, require_newton
+from beamfem.solve.newton.newton import Newton, require_newton
 from beamfem.solve.start.functions_of_time import SAME as NEAR
 from beamfem.solve.start.functions_of_time import (
     functions_of_time,

@@ -14,10 +14,8 @@ def ANCF(forces: Forces | None = None, integration: Integration | None = None) -
 
     Parameters
     ----------
-    forces : ContinuumMechanics, SplitContinuum, ElasticLine or Structural, optional
-        Elastic forces, by default `ContinuumMechanics()`.
-    integration : {"full", "reduced", "lobatto"}, optional
-        Integration of the strain energy, see `Element`.
+    forces, integration : optional
+        Elastic forces, by default `ContinuumMechanics()`, and integration of the strain energy, see `Element`.
 
     Examples
     --------
@@ -35,10 +33,8 @@ def ANCFCRBF(forces: Forces | None = None, integration: Integration | None = Non
 
     Parameters
     ----------
-    forces : ContinuumMechanics, SplitContinuum, ElasticLine or Structural, optional
-        Elastic forces, by default `ContinuumMechanics()`.
-    integration : {"full", "reduced", "lobatto"}, optional
-        Integration of the strain energy, see `Element`.
+    forces, integration : optional
+        Elastic forces, by default `ContinuumMechanics()`, and integration of the strain energy, see `Element`.
 
     Examples
     --------
@@ -56,10 +52,8 @@ def BilinearANCF(forces: Forces | None = None, integration: Integration = "full"
 
     Parameters
     ----------
-    forces : ContinuumMechanics, SplitContinuum or Structural, optional
-        Elastic forces, by default `ContinuumMechanics()`.
-    integration : {"full", "reduced"}, default "full"
-        Integration of the strain energy, see `Element`.
+    forces, integration : optional
+        Elastic forces, by default `ContinuumMechanics()`, and integration of the strain energy, see `Element`.
 
     Examples
     --------
@@ -77,10 +71,8 @@ def BilinearCRBF(forces: Forces | None = None, integration: Integration = "full"
 
     Parameters
     ----------
-    forces : ContinuumMechanics, SplitContinuum or Structural, optional
-        Elastic forces, by default `ContinuumMechanics()`.
-    integration : {"full", "reduced"}, default "full"
-        Integration of the strain energy, see `Element`.
+    forces, integration : optional
+        Elastic forces, by default `ContinuumMechanics()`, and integration of the strain energy, see `Element`.
 
     Examples
     --------
@@ -100,10 +92,8 @@ def CRBF(order: int, forces: Forces | None = None, integration: Integration = "r
     ----------
     order : int
         Polynomial order of the field, 1 to 8.
-    forces : ContinuumMechanics, SplitContinuum or Structural, optional
-        Elastic forces, by default `Structural()`.
-    integration : {"full", "reduced"}, default "reduced"
-        Integration of the strain energy, see `Element`.
+    forces, integration : optional
+        Elastic forces, by default `Structural()`, and integration of the strain energy, see `Element`.
 
     Examples
     --------
@@ -126,10 +116,9 @@ def ShearRigid(
     ----------
     stretchable : bool, default True
         Whether the length of r_x is a coordinate (4 coordinates per node) or not (3).
-    forces : ContinuumMechanics, SplitContinuum, ElasticLine or Structural, optional
-        Elastic forces, by default `Structural()`.
-    integration : {"full", "reduced", "lobatto"}, optional
-        Integration of the strain energy, see `Element`; by default "reduced" with continuum forces.
+    forces, integration : optional
+        Elastic forces, by default `Structural()`, and integration of the strain energy, see `Element`; by default
+        "reduced" with continuum forces.
 
     Examples
     --------

@@ -24,12 +24,10 @@ class JoinedMesh(BeamMesh):
 
     @property
     def parts(self) -> tuple[BeamMesh, ...]:
-        """The meshes of the beams."""
         return self.joined
 
     @property
     def elements(self) -> int:
-        """Number of elements."""
         return len(self.node)
 
     @cached_property
@@ -39,27 +37,22 @@ class JoinedMesh(BeamMesh):
 
     @cached_property
     def lengths(self) -> np.ndarray:
-        """Mesh length of each element (ne,) [m]."""
         return np.concatenate([mesh.lengths for mesh in self.joined])
 
     def ends(self, element: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the arc lengths (n,) [m] of both ends of elements (n,)."""
         start, end = self._ends
         return start[element], end[element]
 
     def in_block(self, element: np.ndarray) -> np.ndarray:
-        """Return the numbers of elements in their block."""
         return self._in_block[element]
 
     def section_arc_length(self, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
-        """Return the arc lengths (n,) [m] at which sections of points are evaluated: inside the element at jumps."""
         result = np.empty(len(element))
         for mesh, points, own in self.by_beam(element):
             result[points] = mesh.section_arc_length(own, xi[points])
         return result
 
     def tangents(self, element: np.ndarray, arc_length: np.ndarray) -> np.ndarray:
-        """Return the unit tangents (n, 2) of the curve at arc lengths (n,) [m] in elements (n,)."""
         result = np.empty((len(element), 2))
         for mesh, points, own in self.by_beam(element):
             result[points] = mesh.tangents(own, arc_length[points])

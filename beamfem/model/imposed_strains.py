@@ -21,12 +21,7 @@ Along = float | Callable[[float], float]
 class ImposedStrain(AlongBeam, Load):
     """Strains of the stress-free state of a beam; each field named in `along` is a number or a function.
 
-    Attributes
-    ----------
-    along : tuple of str
-        Names of the fields that may be functions of the arc length [m] from the start.
-    units : tuple of str
-        Their units.
+    along: names of the fields that may be functions of the arc length [m] from the start; units: their units.
     """
 
     units: ClassVar[tuple[str, ...]] = ()

@@ -8,15 +8,7 @@ from beamfem.validation import flag
 
 
 class Joint:
-    """Two coincident points of beams with a common position.
-
-    Attributes
-    ----------
-    a, b : Point
-        The points.
-    keeps_angle : bool
-        Whether their rotations are equal too.
-    """
+    """Two coincident points a and b of beams with a common position and, if it keeps the angle, a common rotation."""
 
     __slots__ = ()
     keeps_angle: ClassVar[bool] = False

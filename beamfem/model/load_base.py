@@ -113,13 +113,7 @@ def factor(load: Load, time: float, static: bool) -> float:
 
 
 class BodyLoad(Load):
-    """An acceleration that acts on all mass.
-
-    Attributes
-    ----------
-    vector : (float, float), [m/s^2]
-        The acceleration.
-    """
+    """An acceleration `vector` [m/s^2] that acts on all mass."""
 
     vector: tuple[float, float]
 
@@ -152,15 +146,7 @@ class BodyLoad(Load):
 
 
 class PointLoad(Load):
-    """Force [N] and moment [N m] at a point.
-
-    Attributes
-    ----------
-    point : Point
-        Point of application.
-    follower : bool
-        Whether the force rotates with the section there.
-    """
+    """Force [N] and moment [N m] at a point; follower: whether the force rotates with the section there."""
 
     point: Point
     follower: bool = False
@@ -311,15 +297,10 @@ _ARROWS = 11  # along a beam
 
 
 class LineLoad(AlongBeam, Load):
-    """Forces per length along a beam.
+    """Forces per length along a beam; uniform: whether they are the same at every arc length.
 
     The axes of the forces are "plane": x and y, per reference length; "section": x and y, rotated with the section from
     the reference, per reference length; or "axis": along r0' and normal to it, to the left, per deformed length.
-
-    Attributes
-    ----------
-    uniform : bool
-        Whether the forces are the same at every arc length.
     """
 
     uniform: bool = False

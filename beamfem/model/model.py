@@ -437,19 +437,9 @@ class Model:
     def with_imperfection(self, modes: Any, size: float, mode: int = 0) -> "Model":
         """Return the model with its axes displaced by a mode and stress-free in the new shape.
 
-        Raises InputError if the modes do not fit the model or move no axis.
+        modes: result of `solve_buckling` or `solve_modes`, or an increment (n,) of all coordinates; size [m]: largest
+        displacement; mode: index of the mode. Raises InputError if the modes do not fit the model or move no axis.
 
-        Parameters
-        ----------
-        modes : Buckling, Modes or array
-            Result of `solve_buckling` or `solve_modes`, or an increment (n,) of all coordinates.
-        size : float, [m]
-            Largest displacement.
-        mode : int, default 0
-            Index of the mode.
-
-        Examples
-        --------
         >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e3, 0.0))])
         >>> crooked = column.with_imperfection(bf.solve_buckling(column), size=0.002)
         """

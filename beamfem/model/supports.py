@@ -47,11 +47,6 @@ class PointSupport(Support):
     """A support at a point: its prescribed directions and its springs.
 
     Directions are "ux" and "uy" [m] and "rotation" [rad], from the reference.
-
-    Attributes
-    ----------
-    point : Point
-        The supported point.
     """
 
     point: Point
@@ -114,15 +109,7 @@ class PointSupport(Support):
 
 
 class LineSupport(Support):
-    """Springs along a beam to the ground.
-
-    Attributes
-    ----------
-    beam : Beam
-        The supported beam.
-    stiffness : (float, float), [N/m^2]
-        Stiffness (kx, ky) per reference length.
-    """
+    """Springs along a beam to the ground, of a stiffness (kx, ky) [N/m^2] per reference length."""
 
     beam: Beam
     stiffness: tuple[float, float]

@@ -150,26 +150,11 @@ class Section:
     def from_stiffness(
         axial: float, shear: float, bending: float, mass: float, rotary_inertia: float, coupling: float = 0.0
     ) -> StiffnessSection:
-        """Return a section given by its stiffness, which needs no material.
+        """Return a section given by E A [N], k_s G A [N], E I [N m^2], mass [kg/m] and rotary inertia [kg m].
 
-        If the neutral axis is not on the beam's axis, there is a coupling: N = E A eps + C kappa and M = C eps + E I
-        kappa. Raises InputError for an invalid value.
+        Inertia is per length, and no material is needed. If the neutral axis is not on the beam's axis, there is a
+        coupling C [N m]: N = E A eps + C kappa and M = C eps + E I kappa. Raises InputError for an invalid value.
 
-        Parameters
-        ----------
-        axial, shear : float, [N]
-            Stiffness E A and k_s G A.
-        bending : float, [N m^2]
-            Stiffness E I.
-        mass : float, [kg/m]
-            Mass per length.
-        rotary_inertia : float, [kg m]
-            Rotary inertia per length.
-        coupling : float, [N m], default 0
-            Coupling C of stretch with curvature.
-
-        Examples
-        --------
         >>> section = bf.Section.from_stiffness(axial=1e6, shear=4e5, bending=50.0, mass=0.8, rotary_inertia=1e-4)
         >>> rod = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(order=3), section)
         """

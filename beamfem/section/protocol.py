@@ -11,19 +11,7 @@ from beamfem.section.outline import Part
 
 @dataclass(frozen=True)
 class Rigidity:
-    """Stiffness of a section about the beam's axis.
-
-    Parameters
-    ----------
-    axial : float, [N]
-        Axial stiffness E A.
-    shear : float, [N]
-        Shear stiffness k_s G A.
-    bending : float, [N m^2]
-        Bending stiffness E I.
-    coupling : float, [N m], default 0
-        Coupling of stretch with curvature.
-    """
+    """E A [N], k_s G A [N], E I [N m^2], and the coupling of stretch with curvature [N m], about the beam's axis."""
 
     axial: float
     shear: float
@@ -33,17 +21,7 @@ class Rigidity:
 
 @dataclass(frozen=True)
 class Inertia:
-    """Inertia of a section about the beam's axis.
-
-    Parameters
-    ----------
-    mass : float, [kg/m]
-        Mass per length.
-    first_moment : float, [kg]
-        Integral of the density times y over the section.
-    rotary : float, [kg m]
-        Integral of the density times y^2 over the section: the rotary inertia per length.
-    """
+    """Mass per length [kg/m] and the integrals of the density times y [kg] and y^2 [kg m], about the beam's axis."""
 
     mass: float
     first_moment: float

@@ -58,10 +58,10 @@ from .io.results_hdf5 import load as load
 from .material import Material as Material
 from .model.beam import Beam as Beam
 from .model.beam import Point as Point
+from .model.beam import graded as graded
 from .model.contribution import At as At
 from .model.contribution import Contribution as Contribution
 from .model.contribution import Remembering as Remembering
-from .model.grading import graded as graded
 from .model.imposed_strains import ImposedStrain as ImposedStrain
 from .model.joints import Joint as Joint
 from .model.load_base import BodyLoad as BodyLoad

@@ -15,8 +15,7 @@ from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinu
 from beamfem.element.presets import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, ShearRigid
 from beamfem.errors import InputError
 from beamfem.material import Material
-from beamfem.model.beam import Beam, Point
-from beamfem.model.grading import graded
+from beamfem.model.beam import Beam, Point, graded
 from beamfem.model.time_functions import Interpolated, kinks_of
 from beamfem.parts.hinge import Hinge
 from beamfem.parts.parts_registry import parts_in

@@ -1,7 +1,5 @@
 """Green-Lagrange strain in the body r0 + y d of a beam, from the strain measures of a continuum."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from beamfem.element.axis import Axis, dot, section_frame
@@ -10,26 +8,20 @@ from beamfem.physics.measures import evaluate, green_lagrange
 Strain = tuple[np.ndarray, np.ndarray, np.ndarray]  # exx, eyy and 2 exy
 
 
-class InverseJacobian(NamedTuple):
-    """Entries of J^-1 = [[k11, 0], [k21, k22]] with J = (r0' + y d', d) of the reference, and det J.
+InverseJacobian = tuple[np.ndarray, np.ndarray, np.ndarray]  # k11, k21 and k22 of [[k11, 0], [k21, k22]]
 
-    Components are those along n and t = d / |d|.
+
+def inverse_jacobian(reference: Axis, y: np.ndarray) -> tuple[InverseJacobian, np.ndarray]:
+    """Return J^-1 and det J (..., heights) of points (...) of the reference axis at heights y (heights,) [m].
+
+    J = (r0' + y d', d); components are those along n and t = d / |d|.
     """
-
-    k11: np.ndarray
-    k21: np.ndarray
-    k22: np.ndarray
-    volume: np.ndarray
-
-
-def inverse_jacobian(reference: Axis, y: np.ndarray) -> InverseJacobian:
-    """Return J^-1 of points (...) of the reference axis at heights y (heights,) [m]; entries (..., heights)."""
     along, across = section_frame(reference.d)
     first = reference.r_s[..., None, :] + y[..., None] * reference.d_s[..., None, :]
     j11, j21 = dot(first, along[..., None, :]), dot(first, across[..., None, :])
     j22 = np.linalg.norm(reference.d, axis=-1)[..., None]
     k11, k22 = 1.0 / j11, 1.0 / j22
-    return InverseJacobian(k11, -j21 * k11 * k22, k22, j11 * j22)
+    return (k11, -j21 * k11 * k22, k22), j11 * j22
 
 
 def convected(measures: np.ndarray, y: np.ndarray) -> Strain:
@@ -41,20 +33,20 @@ def convected(measures: np.ndarray, y: np.ndarray) -> Strain:
 
 def in_section_frame(inverse: InverseJacobian, strain: Strain) -> Strain:
     """Return E = J^-T (E_convected) J^-1 in the frame of the section."""
-    (k11, k21, k22, _), (xx, yy, xy) = inverse, strain
+    (k11, k21, k22), (xx, yy, xy) = inverse, strain
     return k11**2 * xx + k21**2 * yy + k11 * k21 * xy, k22**2 * yy, 2.0 * k21 * k22 * yy + k11 * k22 * xy
 
 
 def strain_of_measures(reference: Axis, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the derivative (..., heights, 3, 6) of (exx, eyy, 2 exy) by the measures, and det J (..., heights)."""
-    inverse = inverse_jacobian(reference, y)
-    entries = InverseJacobian(*(each[..., None, :] for each in inverse))
+    (k11, k21, k22), volume = inverse_jacobian(reference, y)
+    entries = k11[..., None, :], k21[..., None, :], k22[..., None, :]
     rows = np.stack(in_section_frame(entries, convected(np.eye(6), y)), axis=-3)
-    return np.moveaxis(rows, -1, -3), inverse.volume
+    return np.moveaxis(rows, -1, -3), volume
 
 
 def green_strain(now: Axis, reference: Axis, y: np.ndarray) -> Strain:
     """Return exx, eyy and 2 exy (..., heights) at heights y (heights,) [m] in the frame of the reference."""
     change = evaluate(green_lagrange, now.r_s, now.d, now.d_s)
     change = change - evaluate(green_lagrange, reference.r_s, reference.d, reference.d_s)
-    return in_section_frame(inverse_jacobian(reference, y), convected(change, y))
+    return in_section_frame(inverse_jacobian(reference, y)[0], convected(change, y))

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -10,6 +10,7 @@ from scipy.sparse.linalg import ArpackError, LinearOperator, eigs, eigsh
 
 from beamfem.errors import ConvergenceError
 from beamfem.linalg.lapack import LinAlgError, cholesky, eig, eigh, solve_triangular
+from beamfem.linalg.tangent import Factorised
 
 # Computing all eigenpairs takes no longer than computing a few with so many unknowns, or with so few times the number
 # of pairs. It also calls BLAS with large matrices, whose threads wait for each other for seconds on a busy computer.
@@ -18,12 +19,6 @@ _UNKNOWNS_PER_PAIR = 6
 _LARGEST_DENSE = 4000  # unknowns up to which all eigenpairs are computed if the iteration for a few fails
 MOST_RESTARTS = 100  # of an iteration, which needs about ten unless round-off leaves no accurate digits
 _LANCZOS_VECTORS = (1, 3)  # times the usual number
-
-
-class Solver(Protocol):
-    """The factors of a matrix; `solve` gives zero in constrained directions."""
-
-    def solve(self, right: np.ndarray) -> np.ndarray: ...
 
 
 Pairs = tuple[np.ndarray, np.ndarray]
@@ -45,7 +40,7 @@ def nothing_known(n: int) -> Pairs:
     return np.empty(0), np.empty((n, 0))
 
 
-def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarray) -> Pairs:
+def largest_pairs(mass: csr_array, factors: Factorised, count: int, known: np.ndarray) -> Pairs:
     """Return the largest mu (m,), descending, and x (n, m) with K^-1 mass x = mu x and x^T mass x = 1.
 
     mass: positive definite, without the rows of multipliers, which have none; factors: of K, symmetric and positive
@@ -188,7 +183,7 @@ def _extended(basis: np.ndarray, x: np.ndarray, mass: csr_array) -> np.ndarray:
     return np.column_stack([basis, parts])
 
 
-def general_pairs(mass: csr_array, stiffness: csr_array, factors: Solver, count: int, known: Pairs) -> Pairs:
+def general_pairs(mass: csr_array, stiffness: csr_array, factors: Factorised, count: int, known: Pairs) -> Pairs:
     """Return the largest |mu| (m,) complex, descending, and x (n, m) with mass x = mu stiffness x.
 
     mass: symmetric, positive definite; stiffness: any matrix, and its factors; known: pairs that are not to be found

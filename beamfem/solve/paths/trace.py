@@ -258,10 +258,9 @@ def trace_equilibrium(
         if start is not None:
             raise InputError("step is the load factor of the second point of a path from 0; a branch finds its own")
     count("points", points)
-    if direction is not None and (isinstance(direction, bool) or not isinstance(direction, int | np.integer)):
+    whole = isinstance(direction, int | np.integer) and not isinstance(direction, bool)
+    if direction is not None and not (whole and direction in (1, -1)):
         raise InputError(f"direction must be 1 or -1, got {shown(direction)}")
-    if direction not in (None, 1, -1):
-        raise InputError(f"direction must be 1 or -1, got {direction}")
     if direction is None:
         direction = -1 if start is None and isinstance(until, float) and until < 0.0 else 1
     newton = require_newton(newton, Newton(iterations=_ITERATIONS))

@@ -95,6 +95,8 @@ class Model:
 
     Supports, joints, point loads, connectors and kinks of loads along beams place a mesh node at their point. Warns
     with UnitsWarning if a Young's modulus, a density, gravity or a section cannot be meant in the units that are named.
+    Raises InputError for an invalid value; UnknownPointError for a support, load, joint or connector on a beam that is
+    not in the model.
 
     Parameters
     ----------
@@ -115,13 +117,6 @@ class Model:
         Concentrated masses, `PointMass` and `RigidBody`.
     frame : RotatingFrame, optional
         Frame of reference that rotates, by default one at rest.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
-    UnknownPointError
-        For a support, load, joint or connector on a beam that is not in the model.
 
     Examples
     --------

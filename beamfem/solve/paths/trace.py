@@ -1,5 +1,6 @@
 """Equilibrium paths by arc-length continuation, through limit points in load and in displacement."""
 
+import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
@@ -449,7 +450,8 @@ def _step(
         reaches = size >= to_kink / _AHEAD
         outcome = take_step(line, point, to_kink, kink) if reaches else take_step(line, point, size)
         record.iterations += outcome.iterations
-        if isinstance(outcome, Step) and _passes(outcome, kink):
+        ends = (outcome.segment.before, outcome.segment.after) if isinstance(outcome, Step) else ()
+        if kink is not None and math.prod(end.load_factor - kink for end in ends) < 0.0:
             outcome = Refused(f"a function has a kink at load factor {kink:.6g} within the step", outcome.iterations)
         if isinstance(outcome, Step):
             try:
@@ -468,12 +470,6 @@ def _step(
                 f"{record.ended}, with steps along it down to {size:.1e}{advice(record.model, point.y[:-1])}",
                 record.path(),
             )
-
-
-def _passes(step: Step, kink: float | None) -> bool:
-    """Return whether a step passes a kink."""
-    before, after = step.segment.before.load_factor, step.segment.after.load_factor
-    return kink is not None and (after - kink) * (before - kink) < 0.0
 
 
 def _landing(line: Continuation, step: Step, load_factor: float) -> PathPoint | None:

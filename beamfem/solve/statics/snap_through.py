@@ -44,7 +44,8 @@ def rest_state(
     p = limit[:-1] + aside
     p[system.prescribed_dofs] = system.prescribed_values(load_factor)
     mass = _mass(system, p, load_factor)
-    pull = abs(float(aside[free] @ _unbalanced(system, p, load_factor)[free]))
+    zeros = np.zeros(len(p))
+    pull = abs(float(aside[free] @ residual(system, p, zeros, zeros, load_factor)[free]))
     time = float(aside[free] @ (mass @ aside[free])) / max(pull, np.finfo(float).tiny)
     iterations = waits = wait = 0
     shortest = _SHORTEST * time
@@ -126,11 +127,6 @@ class _EulerStep(SingleCorrections):
 def _mass(system: System, p: np.ndarray, load_factor: float) -> np.ndarray:
     zeros = np.zeros(len(p))
     return linearise(system, p, zeros, zeros, load_factor, INERTIA)[1].sparse(UNROTATED)
-
-
-def _unbalanced(system: System, p: np.ndarray, load_factor: float) -> np.ndarray:
-    zeros = np.zeros(len(p))
-    return residual(system, p, zeros, zeros, load_factor)
 
 
 def _size(system: System, change: np.ndarray) -> float:

@@ -337,9 +337,6 @@ class Model:
         """Return the number of a beam, counted from 0.
 
         Raises InputError for anything but a beam, UnknownPointError for a beam that is not in the model.
-
-        >>> model.number_of(beam)
-        0
         """
         if not isinstance(beam, Beam):
             raise InputError(f"a beam is asked for, one of the model's beams, got {shown(beam)}")
@@ -354,9 +351,6 @@ class Model:
         """Return the mesh that a point lies on, which is that of its beam.
 
         Raises InputError for anything but a point, UnknownPointError for a point on a beam that is not in the model.
-
-        >>> model.mesh_of(beam.end).elements
-        4
         """
         if not isinstance(point, Point):
             raise InputError(f"a point is asked for, such as beam.end or beam.at(0.5), got {shown(point)}")
@@ -447,8 +441,6 @@ class Model:
 
         Nothing is solved, so mechanisms and overloaded models can be drawn too. path: file to write (PNG, SVG, PDF).
         Raises MissingPackageError without matplotlib.
-
-        >>> figure = model.plot("model.png")
         """
         from beamfem.view.drawing import plot_model
 

@@ -197,10 +197,7 @@ class Section:
         return Inertia(density * self.area, 0.0, density * self.second_moment)
 
     def moments(self, material: Material | None) -> list[tuple[Material, np.ndarray]]:
-        """Return the material with (A, 0, I, 0, I4), see `CrossSection.moments`.
-
-        Raises InputError without a material.
-        """
+        """Return the material with (A, 0, I, 0, I4), see `CrossSection.moments`."""
         return [(required(material), np.array([self.area, 0.0, self.second_moment, 0.0, self.fourth_moment]))]
 
     def materials_at(self, y: np.ndarray, material: Material | None) -> list[tuple[Material, np.ndarray]]:
@@ -208,19 +205,13 @@ class Section:
         return [(required(material), np.ones_like(y, dtype=bool))]
 
     def strips(self, material: Material | None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
-        """Return a Gauss rule over the rectangle with the same area and second moment, see `CrossSection.strips`.
-
-        Raises InputError without a material.
-        """
+        """Return a Gauss rule over the rectangle with the same area and second moment, see `CrossSection.strips`."""
         half = 0.5 * self._equivalent_height
         heights, weights = gauss_between(-half, half, _STRIPS)
         return [(required(material), heights, self.width * weights)]
 
     def parts(self, material: Material | None) -> tuple[Part, ...]:
-        """Return the section as one part, given by its moments and, if it is known, its height.
-
-        Raises InputError without a material.
-        """
+        """Return the section as one part, given by its moments and, if it is known, its height."""
         low, high = self.bounds
         moments = (self.area, 0.0, self.second_moment, 0.0, float(self.fourth_moment or 0.0))
         return (Part(required(material).youngs_modulus, MomentsOutline(moments, low, high, self.height is not None)),)

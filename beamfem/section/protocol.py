@@ -67,7 +67,4 @@ class HasParts(Protocol):
     """A section whose shape is known, at least in part."""
 
     def parts(self, material: Material | None) -> tuple[Part, ...]:
-        """Return the parts from the bottom up, from which the stress over the height follows.
-
-        Raises InputError if the section needs a material and gets none.
-        """
+        """Return the parts from the bottom up, from which the stress over the height follows."""

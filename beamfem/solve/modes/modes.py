@@ -205,9 +205,6 @@ class Modes:
         """Return frequency [Hz], growth [1/s] and rigid motion of the modes as a table, one row per mode.
 
         Raises MissingPackageError without pandas.
-
-        >>> list(bf.solve_modes(model, count=2).to_pandas().columns)
-        ['frequency', 'growth', 'rigid']
         """
         rigid = [*self.rigid, *[""] * (len(self) - len(self.rigid))]
         rows = list(zip(self.frequencies.tolist(), self.growth.tolist(), rigid, strict=True))
@@ -232,8 +229,6 @@ class Modes:
 
         Dark: the mode at its largest; pale: half a period later; dashed: the reference. path: file to write (PNG, SVG,
         PDF). Raises InputError if there are no modes to draw, MissingPackageError without matplotlib.
-
-        >>> figure = bf.solve_modes(model, count=2).plot("modes.png")
         """
         from beamfem.view.mode_shapes import plot_modes
 

@@ -102,10 +102,6 @@ class Buckling:
 
         amplitude [m]: largest displacement, by default a tenth of the longest beam. Raises InputError if there is no
         critical point.
-
-        >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e3, 0.0))])
-        >>> len(bf.solve_buckling(column).solution(mode=0))
-        2
         """
         if len(self) == 0:
             raise InputError(f"there is no critical point: {self.ended}")
@@ -121,10 +117,6 @@ class Buckling:
         """Return load factor, kind and uncertainty of the critical points as a table, one row per point.
 
         Raises MissingPackageError without pandas.
-
-        >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e3, 0.0))])
-        >>> list(bf.solve_buckling(column).to_pandas().columns)
-        ['load_factor', 'kind', 'uncertainty']
         """
         rows = list(zip(self.load_factors.tolist(), self.kinds, self.uncertainty.tolist(), strict=True))
         return as_pandas(("load_factor", "kind", "uncertainty"), rows)
@@ -144,9 +136,6 @@ class Buckling:
 
         Pale: the critical state; dark: the same state plus the mode; dashed: the reference. path: file to write (PNG,
         SVG, PDF). Raises InputError if there are no modes to draw, MissingPackageError without matplotlib.
-
-        >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e3, 0.0))])
-        >>> figure = bf.solve_buckling(column).plot("buckling.png")
         """
         from beamfem.view.mode_shapes import plot_buckling
 

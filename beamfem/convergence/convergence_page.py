@@ -4,24 +4,21 @@ from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from beamfem.convergence.convergence_result import EXPLANATION
+from beamfem.convergence.convergence_result import EXPLANATION, Convergence
+from beamfem.convergence.refinement_curve import Curve
 from beamfem.tables import Rows, cells
 from beamfem.view.html_page import Entry, Part, Table, write_page
 from beamfem.view.plots import COLOURS, new_figure, save_figure
-
-if TYPE_CHECKING:
-    from beamfem.convergence.convergence_result import Convergence
-    from beamfem.convergence.refinement_curve import Curve
 
 # curves are told apart by marker as well: in grey print, and where there are more of them than colours
 _MARKERS = "osD^vP*X<>"
 
 
-def plot_errors(study: "Convergence", path: str | PathLike[str] | None = None) -> Any:
+def plot_errors(study: Convergence, path: str | PathLike[str] | None = None) -> Any:
     """Draw one curve a combination, hollow where errors are round-off, and slope triangles; return the figure."""
     figure, axes = new_figure(7.2, 5.0)
     axes.set_xscale("log")
@@ -51,13 +48,13 @@ def plot_errors(study: "Convergence", path: str | PathLike[str] | None = None) -
     return figure
 
 
-def _order(curve: "Curve") -> str:
+def _order(curve: Curve) -> str:
     assert curve.fit is not None
     band = curve.fit.band
     return f"{curve.fit.order:.2f}" if np.isnan(band) else f"{curve.fit.order:.2f} ± {band:.2f}"
 
 
-def _axis_labels(axes: Any, study: "Convergence") -> None:
+def _axis_labels(axes: Any, study: Convergence) -> None:
     axes.set_xlabel(study.refine)
     axes.set_ylabel(f"{study.error_name} of {study.quantity}")
     ticks = sorted({value for curve in study.curves for value in curve.refinement})
@@ -66,7 +63,7 @@ def _axis_labels(axes: Any, study: "Convergence") -> None:
         axes.minorticks_off()
 
 
-def _triangle(axes: Any, curve: "Curve", colour: str) -> None:
+def _triangle(axes: Any, curve: Curve, colour: str) -> None:
     """Below the last fitted interval: its legs are one step of refinement and the fall that the order promises."""
     fit = curve.fit
     assert fit is not None
@@ -88,7 +85,7 @@ def _triangle(axes: Any, curve: "Curve", colour: str) -> None:
     )
 
 
-def write_study(study: "Convergence", path: str | PathLike[str]) -> Path:
+def write_study(study: Convergence, path: str | PathLike[str]) -> Path:
     """Write one self-contained HTML file with the picture and the tables; return its path."""
     with TemporaryDirectory() as folder:
         picture = Path(folder) / "errors.svg"

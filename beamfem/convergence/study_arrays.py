@@ -1,17 +1,15 @@
 """A convergence study as labelled arrays: curves times refinement."""
 
 from numbers import Real
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from beamfem.convergence.convergence_result import Convergence
 from beamfem.extras import needed_for
 
-if TYPE_CHECKING:
-    from beamfem.convergence.convergence_result import Convergence
 
-
-def as_grid(study: "Convergence") -> Any:
+def as_grid(study: Convergence) -> Any:
     """Return the xarray.Dataset of a study, see `Convergence.to_xarray`."""
     with needed_for("to_xarray"):
         import xarray

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,12 +16,10 @@ from beamfem.model.supports import DIRECTIONS, LineSupport, PointSupport
 from beamfem.parts.at_points import PartAlongBeam
 from beamfem.results import postprocess
 from beamfem.results.reactions import reaction_of
+from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
 from beamfem.results.stations import StationsOfRows
 from beamfem.validation import require_known
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
 
 # values of a vertex by name, and how many components each has
 COMPONENTS = {"force": 3, "moment": 1, "line_force": 3, "acceleration": 3, "prescribed": 3, "stiffness": 3}
@@ -45,7 +42,7 @@ class Vertices:
     mesh: BeamMesh
     element: np.ndarray
     xi: np.ndarray
-    values: Callable[["Solution"], _Values]
+    values: Callable[[Solution], _Values]
 
 
 def vertices(model: Model) -> list[Vertices]:
@@ -100,8 +97,8 @@ def _fixed(supports: list[PointSupport]) -> _Values:
     return {name: array for name, array in (("prescribed", prescribed), ("stiffness", stiffness)) if array.any()}
 
 
-def _reaction(supports: list[PointSupport], fixed: _Values) -> Callable[["Solution"], _Values]:
-    def values(part: "Solution") -> _Values:
+def _reaction(supports: list[PointSupport], fixed: _Values) -> Callable[[Solution], _Values]:
+    def values(part: Solution) -> _Values:
         reactions = reaction_of(part, supports)[:, None]
         constant = {name: np.tile(array, (len(part), 1, 1)) for name, array in fixed.items()}
         return {"force": flat(reactions[..., :2]), "moment": reactions[..., 2:], **constant}
@@ -111,11 +108,11 @@ def _reaction(supports: list[PointSupport], fixed: _Values) -> Callable[["Soluti
 
 def _of_foundation(
     foundation: LineSupport, mesh: BeamMesh, element: np.ndarray, xi: np.ndarray
-) -> Callable[["Solution"], _Values]:
+) -> Callable[[Solution], _Values]:
     stiffness = np.array(foundation.stiffness)
     start = reference_position(mesh, element, xi)
 
-    def values(part: "Solution") -> _Values:
+    def values(part: Solution) -> _Values:
         position = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, part.p), element, xi).r
         return {"line_force": flat(-stiffness * (position - start))}
 
@@ -144,8 +141,8 @@ def _loaded(model: Model, place: Beam | Point | None) -> list[tuple[BeamMesh, np
 
 def _of_load(
     load: Load, acting: Mapping[str, np.ndarray], mesh: BeamMesh, element: np.ndarray, xi: np.ndarray
-) -> Callable[["Solution"], _Values]:
-    def values(part: "Solution") -> _Values:
+) -> Callable[[Solution], _Values]:
+    def values(part: Solution) -> _Values:
         system, times = loading(part)
         factors = np.array([factor(load, float(time), system.static) for time in times])[:, None, None]
         stations = StationsOfRows(part, mesh, element, xi)
@@ -167,8 +164,8 @@ def _connectors(model: Model) -> Iterator[Vertices]:
             yield Vertices(type(connector).__name__, _CONNECTOR, _ACTION, *_at(model, point), values)
 
 
-def _of_connector(connector: Contribution, number: int) -> Callable[["Solution"], _Values]:
-    def values(part: "Solution") -> _Values:
+def _of_connector(connector: Contribution, number: int) -> Callable[[Solution], _Values]:
+    def values(part: Solution) -> _Values:
         forces = part.connector_force(connector)[:, number : number + 1]
         return {"force": flat(forces[..., :2]), "moment": forces[..., 2:]}
 

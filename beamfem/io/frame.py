@@ -3,12 +3,13 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from beamfem.curves import BSpline, Chain, Curve, Line, Polyline
 from beamfem.errors import InputError
+from beamfem.io.line_mesh import LineMesh
 from beamfem.io.mesh_chains import Piece, chains
 from beamfem.model.beam import Beam, Point
 from beamfem.model.joints import Joint
@@ -16,9 +17,6 @@ from beamfem.parts.hinge import Hinge
 from beamfem.parts.rigid import Rigid
 from beamfem.reprs import brief
 from beamfem.validation import count, items, one_of, require_known, shown, vector
-
-if TYPE_CHECKING:
-    from beamfem.io.line_mesh import LineMesh
 
 Members = Literal["cells", "chains"]
 _STRAIGHT = 1e-9  # of a chord: a smaller rise of the middle node is round-off
@@ -52,7 +50,7 @@ class Frame:
 
     beams: tuple[Beam, ...]
     joints: tuple[Joint, ...]
-    mesh: "LineMesh"
+    mesh: LineMesh
     owner: np.ndarray
     places: tuple[tuple[Point, ...], ...]
 
@@ -131,7 +129,7 @@ class Frame:
 
 
 def build_frame(
-    mesh: "LineMesh",
+    mesh: LineMesh,
     elements: Any,
     element: Any,
     section: Any,
@@ -180,7 +178,7 @@ def _named(sets: Mapping[str, np.ndarray], kind: str, name: str) -> np.ndarray:
     return sets[name]
 
 
-def _each(mesh: "LineMesh", what: str, value: Any) -> Sequence[Any]:
+def _each(mesh: LineMesh, what: str, value: Any) -> Sequence[Any]:
     """Return the value for each cell, given for all cells or by member set. Raises InputError."""
     if not isinstance(value, Mapping):
         return [value] * len(mesh.cells)

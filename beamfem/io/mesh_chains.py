@@ -1,11 +1,8 @@
 """Chains of mesh cells, as the members of a frame that has been divided into many cells."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from beamfem.io.line_mesh import LineMesh
+from beamfem.io.line_mesh import LineMesh
 
 # a cell, and whether it is run through from its end to its start
 Piece = tuple[int, bool]
@@ -13,7 +10,7 @@ Piece = tuple[int, bool]
 _TURN = np.cos(np.radians(30.0))  # more is a corner of the frame; a circle of 13 straight cells is still smooth
 
 
-def chains(mesh: "LineMesh", hinged: np.ndarray) -> list[list[Piece]]:
+def chains(mesh: LineMesh, hinged: np.ndarray) -> list[list[Piece]]:
     """Return the cells of each member, in order.
 
     A member continues through a node if exactly two cells meet there, both in the same sets, at an angle below 30
@@ -44,7 +41,7 @@ def _forwards(line: list[Piece]) -> list[Piece]:
     return [(cell, not backwards) for cell, backwards in reversed(line)]
 
 
-def _followers(mesh: "LineMesh", hinged: np.ndarray) -> dict[Piece, Piece]:
+def _followers(mesh: LineMesh, hinged: np.ndarray) -> dict[Piece, Piece]:
     """Return the piece that follows a piece, if any."""
     ends = mesh.cells[:, :2]
     node = ends.ravel()
@@ -68,7 +65,7 @@ def _followers(mesh: "LineMesh", hinged: np.ndarray) -> dict[Piece, Piece]:
     return result
 
 
-def _outward(mesh: "LineMesh") -> np.ndarray:
+def _outward(mesh: LineMesh) -> np.ndarray:
     """Unit tangents (2 m, 2) out of each cell at its start and at its end."""
     start, end, middle = mesh.cells.T
     a, b = mesh.nodes[start], mesh.nodes[end]

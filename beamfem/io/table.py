@@ -2,7 +2,7 @@
 
 from dataclasses import asdict
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,10 +12,8 @@ from beamfem.model.model import Model
 from beamfem.results.axis_fields import QUANTITIES, AxisPoints, section_forces
 from beamfem.results.batched_beams import LikeBeams, equal_beams
 from beamfem.results.beam_stress import stress_at
-
-if TYPE_CHECKING:
-    from beamfem.results.energies import Energy
-    from beamfem.results.solution import Solution
+from beamfem.results.energies import Energy
+from beamfem.results.solution import Solution
 
 _PIECES = 4  # of an element between neighbouring points
 _STRESSES = {
@@ -28,7 +26,7 @@ Variable = tuple[tuple[str, ...], np.ndarray, dict[str, str]]
 Variables = dict[str, Variable]
 
 
-def arrays(solution: "Solution", beam: Beam | None) -> tuple[Variables, Variables]:
+def arrays(solution: Solution, beam: Beam | None) -> tuple[Variables, Variables]:
     """Return data and coordinates by name: dimensions, values, and attributes with `units` and `long_name`.
 
     The first dimension is `time` or `load_factor`. Data along the beam, or all beams in succession (time, station): x,
@@ -44,7 +42,7 @@ def arrays(solution: "Solution", beam: Beam | None) -> tuple[Variables, Variable
     return side_by_side([_of_group(solution, group, energy) for group in groups])
 
 
-def _of_group(solution: "Solution", group: LikeBeams, energy: "Energy") -> tuple[Variables, Variables]:
+def _of_group(solution: Solution, group: LikeBeams, energy: Energy) -> tuple[Variables, Variables]:
     """Return the `arrays` of like beams."""
     points, about = group.points, partial(named, solution.model)
     along_beam = stations(solution.model, group)
@@ -104,7 +102,7 @@ def _called(model: Model) -> dict[str, str]:
     return known["_called"]
 
 
-def to_xarray(solution: "Solution", beam: Beam | None = None) -> Any:
+def to_xarray(solution: Solution, beam: Beam | None = None) -> Any:
     """Return an xarray.Dataset of the `arrays` of a beam, or of all beams in succession; statistics are its attributes.
 
     Of one beam, arc_length is a dimension, so that `sel`, `interp` and `plot` go by it. No arc length is there twice,
@@ -131,7 +129,7 @@ def as_dataset(data: Variables, coordinates: Variables, attributes: dict[str, An
     return dataset.swap_dims(station="arc_length")
 
 
-def to_pandas(solution: "Solution", beam: Beam | None = None) -> Any:
+def to_pandas(solution: Solution, beam: Beam | None = None) -> Any:
     """Return a pandas.DataFrame of quantities along a beam, or along all, with a row for each time and station.
 
     Its index is time [s] or load_factor, number of the beam and arc_length [m]; columns: see `arrays`. No row of the

@@ -7,7 +7,6 @@ import signal
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
 from uuid import uuid4
 from xml.sax.saxutils import quoteattr
 
@@ -19,10 +18,8 @@ from beamfem.errors import FileError, InputError
 from beamfem.extras import needed_for
 from beamfem.io.vtk_boundary import Boundary
 from beamfem.io.vtk_cells import LINE, UNITS, Cells, Content, Geometry, Grid, times
+from beamfem.results.solution import Solution
 from beamfem.validation import items
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
 
 _deferred = Deferred(signal.valid_signals())  # a process that is interrupted while it loads VTK may crash
 with _deferred, needed_for("to_vtk"):
@@ -37,7 +34,7 @@ _STEPS_BETWEEN_PUBLISHING = 50
 
 
 def write_vtk(
-    solution: "Solution",
+    solution: Solution,
     path: str | PathLike[str],
     *,
     geometry: Geometry = "deformed",
@@ -83,7 +80,7 @@ def write_vtk(
             write_vtkhdf(solution, target, cells, max(1, VALUES_IN_MEMORY // cells.points))
 
 
-def _write_series(solution: "Solution", path: Path, cells: Grid) -> None:
+def _write_series(solution: Solution, path: Path, cells: Grid) -> None:
     series = _Series(path, cells, "load_factor" if solution.static else "time", times(solution.at))
     chunk = max(1, VALUES_IN_MEMORY // cells.points)
     try:
@@ -125,7 +122,7 @@ class _Series:
         self.writer.SetInputData(self.grid)
         self.writer.EncodeAppendedDataOff()
 
-    def write(self, solution: "Solution", rows: slice) -> None:
+    def write(self, solution: Solution, rows: slice) -> None:
         """Write a file a step, of some rows of a solution."""
         arrays = self.cells.arrays(solution, rows)
         for row, value in enumerate(solution.at[rows]):

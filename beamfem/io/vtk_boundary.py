@@ -1,7 +1,5 @@
 """Supports, loads and connectors in ParaView files: a vertex for each place, with what acts on the beam there."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from beamfem.cached_properties import cached_property
@@ -10,9 +8,7 @@ from beamfem.io.vtk_cells import VERTEX, Content, by_precision, legend_of_beams
 from beamfem.mesh.reference import reference_position
 from beamfem.model.model import Model
 from beamfem.results import postprocess
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
+from beamfem.results.solution import Solution
 
 
 class Boundary:
@@ -73,7 +69,7 @@ class Boundary:
         present = {name for group in self.groups for name in group.fields}
         return ["displacement", *(name for name in COMPONENTS if name in present)]
 
-    def arrays(self, solution: "Solution", rows: slice) -> dict[str, np.ndarray]:
+    def arrays(self, solution: Solution, rows: slice) -> dict[str, np.ndarray]:
         """Return points and fields (steps, points) and (steps, points, 3) of some rows; what nothing has is left out.
 
         A displacement is that of the axis; what does not apply at a vertex is zero there.

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
@@ -11,13 +11,11 @@ from beamfem.io.vtk_points import Samples, bodies, centrelines
 from beamfem.material import Material
 from beamfem.model.beam import Beam, names
 from beamfem.model.model import Model
+from beamfem.results.solution import Solution
 from beamfem.results.stresses import warn_of_unknown_stress
 from beamfem.section import Layered
 from beamfem.validation import flag, one_of, require_known, shown
 from beamfem.value_keys import by_value
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
 
 UNITS = {
     "points": "m",
@@ -114,7 +112,7 @@ class Grid(Protocol):
         """Meaning of the numbers of cells, by name."""
         ...
 
-    def arrays(self, solution: "Solution", rows: slice) -> dict[str, np.ndarray]:
+    def arrays(self, solution: Solution, rows: slice) -> dict[str, np.ndarray]:
         """Return points and fields (steps, points) and (steps, points, 3 or 6) of some rows of a solution."""
         ...
 
@@ -183,12 +181,12 @@ class Cells:
         unknown = sorted({number for part in self.samples for number in part.unknown})
         warn_of_unknown_stress(self.beams, unknown, "left out" if len(unknown) == len(self.beams) else "nan")
 
-    def names(self, solution: "Solution") -> list[str]:
+    def names(self, solution: Solution) -> list[str]:
         """Return the fields that there are."""
         parts = [part.arrays(solution, slice(1)) for part in self.samples]
         return [name for name in self._known(parts) if name != "points"]
 
-    def arrays(self, solution: "Solution", rows: slice) -> dict[str, np.ndarray]:
+    def arrays(self, solution: Solution, rows: slice) -> dict[str, np.ndarray]:
         """Return the fields at all points, (steps, points) and (steps, points, 3 or 6), of some rows of a solution.
 
         A stress that is known nowhere is left out, and so are what `content` does not name and, unless it names them,

@@ -1,7 +1,5 @@
 """Points of bodies and centrelines in the cells of ParaView files, and the fields there."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from beamfem.cached_properties import cached_property
@@ -13,11 +11,9 @@ from beamfem.results import postprocess
 from beamfem.results.axis_fields import AxisPoints, rotation, section_forces
 from beamfem.results.batched_beams import LikeBeams, equal_beams
 from beamfem.results.self_stress import self_stress
+from beamfem.results.solution import Solution
 from beamfem.results.stresses import in_the_plane, second_piola_kirchhoff, von_mises
 from beamfem.section import Layered
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
 
 _LINES_PER_ELEMENT = 12
 _ACROSS = 2  # intervals of a layer, whose stress is a parabola at most
@@ -66,7 +62,7 @@ class Samples:
             return beam.section.layers[self.layer].material
         return beam.material
 
-    def arrays(self, solution: "Solution", rows: slice = slice(None)) -> dict[str, np.ndarray]:
+    def arrays(self, solution: Solution, rows: slice = slice(None)) -> dict[str, np.ndarray]:
         """Return numbers (steps, points), vectors (..., 3) and tensors (..., 6) of some rows of a solution."""
         element, xi, p, v = self.points.element, self.points.xi, solution.p[rows], solution.v[rows]
         now = postprocess.axis(self.mesh, postprocess.nodal_vectors(self.mesh, p), element, xi)

@@ -5,20 +5,18 @@ Source: Kitware, VTKHDF File Format 2.6 (temporal UnstructuredGrid), docs.vtk.or
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from beamfem.io.hdf5 import write_hdf5
 from beamfem.io.vtk_cells import UNITS, Grid, times
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
+from beamfem.results.solution import Solution
 
 _CHUNK_BYTES = 2**16
 
 
-def write_vtkhdf(solution: "Solution", path: Path, cells: Grid, chunk: int) -> None:
+def write_vtkhdf(solution: Solution, path: Path, cells: Grid, chunk: int) -> None:
     """Write the cells of a solution, `chunk` rows at a time; readers see the old file or the whole new one.
 
     Cells are stored once, points and point data for every step. Raises MissingPackageError without h5py.
@@ -30,7 +28,7 @@ def write_vtkhdf(solution: "Solution", path: Path, cells: Grid, chunk: int) -> N
     write_hdf5(path, fill)
 
 
-def _write(root: Any, solution: "Solution", cells: Grid, chunk: int, require_written: Callable[[], None]) -> None:
+def _write(root: Any, solution: Solution, cells: Grid, chunk: int, require_written: Callable[[], None]) -> None:
     root.attrs["Version"] = np.array([2, 6])
     # a string of fixed length, as the format demands
     root.attrs.create("Type", np.bytes_("UnstructuredGrid"))
@@ -78,7 +76,7 @@ def _write(root: Any, solution: "Solution", cells: Grid, chunk: int, require_wri
 
 
 def _write_steps(
-    group: Any, solution: "Solution", cells: Grid, point_data: list[str], cell_data: list[str], name: str
+    group: Any, solution: Solution, cells: Grid, point_data: list[str], cell_data: list[str], name: str
 ) -> None:
     """Say where in the arrays each step begins; one part and one set of cells for all."""
     steps = len(solution)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -16,10 +16,8 @@ from beamfem.results.beam_stress import stress_at, stress_over_height
 from beamfem.results.free_bodies import Cuts
 from beamfem.results.full_turns import turned_of
 from beamfem.results.section_forces import at_points
+from beamfem.results.solution import Solution
 from beamfem.validation import require_known, shown
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,21 +97,21 @@ class PointsAt(AxisPoints):
         return self.cuts.xi
 
 
-def section_forces(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> dict[str, np.ndarray]:
+def section_forces(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> dict[str, np.ndarray]:
     """Return normal and shear force [N] and moment [N m] (rows, points) of some rows of a solution, by name."""
     cuts = Cuts(points.element, points.xi)
     forces = at_points(solution, points.mesh, cuts, rows)
     return {name: forces[:, i] for i, name in enumerate(("normal", "shear", "moment"))}
 
 
-def rotation(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+def rotation(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
     """Return the rotation of the section from the reference configuration (rows, points) [rad]."""
     turned, p = turned_of(solution, points.mesh), solution.p[rows]
     counted = None if turned is None else turned[rows]
     return postprocess.section_rotation(points.mesh, p, points.now(p), points.element, points.xi, counted)
 
 
-Values = Callable[[AxisPoints, "Solution", slice | np.ndarray], np.ndarray]
+Values = Callable[[AxisPoints, Solution, slice | np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -141,36 +139,36 @@ class Quantity:
 
 
 def _section_force(name: str) -> Callable[..., np.ndarray]:
-    def values(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+    def values(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
         return section_forces(points, solution, rows)[name]
 
     return values
 
 
-def _axial_strain(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+def _axial_strain(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
     return postprocess.strain_at_axis(points.mesh, points.now(solution.p[rows]), points.element, points.xi).xx
 
 
-def _shear_angle(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+def _shear_angle(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
     return postprocess.shear_angle(points.now(solution.p[rows]))
 
 
-def _displacement(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+def _displacement(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
     return np.asarray(np.linalg.norm(points.positions(solution.p[rows])[0] - points.reference, axis=-1))
 
 
-def _speed(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+def _speed(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
     return np.asarray(np.linalg.norm(points.velocities(solution.p[rows], solution.v[rows]), axis=-1))
 
 
 def _stress(name: str) -> Callable[..., np.ndarray]:
-    def values(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+    def values(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
         return stress_at(solution, points.mesh, points.element, points.xi, rows)[name]
 
     return values
 
 
-def _outer(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+def _outer(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
     stress = stress_at(solution, points.mesh, points.element, points.xi, rows)
     return np.where(np.abs(stress["upper"]) >= np.abs(stress["lower"]), stress["upper"], stress["lower"])
 
@@ -183,7 +181,7 @@ def _of_stress(label: str, name: str) -> Quantity:
 
 
 def _over_height(name: Literal["von_mises", "utilisation"]) -> Values:
-    def values(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+    def values(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
         return stress_over_height(solution, points.mesh, Cuts(points.element, points.xi), rows, name)
 
     return values

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -14,12 +14,10 @@ from beamfem.results.free_bodies import Cuts
 from beamfem.results.neighbouring_beams import of_beam
 from beamfem.results.section_forces import at_points, by_element, in_parts, peak_of, stations
 from beamfem.results.self_stress import self_stress
+from beamfem.results.solution import Solution
 from beamfem.results.stresses import strengths, von_mises, warn_of_unknown_stress
 from beamfem.units import Units, units_of
 from beamfem.validation import require_known, shown
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
 
 PARTS: tuple[Part, ...] = ("lower", "upper", "tension", "compression", "shear", "von_mises", "utilisation")
 HEIGHTS = np.linspace(0.0, 1.0, 9)  # fractions of a layer: its faces, and the peak of a parabolic shear stress
@@ -79,7 +77,7 @@ class BeamStress:
     beam: Beam
     static: bool = True
     units: Units = field(default=Units(), repr=False)
-    solution: "Solution" = field(repr=False, kw_only=True)
+    solution: Solution = field(repr=False, kw_only=True)
 
     def __repr__(self) -> str:
         rows, stations = self.von_mises.shape
@@ -123,13 +121,13 @@ class BeamStress:
         _require_part(part)
         unit = "-" if part == "utilisation" else "Pa"
 
-        def at(solution: "Solution", mesh: BeamMesh, cuts: Cuts, rows: np.ndarray) -> np.ndarray:
+        def at(solution: Solution, mesh: BeamMesh, cuts: Cuts, rows: np.ndarray) -> np.ndarray:
             return stress_at(solution, mesh, cuts.element, cuts.xi, rows)[part]
 
         return peak_of(self.solution, self.beam, (part, unit), getattr(self, part), _measure(part), at)
 
 
-def beam_stress(solution: "Solution", beam: Beam) -> BeamStress:
+def beam_stress(solution: Solution, beam: Beam) -> BeamStress:
     """Return the stress of a beam at the stations of its section forces."""
     number = solution.model.number_of(beam)
     mesh = solution.model.meshes[number]
@@ -140,14 +138,14 @@ def beam_stress(solution: "Solution", beam: Beam) -> BeamStress:
     return BeamStress(arc, at=solution.at, beam=beam, static=solution.static, units=units, solution=solution, **stress)
 
 
-def _at_stations(solution: "Solution", mesh: BeamMesh) -> np.ndarray:
+def _at_stations(solution: Solution, mesh: BeamMesh) -> np.ndarray:
     """Return all parts of the stress (parts, steps, stations)."""
     cuts = stations(mesh)
     stress = stress_at(solution, mesh, cuts.element, cuts.xi)
     return np.stack([stress[part] for part in PARTS])
 
 
-def peak_stress(solution: "Solution", part: Part = "von_mises") -> Peak:
+def peak_stress(solution: Solution, part: Part = "von_mises") -> Peak:
     """Return the peak of a stress over all beams and rows, as `BeamStress.peak`; nan if none is known.
 
     Warns of beams with sections that define no stress.
@@ -166,7 +164,7 @@ def _require_part(part: str) -> None:
     require_known(f"there is no stress {shown(part)}", part, PARTS)
 
 
-def _estimate(solution: "Solution", beam: Beam, part: Part, measure: Measure) -> float:
+def _estimate(solution: Solution, beam: Beam, part: Part, measure: Measure) -> float:
     values, mesh = getattr(beam_stress(solution, beam), part), solution.model.meshes[solution.model.number_of(beam)]
     return estimate(*by_element(mesh, values), measure)
 
@@ -177,7 +175,7 @@ def _measure(part: Part) -> Measure:
 
 
 def stress_at(
-    solution: "Solution",
+    solution: Solution,
     mesh: BeamMesh,
     element: np.ndarray,
     xi: np.ndarray,
@@ -191,7 +189,7 @@ def stress_at(
 
 
 def stress_over_height(
-    solution: "Solution",
+    solution: Solution,
     mesh: BeamMesh,
     cuts: Cuts,
     rows: slice | np.ndarray,
@@ -210,7 +208,7 @@ def stress_over_height(
 
 
 def _of_rows(
-    solution: "Solution", mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, rows: slice | np.ndarray
+    solution: Solution, mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, rows: slice | np.ndarray
 ) -> dict[str, np.ndarray]:
     extremes = dict[str, np.ndarray]()
     for along, sheared, strength in _layers(solution, mesh, Cuts(element, xi), rows):
@@ -248,7 +246,7 @@ def _largest_of_parabola(stress: np.ndarray) -> np.ndarray:
 
 
 def _layers(
-    solution: "Solution", mesh: BeamMesh, cuts: Cuts, rows: slice | np.ndarray
+    solution: Solution, mesh: BeamMesh, cuts: Cuts, rows: slice | np.ndarray
 ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Yield normal and shear stress (rows, points, heights) [Pa] and the strength (points, 1) [Pa] of each layer."""
     element, xi = cuts.element, cuts.xi

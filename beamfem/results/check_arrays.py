@@ -1,22 +1,20 @@
 """Checks that the arrays of states fit their model, made on construction because users can build states themselves."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.model import Model
+from beamfem.results.path import Bifurcation
+from beamfem.results.solution import Solution, State
 from beamfem.validation import finite, flag, shown
-
-if TYPE_CHECKING:
-    from beamfem.results.path import Bifurcation
-    from beamfem.results.solution import Solution, State
 
 _REAL = "fiu"  # dtype kinds
 _TYPES = {_REAL: np.dtype(float), "b": np.dtype(bool)}
 
 
-def require_state(state: "State") -> None:
+def require_state(state: State) -> None:
     """Raise InputError unless the arrays of a state have one number for each coordinate of its model."""
     model = _model_of(state)
     for name in ("p", "v", "a"):
@@ -26,7 +24,7 @@ def require_state(state: "State") -> None:
         _require_array(state, "turned", (len(model.numbered.uncounted),))
 
 
-def require_crossing(state: "Bifurcation") -> None:
+def require_crossing(state: Bifurcation) -> None:
     """Raise InputError if the directions of a bifurcation do not fit its model or are not finite."""
     _require_array(state, "mode", (state.model.size,))
     _require_array(state, "tangent", (state.model.size + 1,))
@@ -34,7 +32,7 @@ def require_crossing(state: "Bifurcation") -> None:
         _require_finite(f"{name} of {type(state).__name__}", getattr(state, name))
 
 
-def require_rows(solution: "Solution") -> None:
+def require_rows(solution: Solution) -> None:
     """Raise InputError unless the arrays of a solution have a row of its model's coordinates for each `at`.
 
     Only `at` and p are checked for finite values: reading v and a of static solutions would allocate their memory.
@@ -57,7 +55,7 @@ def require_rows(solution: "Solution") -> None:
         _require_array(solution, "turned", (rows, len(model.numbered.uncounted)))
 
 
-def made_read_only(solution: "Solution") -> None:
+def made_read_only(solution: Solution) -> None:
     """Make the arrays of a solution read-only, for it keeps quantities that were computed from them."""
     for name in ("at", "p", "v", "a"):
         values = getattr(solution, name)
@@ -67,7 +65,7 @@ def made_read_only(solution: "Solution") -> None:
             object.__setattr__(solution, name, values)
 
 
-def require_finite(name: str, state: "State") -> None:
+def require_finite(name: str, state: State) -> None:
     """Raise InputError if a state passed as argument `name` has numbers that are not finite."""
     for part in ("p", "v", "a"):
         _require_finite(f"{part} of {name}", getattr(state, part))

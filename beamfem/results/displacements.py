@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -12,9 +12,7 @@ from beamfem.mesh.reference import inertia_points, length_points, reference_axis
 from beamfem.model.beam import Beam, Point
 from beamfem.results import postprocess
 from beamfem.results.full_turns import rotations
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
+from beamfem.results.solution import Solution
 
 _Found = TypeVar("_Found")
 
@@ -26,7 +24,7 @@ class Displacements:
     until another one is asked for, since that of all beams may be larger than the solution.
     """
 
-    def __init__(self, solution: "Solution", first: Sequence[np.ndarray]) -> None:
+    def __init__(self, solution: Solution, first: Sequence[np.ndarray]) -> None:
         self.solution, self._first = solution, first
         self._beam: Beam | None = None
         self._kept: dict[str, Any] = {}

@@ -1,7 +1,6 @@
 """Forces acting on elements isolated as free bodies: weight, inertia, loads and foundations, at points."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,10 +13,8 @@ from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import inertia_points, length_points, scales
 from beamfem.quadrature import gauss
 from beamfem.results.lumped_values import nearest, to_more_points
+from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +34,7 @@ class Rows:
     imposing: np.ndarray
 
 
-def rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:
+def rows_of(solution: Solution, rows: slice | np.ndarray) -> Rows:
     """Return some rows of a solution with the forces that act in them, kept until other rows are asked for.
 
     The beams of a model ask for the same rows one after another.
@@ -50,12 +47,12 @@ def rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:
     return kept[1]
 
 
-def _latest(solution: "Solution") -> dict[str, tuple[slice | bytes, Rows]]:
+def _latest(solution: Solution) -> dict[str, tuple[slice | bytes, Rows]]:
     """Return the latest rows of a solution, none at first."""
     return {}
 
 
-def _rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:
+def _rows_of(solution: Solution, rows: slice | np.ndarray) -> Rows:
     system, at = loading(solution)
     times = at[rows].tolist()
     body = np.array([system.body(time) for time in times]).reshape(len(times), -1, 4)

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,10 +15,8 @@ from beamfem.reprs import brief
 from beamfem.results.connector_results import potential_of_connectors
 from beamfem.results.displacements import Displacements
 from beamfem.results.postprocess import momenta
+from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
 
 
 @dataclass(frozen=True)
@@ -48,7 +45,7 @@ class Energy:
     potential: np.ndarray
     recorded: np.ndarray
     unit: str = field(default="J", repr=False)
-    solution: "Solution | None" = field(default=None, repr=False)
+    solution: Solution | None = field(default=None, repr=False)
 
     __repr__ = brief
 
@@ -104,7 +101,7 @@ class Energy:
         return self.work - (self.total - self.total[:1]) - (self.dissipated - self.dissipated[:1])
 
 
-def potential(solution: "Solution", first_moments: Sequence[np.ndarray]) -> np.ndarray:
+def potential(solution: Solution, first_moments: Sequence[np.ndarray]) -> np.ndarray:
     """Return the potential (steps,) [J] of loads, springs and foundations, zero in the reference configuration.
 
     first_moments: integral of the position over the mass of each beam (steps, 2) [kg m].
@@ -114,7 +111,7 @@ def potential(solution: "Solution", first_moments: Sequence[np.ndarray]) -> np.n
     return sum(parts, potential_of_connectors(solution))
 
 
-def recorded(solution: "Solution", by_sections: np.ndarray) -> np.ndarray:
+def recorded(solution: Solution, by_sections: np.ndarray) -> np.ndarray:
     """Return what history variables record as dissipated (steps,) [J]; by_sections: by sections with history.
 
     In statics nan if a connector that is not conservative has no record.
@@ -129,7 +126,7 @@ def recorded(solution: "Solution", by_sections: np.ndarray) -> np.ndarray:
     return by_sections + sum(solution.p[:, each].sum(axis=1) for each in own)
 
 
-def _of_loads(solution: "Solution", displaced: Displacements) -> np.ndarray:
+def _of_loads(solution: Solution, displaced: Displacements) -> np.ndarray:
     result = np.zeros(len(solution))
     for load in sorted(solution.model.loads, key=partial(_number_of_beam, solution.model)):
         if load.conservative:
@@ -145,12 +142,12 @@ def _number_of_beam(model: Model, load: Load) -> int:
     return model.number_of(place.beam if isinstance(place, Point) else place)
 
 
-def _factors(solution: "Solution", load: Load) -> np.ndarray:
+def _factors(solution: Solution, load: Load) -> np.ndarray:
     system, times = loading(solution)
     return np.array([factor(load, at, system.static) for at in times])
 
 
-def _of_frame(solution: "Solution") -> np.ndarray:
+def _of_frame(solution: Solution) -> np.ndarray:
     """Return the potential (steps,) [J] of centrifugal forces, less the kinetic energy of the rotation of the frame."""
     frame = solution.model.frame
     if frame is None:
@@ -166,7 +163,7 @@ def _of_frame(solution: "Solution") -> np.ndarray:
     return -(frame.speed**2) * factors * (moments[:-1] - moments[-1])
 
 
-def _of_supports(solution: "Solution", displaced: Displacements) -> np.ndarray:
+def _of_supports(solution: Solution, displaced: Displacements) -> np.ndarray:
     springs = loading(solution)[0].springs
     result = 0.5 * (solution.p[:, springs.dof] - springs.rest) ** 2 @ springs.stiffness
     for support in solution.model.supports:

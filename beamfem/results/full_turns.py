@@ -1,7 +1,6 @@
 """Full turns of beams without nodal angles, whose coordinates do not hold them, in the rows of a solution."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,9 +9,7 @@ from beamfem.model.beam import Point
 from beamfem.model.model import Model
 from beamfem.results import postprocess
 from beamfem.results.nodal import axis_at
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
+from beamfem.results.solution import Solution
 
 
 def first_turns(model: Model, p: np.ndarray, near: np.ndarray) -> np.ndarray:
@@ -22,7 +19,7 @@ def first_turns(model: Model, p: np.ndarray, near: np.ndarray) -> np.ndarray:
     return np.array([rotations[0, 0] for rotations in nodal])
 
 
-def start_rotations(solution: "Solution") -> np.ndarray:
+def start_rotations(solution: Solution) -> np.ndarray:
     """Return the rotation of each such beam at its start (steps, m) [rad], full turns included.
 
     As counted by the solve from step to step; else continued from row to row, the first of them within half a turn.
@@ -30,7 +27,7 @@ def start_rotations(solution: "Solution") -> np.ndarray:
     return solution.computed(_continued) if solution.turned is None else solution.turned
 
 
-def _continued(solution: "Solution") -> np.ndarray:
+def _continued(solution: Solution) -> np.ndarray:
     """Return the rotations of `start_rotations` from row to row."""
     return continued_rotations(solution.model, solution.p)
 
@@ -41,14 +38,14 @@ def continued_rotations(model: Model, p: np.ndarray) -> np.ndarray:
     return np.concatenate([np.empty((len(p), 0)), *parts], axis=1)
 
 
-def turned_of(solution: "Solution", mesh: BeamMesh) -> np.ndarray | None:
+def turned_of(solution: Solution, mesh: BeamMesh) -> np.ndarray | None:
     """Return the start rotation (steps, beams) [rad] of each beam of a mesh; None if coordinates hold full turns."""
     indices = [solution.model.numbered.numbers_uncounted.get(part) for part in mesh.parts]
     counted = [index for index in indices if index is not None]
     return start_rotations(solution)[:, counted] if counted else None
 
 
-def rotations(solution: "Solution", points: Sequence[Point]) -> np.ndarray:
+def rotations(solution: Solution, points: Sequence[Point]) -> np.ndarray:
     """Return the rotations (steps, points) [rad] of sections of one beam, full turns included."""
     mesh = solution.model.mesh_of(points[0])
     element, xi = (np.array(each) for each in zip(*(mesh.locate(point.fraction) for point in points), strict=True))

@@ -1,19 +1,13 @@
 """Strains that loads impose on a beam, in the rows of a solution."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.results.solution import Solution
 from beamfem.results.solution_system import imposing, loading
 
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
 
-
-def imposed_measures(
-    solution: "Solution", mesh: BeamMesh, rows: slice | np.ndarray = slice(None)
-) -> np.ndarray | float:
+def imposed_measures(solution: Solution, mesh: BeamMesh, rows: slice | np.ndarray = slice(None)) -> np.ndarray | float:
     """Return the imposed strains (steps, points, ns) at the strain energy points of a beam; 0 if there are none."""
     system, _ = loading(solution)
     imposed = system.blocks[mesh.block].imposed

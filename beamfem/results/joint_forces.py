@@ -2,7 +2,6 @@
 
 from collections import defaultdict
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,16 +20,14 @@ from beamfem.results.element_loads import Rows
 from beamfem.results.free_bodies import Parted, cut_free
 from beamfem.results.reactions import reaction_of
 from beamfem.results.section_forces import of_elements
+from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
 from beamfem.validation import shown
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
 
 Node = tuple[int, int]  # number of the beam, and of its node
 
 
-def joint_force(solution: "Solution", joint: Joint | Contribution | Load) -> np.ndarray:
+def joint_force(solution: Solution, joint: Joint | Contribution | Load) -> np.ndarray:
     """Return fx, fy [N] and m [N m] (steps, 3) of a joint on its second party, see `Solution.joint_force`."""
     for item in solution.model.shared_joints:
         if item is joint:
@@ -47,7 +44,7 @@ def joint_force(solution: "Solution", joint: Joint | Contribution | Load) -> np.
     )
 
 
-def _of_motor(solution: "Solution", motor: Motor) -> np.ndarray:
+def _of_motor(solution: Solution, motor: Motor) -> np.ndarray:
     """Return the torque of a motor (steps, 3)."""
     last = motor.parts[-1]
     if isinstance(last, PointLoad):
@@ -59,7 +56,7 @@ def _of_motor(solution: "Solution", motor: Motor) -> np.ndarray:
     return result
 
 
-def _of_cut(solution: "Solution", joint: Joint) -> np.ndarray:
+def _of_cut(solution: Solution, joint: Joint) -> np.ndarray:
     """Return the force that balances all else that acts on the nodes on the second side of a joint."""
     side = _side(solution.model, joint)
     result = np.zeros((len(solution), 3))
@@ -106,7 +103,7 @@ def _side(model: Model, joint: Joint) -> dict[Node, Point]:
     return found
 
 
-def _of_elements(solution: "Solution", number: int, node: int) -> np.ndarray:
+def _of_elements(solution: Solution, number: int, node: int) -> np.ndarray:
     """Return the force of the elements of a beam (steps, 3) on one of its nodes, inertia and loads along it included.
 
     Like that of a section, the moment is about the node itself.
@@ -129,7 +126,7 @@ def _on_node(mesh: BeamMesh, elements: np.ndarray, node: int, rows: Rows, own: P
     return result
 
 
-def _of_load(solution: "Solution", load: PointLoad) -> np.ndarray:
+def _of_load(solution: Solution, load: PointLoad) -> np.ndarray:
     """Return the force and the moment (steps, 3) of a load at a point."""
     system, times = loading(solution)
     factors = np.array([factor(load, float(time), system.static) for time in times])

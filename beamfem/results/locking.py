@@ -1,7 +1,7 @@
 """Estimate of how far locking changes a result from that of the same mesh without locking."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -21,9 +21,7 @@ from beamfem.precision.roundoff import row_floors
 from beamfem.results import postprocess
 from beamfem.results.finding import Finding
 from beamfem.results.imposed_measures import imposed_measures
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution, State
+from beamfem.results.solution import Solution, State
 
 ROWS = 32  # of a solution that are looked at
 
@@ -43,7 +41,7 @@ class Pairs(NamedTuple):
     mesh: np.ndarray
 
 
-def rows_looked_at(solution: "Solution") -> slice:
+def rows_looked_at(solution: Solution) -> slice:
     """Return up to `ROWS` rows of a solution, the last one among them, and of few all but the first, its start."""
     count = len(solution)
     stride = -(-count // ROWS)
@@ -112,7 +110,7 @@ _ROWS = 32  # rows of a solution among which the most strained is assessed
 _THICKNESS = (3, 5)  # eyy and g1 = d.d' of `GREEN_LAGRANGE`
 
 
-def locking(solution: "Solution") -> tuple[Finding, ...]:
+def locking(solution: Solution) -> tuple[Finding, ...]:
     """Return a warning if locking changes the displacements by more than 1e-3 of the largest."""
     if not len(solution) or not _unlocked(solution.model):
         return ()
@@ -126,17 +124,17 @@ def locking(solution: "Solution") -> tuple[Finding, ...]:
     return _found(solution.model, change, work, "the largest displacement")
 
 
-def frequency_locking(state: "State", shapes: np.ndarray) -> tuple[Finding, ...]:
+def frequency_locking(state: State, shapes: np.ndarray) -> tuple[Finding, ...]:
     """Return a warning if locking changes a frequency, see `_stiffness_locking`."""
     return _stiffness_locking(state, shapes, 0.5, "a frequency")
 
 
-def critical_load_locking(state: "State", shapes: np.ndarray) -> tuple[Finding, ...]:
+def critical_load_locking(state: State, shapes: np.ndarray) -> tuple[Finding, ...]:
     """Return a warning if locking changes a critical load factor, see `_stiffness_locking`."""
     return _stiffness_locking(state, shapes, 1.0, "a critical load factor")
 
 
-def _stiffness_locking(state: "State", shapes: np.ndarray, power: float, what: str) -> tuple[Finding, ...]:
+def _stiffness_locking(state: State, shapes: np.ndarray, power: float, what: str) -> tuple[Finding, ...]:
     """Return a warning if locking changes a result, from the Rayleigh quotient with locking-free strains.
 
     state: the state about which the shapes (m, n), over all coordinates, were found; power: of their stiffness, with
@@ -186,7 +184,7 @@ def weights(system: System) -> np.ndarray:
     return result
 
 
-def _change(state: "State", span: float | None) -> tuple[float, np.ndarray]:
+def _change(state: State, span: float | None) -> tuple[float, np.ndarray]:
     """Return the largest change of a position in a Newton step to the locking-free mesh, over the displacement.
 
     The second result is the work (n,) [J] of the excess forces along each coordinate.

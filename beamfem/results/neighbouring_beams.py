@@ -2,21 +2,18 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.joined_mesh import join
 from beamfem.model.model import Model
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
+from beamfem.results.solution import Solution
 
 _VALUES = 200_000  # most values that are computed at once
 _BEAMS = 64  # most beams; more would hardly save time, but take memory where only a few beams are asked for
 _MOST = 1_000_000  # most values that are kept
-Values = Callable[["Solution", BeamMesh], np.ndarray]
+Values = Callable[[Solution, BeamMesh], np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,12 +24,12 @@ class _Kept:
     chunks: dict[int, dict[int, np.ndarray]]
 
 
-def _kept(solution: "Solution") -> dict[Values, _Kept]:
+def _kept(solution: Solution) -> dict[Values, _Kept]:
     """Return the values that are kept with a solution, none at first."""
     return {}
 
 
-def of_beam(solution: "Solution", number: int, values: Values) -> np.ndarray:
+def of_beam(solution: Solution, number: int, values: Values) -> np.ndarray:
     """Return values (k, steps, stations) of a beam, as many at each element of a kind.
 
     From the second beam on, those of its neighbours are computed with it and kept, as far as they are few.
@@ -61,7 +58,7 @@ def _latest(chunks: dict[int, dict[int, np.ndarray]]) -> dict[int, dict[int, np.
     return dict(list(chunks.items())[too_old:])
 
 
-def _of_beams(solution: "Solution", numbers: list[int], values: Values) -> dict[int, np.ndarray]:
+def _of_beams(solution: Solution, numbers: list[int], values: Values) -> dict[int, np.ndarray]:
     """Return the values of like beams by their numbers."""
     meshes = [solution.model.meshes[number] for number in numbers]
     joined = values(solution, join(meshes))

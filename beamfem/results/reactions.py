@@ -1,7 +1,6 @@
 """Forces and moments that supports exert on a beam."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,13 +11,11 @@ from beamfem.errors import InputError
 from beamfem.model.beam import Point
 from beamfem.model.supports import PointSupport
 from beamfem.results.roundoff_corrections import exactly
+from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
 
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
 
-
-def reaction(solution: "Solution", point: Point) -> np.ndarray:
+def reaction(solution: Solution, point: Point) -> np.ndarray:
     """Return fx, fy [N] and m [N m] of the supports and springs at a point of a beam (steps, 3).
 
     Supports at joined points of other beams are not included. Raises InputError if the point has no support.
@@ -31,7 +28,7 @@ def reaction(solution: "Solution", point: Point) -> np.ndarray:
     return reaction_of(solution, supports)
 
 
-def reaction_of(solution: "Solution", own: Sequence[PointSupport]) -> np.ndarray:
+def reaction_of(solution: Solution, own: Sequence[PointSupport]) -> np.ndarray:
     """Return fx, fy [N] and m [N m] (steps, 3) of all supports at one point of a beam."""
     point = own[0].point
     mesh = solution.model.mesh_of(point)
@@ -47,7 +44,7 @@ def reaction_of(solution: "Solution", own: Sequence[PointSupport]) -> np.ndarray
     return result
 
 
-def _of_some(solution: "Solution", dof: int, prescribed: bool, stiffness: float) -> np.ndarray:
+def _of_some(solution: Solution, dof: int, prescribed: bool, stiffness: float) -> np.ndarray:
     """Return the force (steps,) of supports with this stiffness on a coordinate, prescribed by them or not."""
     system, _ = loading(solution)
     moved = solution.p[:, dof] - system.reference[dof] + solution.remainders[:, dof]
@@ -63,7 +60,7 @@ def _supported(system: System) -> set[int]:
     return {*system.prescribed_dofs.tolist(), *inclined}
 
 
-def support_forces(solution: "Solution") -> np.ndarray:
+def support_forces(solution: Solution) -> np.ndarray:
     """Return the generalized forces (steps, n) that supports and springs exert on every coordinate."""
     system, times = loading(solution)
     prescribed = np.zeros(solution.model.size, dtype=bool)

@@ -5,21 +5,18 @@ is still the equilibrium; the correction is found from the residual (`assembly.r
 """
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamfem.assembly.differences import changed, widths
 from beamfem.assembly.system import system_of
 from beamfem.precision.roundoff import digits_of, remainder
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
+from beamfem.results.solution import Solution
 
 _ENOUGH = 7.0  # digits of the forces at which a state needs no correction
 
 
-def remainders(solution: "Solution") -> np.ndarray:
+def remainders(solution: Solution) -> np.ndarray:
     """Return the corrections of the coordinates of each row (steps, n); zero if they are exact enough."""
     result = np.zeros(solution.p.shape)
     if not solution.static:
@@ -31,12 +28,12 @@ def remainders(solution: "Solution") -> np.ndarray:
     return result
 
 
-def _corrected(solution: "Solution") -> np.ndarray:
+def _corrected(solution: Solution) -> np.ndarray:
     """Return whether each row has remainders (steps,)."""
     return np.asarray(solution.remainders.any(axis=1))
 
 
-def _widths(solution: "Solution") -> np.ndarray:
+def _widths(solution: Solution) -> np.ndarray:
     """Return the widths of the differences (steps,), those of the whole model: values of a beam do not depend on which
     others are evaluated with it.
     """
@@ -44,7 +41,7 @@ def _widths(solution: "Solution") -> np.ndarray:
 
 
 def exactly(
-    solution: "Solution",
+    solution: Solution,
     values: Callable[[np.ndarray], np.ndarray],
     rows: slice | np.ndarray = slice(None),
     some: slice | np.ndarray = slice(None),

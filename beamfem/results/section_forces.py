@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, get_args
+from typing import get_args
 
 import numpy as np
 
@@ -16,16 +16,14 @@ from beamfem.results.extremes import Force, Measure, Part, Peak, extreme
 from beamfem.results.free_bodies import Cuts, Parted, cut_free, parted
 from beamfem.results.neighbouring_beams import of_beam
 from beamfem.results.roundoff_corrections import exactly
+from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
 from beamfem.units import Units, units_of
 from beamfem.validation import require_known, shown
 
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
-
 _VALUES = 2_000_000  # most values in one array
 FORCES: tuple[Force, ...] = get_args(Force)
-Values = Callable[["Solution", BeamMesh, Cuts, np.ndarray], np.ndarray]  # of some rows (rows, points)
+Values = Callable[[Solution, BeamMesh, Cuts, np.ndarray], np.ndarray]  # of some rows (rows, points)
 
 
 @dataclass(frozen=True)
@@ -66,7 +64,7 @@ class SectionForces:
     moment: np.ndarray
     units: Units = field(default=Units(), repr=False)
     beam: Beam = field(repr=False, kw_only=True)
-    solution: "Solution" = field(repr=False, kw_only=True)
+    solution: Solution = field(repr=False, kw_only=True)
 
     __repr__ = brief
 
@@ -106,7 +104,7 @@ class SectionForces:
         return section_forces_table(self)
 
 
-def section_forces(solution: "Solution", beam: Beam) -> SectionForces:
+def section_forces(solution: Solution, beam: Beam) -> SectionForces:
     """Return the section forces of a beam at the stations listed in `SectionForces`."""
     number = solution.model.number_of(beam)
     mesh = solution.model.meshes[number]
@@ -121,7 +119,7 @@ def extreme_force(forces: SectionForces, part: Force, measure: Measure) -> Peak:
     """Return the section force of largest measure, at and between stations."""
     number = FORCES.index(part)
 
-    def at(solution: "Solution", mesh: BeamMesh, cuts: Cuts, rows: np.ndarray) -> np.ndarray:
+    def at(solution: Solution, mesh: BeamMesh, cuts: Cuts, rows: np.ndarray) -> np.ndarray:
         return at_points(solution, mesh, cuts, rows)[:, number]
 
     values, unit = np.atleast_2d(getattr(forces, part)), "N m" if part == "moment" else "N"  # a state has no rows
@@ -129,7 +127,7 @@ def extreme_force(forces: SectionForces, part: Force, measure: Measure) -> Peak:
 
 
 def peak_of(
-    solution: "Solution", beam: Beam, named: tuple[Part | Force, str], values: np.ndarray, measure: Measure, at: Values
+    solution: Solution, beam: Beam, named: tuple[Part | Force, str], values: np.ndarray, measure: Measure, at: Values
 ) -> Peak:
     """Return the peak of a quantity of a beam: the value of largest measure, at and between stations.
 
@@ -155,12 +153,12 @@ def by_element(mesh: BeamMesh, values: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return values.reshape(len(values), mesh.elements, len(xi)), xi
 
 
-def _at_stations(solution: "Solution", mesh: BeamMesh) -> np.ndarray:
+def _at_stations(solution: Solution, mesh: BeamMesh) -> np.ndarray:
     """Return normal and shear force and moment (3, steps, stations)."""
     return at_points(solution, mesh, stations(mesh)).swapaxes(0, 1)
 
 
-def at_points(solution: "Solution", mesh: BeamMesh, cuts: Cuts, rows: slice | np.ndarray = slice(None)) -> np.ndarray:
+def at_points(solution: Solution, mesh: BeamMesh, cuts: Cuts, rows: slice | np.ndarray = slice(None)) -> np.ndarray:
     """Return normal and shear force [N] and moment [N m] (steps, 3, points) of some rows at points of a beam."""
     elements = np.unique(cuts.element)
 

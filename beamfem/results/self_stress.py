@@ -1,23 +1,19 @@
 """Self-equilibrated stress over a section whose layers hinder each other's thermal expansion."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.joined_mesh import JoinedMesh
 from beamfem.model.along_beam import jumps_along
 from beamfem.model.imposed_strains import heat_of
+from beamfem.results.solution import Solution
 from beamfem.results.solution_system import imposing
 from beamfem.section.protocol import CrossSection
 from beamfem.section.thermal import expands_evenly, thermal_strain
 
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
-
 
 def self_stress(
-    solution: "Solution",
+    solution: Solution,
     mesh: BeamMesh,
     element: np.ndarray,
     xi: np.ndarray,

@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Callable, Iterable
 from itertools import chain
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -29,11 +29,9 @@ from beamfem.results.imposed_measures import imposed_measures
 from beamfem.results.locking import ROWS, heights, pairs, rows_looked_at
 from beamfem.results.nodal import axis, nodal_vectors
 from beamfem.results.postprocess import nodal_rotations
+from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
 from beamfem.section.protocol import CrossSection
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
 
 _MUCH = 1.5  # [rad]: an element that turns by this much between its ends is far from the curve that it stands for
 
@@ -54,7 +52,7 @@ def advice(model: Model, p: np.ndarray) -> str:
 _ROUND_OFF = 1e-6  # of the displacements
 
 
-def unjoined_warnings(solution: "Solution") -> tuple[str, ...]:
+def unjoined_warnings(solution: Solution) -> tuple[str, ...]:
     """Return a warning of the first two points at one place that move apart in the last row, if there are any."""
     model = solution.model
     straight = len(model.beams) == 1 and type(model.beams[0].curve) is Line
@@ -87,7 +85,7 @@ def turned_back(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
     return np.asarray(np.einsum("sec,senc->sen", r[:, :, 1] - r[:, :, 0], slope))
 
 
-def cusps(solution: "Solution") -> tuple[Finding, ...]:
+def cusps(solution: Solution) -> tuple[Finding, ...]:
     """Return a warning of the worst node whose r_x points away from the next node, where the axis has a cusp."""
     for number, mesh in enumerate(solution.model.meshes):
         if not may_turn_back(mesh.beam.element):
@@ -109,7 +107,7 @@ def cusps(solution: "Solution") -> tuple[Finding, ...]:
 _SHORT, _MUCH_SHORTER = 0.001 / 3.0, 0.01 / 3.0  # bending stiffness goes with the third power
 
 
-def short_sections(solution: "Solution") -> tuple[Finding, ...]:
+def short_sections(solution: Solution) -> tuple[Finding, ...]:
     """Return a warning of the curved beam whose interpolated reference has the shortest sections between its nodes.
 
     Continuum forces and their mass fill the interpolated body, which is lighter and softer then, without locking.
@@ -132,7 +130,7 @@ def short_sections(solution: "Solution") -> tuple[Finding, ...]:
     return (Finding(sentence, LockingWarning if worst > _MUCH_SHORTER else None),)
 
 
-def large_strains(solution: "Solution") -> tuple[Finding, ...]:
+def large_strains(solution: Solution) -> tuple[Finding, ...]:
     """Return a warning of the largest strain of linear laws, if beyond 0.2, and of the largest utilisation above 1."""
     sentences = (_strained(solution), _overloaded(solution)) if len(solution) else ()
     return tuple(Finding(sentence, LargeStrainWarning) for sentence in sentences if sentence)
@@ -168,7 +166,7 @@ def _strain_per_utilisation(mesh: BeamMesh) -> float:
     return max(known, default=0.0)
 
 
-def _strained(solution: "Solution") -> str:
+def _strained(solution: Solution) -> str:
     """Return a sentence on the largest strain, empty if it is small."""
     rows, largest, where = np.arange(len(solution))[rows_looked_at(solution)], _LARGE, ""
     for number, mesh in enumerate(solution.model.meshes):
@@ -189,7 +187,7 @@ def _strained(solution: "Solution") -> str:
     )
 
 
-def _strains(solution: "Solution", mesh: BeamMesh, rows: np.ndarray) -> np.ndarray:
+def _strains(solution: Solution, mesh: BeamMesh, rows: np.ndarray) -> np.ndarray:
     """Return the largest normal strain at the faces, or the shear strain if larger (rows, points), at energy points."""
     element, xi, _ = energy_points(mesh)
     now, forces = axis(mesh, nodal_vectors(mesh, solution.p[rows]), element, xi), mesh.beam.element.forces
@@ -205,7 +203,7 @@ def _strains(solution: "Solution", mesh: BeamMesh, rows: np.ndarray) -> np.ndarr
     return np.fmax(np.abs(along).max(axis=-1), np.abs(sheared)[..., 0])
 
 
-def _overloaded(solution: "Solution") -> str:
+def _overloaded(solution: Solution) -> str:
     """Return a sentence on the largest utilisation, empty if it is at most 1 or no strength is given."""
     if not any(map(_strain_per_utilisation, solution.model.meshes)):
         return ""
@@ -221,7 +219,7 @@ def _overloaded(solution: "Solution") -> str:
     )
 
 
-def _where(solution: "Solution", number: int, arc: float, row: int) -> str:
+def _where(solution: Solution, number: int, arc: float, row: int) -> str:
     model, at = solution.model, solution.at[row]
     when = f"load factor {at:.4g}" if solution.static else f"t = {at:.4g} {model.unit('s')}"
     return f"at {arc:.4g} {model.unit('m')} of {beam_in_words(model.beams, number)} in row {row}, {when}"
@@ -234,11 +232,11 @@ def _materials(section: CrossSection, material: Material | None) -> list[Materia
         return []
 
 
-_Solution = TypeVar("_Solution", bound="Solution")
-_Check = Callable[["Solution"], Iterable[Finding]]
+_Solution = TypeVar("_Solution", bound=Solution)
+_Check = Callable[[Solution], Iterable[Finding]]
 
 
-def findings(solution: "Solution") -> tuple[Finding, ...]:
+def findings(solution: Solution) -> tuple[Finding, ...]:
     """Return all that is found wrong with a solution, besides what its solver has found."""
     checks: tuple[_Check, ...] = (
         lambda solution: solution.computed(locking.locking),

@@ -1,7 +1,6 @@
 """Points of a beam in the rows of a solution, with the directions that loads follow there."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,16 +10,14 @@ from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.results import postprocess
 from beamfem.results.full_turns import turned_of
 from beamfem.results.nodal import axis_at
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
+from beamfem.results.solution import Solution
 
 
 @dataclass(frozen=True, eq=False)
 class StationsOfRows:
     """Points (n,) of a beam, given by element and xi, in the rows of a solution."""
 
-    solution: "Solution"
+    solution: Solution
     mesh: BeamMesh
     element: np.ndarray
     xi: np.ndarray

@@ -1,7 +1,7 @@
 """Work done on a motion and energy that it dissipates between its rows, by the trapezoidal rule."""
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -9,9 +9,7 @@ from beamfem.assembly.connectors import Connectors, follows_time
 from beamfem.assembly.equations import residual
 from beamfem.assembly.system import System, system_of
 from beamfem.results.connector_results import energies_of
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
+from beamfem.results.solution import Solution
 
 
 @dataclass(frozen=True)
@@ -31,7 +29,7 @@ class Forces:
         return Forces(self.work[rows], self.connected[rows], self.lost[rows])
 
 
-def exchange(solution: "Solution") -> tuple[np.ndarray, np.ndarray]:
+def exchange(solution: Solution) -> tuple[np.ndarray, np.ndarray]:
     """Return the work done on a motion since its first row, and what beams and connectors dissipate (rows,) [J].
 
     Forces of connectors that have no energy, or depend on time, do work; those with history record what they dissipate.
@@ -54,7 +52,7 @@ def _since(change: np.ndarray) -> np.ndarray:
     return np.append(0.0, np.cumsum(change))
 
 
-def forces_without_potential(solution: "Solution", system: System, connectors: Connectors) -> Forces:
+def forces_without_potential(solution: Solution, system: System, connectors: Connectors) -> Forces:
     """Return the forces without a potential; those of loads as the difference that their absence makes.
 
     connectors: those whose forces are `connected`.
@@ -93,7 +91,7 @@ def _dissipated_power(system: System, but: Connectors, p: np.ndarray, v: np.ndar
 
 
 def work_between(
-    solution: "Solution", forces: Forces, connectors: Connectors
+    solution: Solution, forces: Forces, connectors: Connectors
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the work between rows (rows - 1,) [J]: of loads and supports, dissipated, of connectors.
 
@@ -113,13 +111,13 @@ def work_between(
     return work, means[2] * np.diff(solution.at), given
 
 
-def _energy_without(solution: "Solution", connectors: Connectors, at: np.ndarray) -> np.ndarray:
+def _energy_without(solution: Solution, connectors: Connectors, at: np.ndarray) -> np.ndarray:
     """Return the total energy (rows,) [J] without that of some connectors, under the loads at other times (rows,)."""
     energy = replace(solution, at=at).energy().total
     return np.asarray(energy - energies_of(connectors, solution, at).sum(axis=1))
 
 
-def _without_followers(solution: "Solution") -> System:
+def _without_followers(solution: Solution) -> System:
     """Return the equations with loads that have no potential multiplied by zero, with the same coordinates."""
     model = solution.model
     loads = [load if load.conservative else replace(cast("Any", load), amplitude=_zero) for load in model.loads]

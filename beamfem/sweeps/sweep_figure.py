@@ -1,16 +1,14 @@
 """The picture of a sweep: a result over a parameter, a curve for each combination of the others."""
 
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from beamfem.errors import InputError
+from beamfem.sweeps.sweep_result import Sweep
 from beamfem.validation import require_known, shown
 from beamfem.view.plots import COLOURS, new_figure, save_figure
-
-if TYPE_CHECKING:
-    from beamfem.sweeps.sweep_result import Sweep
 
 _MARKERS = "osD^vP*X<>"
 _NAMED = 12  # curves in a legend
@@ -19,7 +17,7 @@ _CUT, _WIDEST = 40, 3.2  # characters of the longest name, and their width [inch
 
 
 def plot_sweep(
-    sweep: "Sweep", value: str | None = None, over: str | None = None, path: str | PathLike[str] | None = None
+    sweep: Sweep, value: str | None = None, over: str | None = None, path: str | PathLike[str] | None = None
 ) -> Any:
     """Draw a result over a parameter that varies; return the figure. See `Sweep.plot`."""
     names, texts = list(sweep.labels[0]), sweep.labels

@@ -1,30 +1,27 @@
 """Loads in a drawing: forces and moments as arrows, distributed forces as rows of them, text for imposed strains."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import Any, assert_never
 
 import numpy as np
 
 from beamfem.element.coordinates import across
 from beamfem.mesh.reference import length_points
 from beamfem.model.beam import Beam, Point
-from beamfem.model.load_base import factor
+from beamfem.model.load_base import Load, factor
 from beamfem.model.load_shapes import Acceleration, Force, ForcesAlong, LoadShape, Moment, Strains, drawn
+from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
 from beamfem.results.stations import StationsOfRows
 from beamfem.view import symbols
 from beamfem.view.frames import one_row
 from beamfem.view.support_symbols import Stamps
 
-if TYPE_CHECKING:
-    from beamfem.model.load_base import Load
-    from beamfem.results.solution import Solution
-
 
 class PlacedRow:
     """A row of a solution, with the members that shapes need."""
 
-    def __init__(self, solution: "Solution", row: int) -> None:
+    def __init__(self, solution: Solution, row: int) -> None:
         self.only = one_row(solution, row)
 
     @property
@@ -54,7 +51,7 @@ class PlacedRow:
         mesh = self.only.model.mesh_of(beam.start)
         return mesh.arc_length(*length_points(mesh)[:2])
 
-    def shapes(self, load: "Load", weight: float) -> tuple[LoadShape, ...]:
+    def shapes(self, load: Load, weight: float) -> tuple[LoadShape, ...]:
         """Return the shapes of a load, times a weight. Raises InputError for an unknown shape."""
         return drawn(load, load.shapes(weight, self), LoadShape)
 
@@ -79,7 +76,7 @@ _MARGIN = 4.0  # between words and the edge of the axes [points of print]
 _SLOPED = 0.3  # of a unit normal
 
 
-def draw_imposed(axes: Any, solution: "Solution", items: list[tuple[Strains, int]], colour: str) -> Any:
+def draw_imposed(axes: Any, solution: Solution, items: list[tuple[Strains, int]], colour: str) -> Any:
     """Draw the strains imposed by loads in a row of a solution as text; yield the artists."""
     beside: dict[int, int] = {}
     for strains, row in items:
@@ -133,7 +130,7 @@ _LONGEST = 30.0  # arrow of the largest force [points of print]
 _SHORTEST = 14.0
 
 
-def draw_loads(axes: Any, solution: "Solution", rows: np.ndarray) -> list[Any]:
+def draw_loads(axes: Any, solution: Solution, rows: np.ndarray) -> list[Any]:
     """Draw each load on the row at which it is largest, the last of equals; return the artists."""
     system, at = loading(solution)
     drawn: list[Any] = []

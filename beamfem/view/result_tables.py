@@ -1,7 +1,7 @@
 """States, beams, energies, section forces and stresses as small tables for notebooks."""
 
 from dataclasses import is_dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -10,18 +10,16 @@ from beamfem.results.beam_stress import PARTS, BeamStress
 from beamfem.results.energies import Energy
 from beamfem.results.extremes import Force
 from beamfem.results.section_forces import SectionForces, extreme_force
+from beamfem.results.solution import State
 from beamfem.tables import as_html
 from beamfem.validation import shown
 from beamfem.view.summary import largest_displacement, model_rows
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import State
 
 _LONG = 160  # characters of what a beam is made of
 _NOTHING = 1e-9  # of the largest value: round-off of a zero
 
 
-def state_table(state: "State") -> str:
+def state_table(state: State) -> str:
     """Return a state and its model as an HTML table."""
     from beamfem.results.solution import Solution
     from beamfem.results.status import Statistics

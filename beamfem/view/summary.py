@@ -9,12 +9,12 @@ import numpy as np
 
 from beamfem.model.beam import names
 from beamfem.model.model import Model
+from beamfem.results.solution import Solution
 from beamfem.solve.motion.period_error import lengthened_period
 from beamfem.tables import as_html
 from beamfem.view.labels import place
 
 if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
     from beamfem.solve.modes.modes import Modes
     from beamfem.solve.stability.buckling import Buckling
 
@@ -38,7 +38,7 @@ def model_rows(model: Model) -> list[tuple[str, str]]:
     return rows + [(name, _kinds(items)) for name, items in further if items]
 
 
-def solution_rows(solution: "Solution") -> list[tuple[str, str]]:
+def solution_rows(solution: Solution) -> list[tuple[str, str]]:
     """Return how a solution was found, where it ends and how far it moves, as pairs of name and text."""
     statistics = solution.statistics
     name, unit = ("load factor", "") if solution.static else ("time", f" {solution.model.unit('s')}")
@@ -61,7 +61,7 @@ def solution_rows(solution: "Solution") -> list[tuple[str, str]]:
     return rows + [("warning", sentence) for sentence in solution.warnings]
 
 
-def largest_displacement(solution: "Solution", with_row: bool = True) -> tuple[str, str]:
+def largest_displacement(solution: Solution, with_row: bool = True) -> tuple[str, str]:
     """Return the largest displacement of all rows, its place, and its time or load factor unless there is one row."""
     from beamfem.view.frames import axis_points, moment_of
 
@@ -91,7 +91,7 @@ def model_table(model: Model) -> str:
     return f"<b>Model</b>{as_html((), model_rows(model))}{_beams(model)}"
 
 
-def solution_table(solution: "Solution") -> str:
+def solution_table(solution: Solution) -> str:
     """Return a solution and its model as an HTML table."""
     kind = type(solution).__name__ + (" of statics" if solution.static else " of a motion")
     return f"<b>{kind}</b>{as_html((), solution_rows(solution) + model_rows(solution.model))}"

@@ -1,7 +1,7 @@
 """Supports and joints in a drawing, as engineers draw them; a symbol has the same size in every picture."""
 
 from collections import defaultdict
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import Any, assert_never
 
 import numpy as np
 
@@ -22,11 +22,9 @@ from beamfem.model.load_shapes import (
 )
 from beamfem.model.model import Model
 from beamfem.parts.at_points import PartAlongBeam, PartAtPoints
+from beamfem.results.solution import Solution
 from beamfem.view import symbols
 from beamfem.view.frames import one_row
-
-if TYPE_CHECKING:
-    from beamfem.results.solution import Solution
 
 SIZE = 15.0  # of a symbol [points of print]
 INK = "0.15"
@@ -80,12 +78,12 @@ class Stamps:
         return artists
 
 
-def draw_supports(axes: Any, solution: "Solution", row: int, centre: np.ndarray) -> list[Any]:
+def draw_supports(axes: Any, solution: Solution, row: int, centre: np.ndarray) -> list[Any]:
     """Draw the supports of a model in a row; see `supports_of`."""
     return supports_of(solution, row, centre).draw(axes)
 
 
-def supports_of(solution: "Solution", row: int, centre: np.ndarray) -> Stamps:
+def supports_of(solution: Solution, row: int, centre: np.ndarray) -> Stamps:
     """Return the symbols of supports in a row: rollers roll, prescribed motions start at their points.
 
     centre: of all shapes (2,) [m], which decides the side on which a symbol is drawn.
@@ -108,12 +106,12 @@ def supports_of(solution: "Solution", row: int, centre: np.ndarray) -> Stamps:
     return stamps
 
 
-def draw_joints(axes: Any, solution: "Solution", row: int) -> list[Any]:
+def draw_joints(axes: Any, solution: Solution, row: int) -> list[Any]:
     """Draw the hinges and connectors of a model in a row; see `joints_of`."""
     return joints_of(solution, row).draw(axes, layer=6.0) + _draw_connectors(axes, solution, row)
 
 
-def _draw_connectors(axes: Any, solution: "Solution", row: int) -> list[Any]:
+def _draw_connectors(axes: Any, solution: Solution, row: int) -> list[Any]:
     """Draw connectors and masses; a user-defined one is a dashed line through its points, which are dots."""
     connectors = solution.model.at_points
     only = one_row(solution, row) if connectors else solution
@@ -159,7 +157,7 @@ def grounds(model: Model) -> list[np.ndarray]:
     return [np.asarray(place) for place in [*ends, *(wall.place for wall in shapes if isinstance(wall, Wall))]]
 
 
-def _centre(only: "Solution", disc: Disc) -> np.ndarray:
+def _centre(only: Solution, disc: Disc) -> np.ndarray:
     """Return the centre (2,) of a mass in the only row of a solution."""
     (x, y), at = disc.offset, only.position(disc.point)[0]
     if x == 0.0 == y:
@@ -169,7 +167,7 @@ def _centre(only: "Solution", disc: Disc) -> np.ndarray:
     return np.asarray(at + np.array([c * x - s * y, s * x + c * y]))
 
 
-def joints_of(solution: "Solution", row: int) -> Stamps:
+def joints_of(solution: Solution, row: int) -> Stamps:
     """Return the hinges of a model in a row as circles."""
     stamps = Stamps()
     rings = [shape for joint in solution.model.shared_joints for shape in drawn(joint, joint.shapes(), JointShape)]

@@ -43,9 +43,7 @@ def plot_errors(study: Convergence, path: str | PathLike[str] | None = None) -> 
     _axis_labels(axes, study)
     if study.curves:
         axes.legend(frameon=False, fontsize=9)
-    if path is not None:
-        save_figure(figure, path)
-    return figure
+    return save_figure(figure, path)
 
 
 def _order(curve: Curve) -> str:

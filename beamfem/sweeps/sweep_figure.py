@@ -48,9 +48,7 @@ def plot_sweep(
         figure.legend(frameon=False, fontsize=9, loc="outside right upper")
     elif named:
         figure.legend(frameon=False, fontsize=9, loc="outside upper left", ncols=len(curves))
-    if path is not None:
-        save_figure(figure, path)
-    return figure
+    return save_figure(figure, path)
 
 
 def _cut(label: str) -> str:

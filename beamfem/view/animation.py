@@ -35,13 +35,7 @@ def animate(
     loads: bool = True,
     dpi: int = 100,
 ) -> Path:
-    """Write an animation of the body to a .gif or .mp4 file and return its path; folders are created.
-
-    fps, seconds: about fps * seconds rows are shown, equally spaced in time (in statics by row); with fewer rows each
-    is shown longer; colour: a field as in `plot`; loads are drawn in each frame with their current amplitude; dpi:
-    pixels per inch, of a frame 4 to 8 inches wide.
-    Raises InputError for another suffix; MissingPackageError without matplotlib, for .mp4 without imageio-ffmpeg.
-    """
+    """Write an animation of the body to a .gif or .mp4 file and return its path, see `Solution.animate`."""
     target = path_of(path)
     if target.suffix not in (".gif", ".mp4"):
         right = target.with_suffix(".gif") if target.name else target / "motion.gif"

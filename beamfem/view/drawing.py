@@ -40,18 +40,7 @@ def plot_shapes(
     supports: bool = True,
     loads: bool = True,
 ) -> Any:
-    """Draw the deformed body at one or several steps, later ones darker; return the matplotlib figure.
-
-    path: file to write (PNG, SVG, PDF; folders are created); colour: None for the time or load factor, or a field along
-    the beams, whose extreme value is marked: "moment" [N m], "normal", "shear" [N], "rotation" [rad], "displacement"
-    [m], "speed" [m/s], "axial_strain" [-] (Green strain xx of the axis), "shear_angle" [rad]; of the stress [Pa]
-    "stress" or "von_mises" (von Mises stress over the height), of each section "upper", "lower" (faces), "outer" (the
-    larger of both), "tension", "compression", "shear_stress" (extremes); "utilisation" [-] of the strength, over the
-    height;
-    shapes: number of steps, one of them the last; by default the last alone, of motions and paths 9; undeformed: draw
-    the reference axes dashed; supports and loads: draw their symbols, each load on the shape at which it is largest.
-    Raises InputError; MissingPackageError without matplotlib.
-    """
+    """Draw the deformed body at one or several steps, later ones darker; return the figure. See `Solution.plot`."""
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to draw")
     for name, value in (("undeformed", undeformed), ("supports", supports), ("loads", loads)):
@@ -87,9 +76,7 @@ def plot_shapes(
     legend_above(figure, axes, entries)
     if extreme is not None or not (entries or barred):
         axes.set_title(_span(solution, rows), fontsize=10, pad=max(6.0, 72.0 * above))
-    if path is not None:
-        save_figure(figure, path)
-    return figure
+    return save_figure(figure, path)
 
 
 def equal_axes(box: np.ndarray, with_bar: bool, unit: str = "m", above: float = 0.0) -> tuple[Any, Any]:
@@ -199,6 +186,4 @@ def plot_model(model: Model, path: str | PathLike[str] | None = None) -> Any:
     at_rest = Solution(model, True, np.ones(1), p, rates, rates, Statistics(0, 0, 0, "the model without stress"))
     figure = plot_shapes(at_rest, undeformed=False)
     figure.axes[0].set_title("reference shape, full loads", fontsize=10)
-    if path is not None:
-        save_figure(figure, path)
-    return figure
+    return save_figure(figure, path)

@@ -23,11 +23,7 @@ _WIDTH, _LEAST_HEIGHT = 3.6, 0.9  # of one picture [inch]
 
 
 def plot_modes(modes: "Modes", path: str | PathLike[str] | None = None, most: int = _MOST) -> Any:
-    """Draw the first `most` vibration modes, each with its frequency [Hz]; return the matplotlib figure.
-
-    Dark: the mode at its largest; pale: half a period later; dashed: the reference. Raises InputError;
-    MissingPackageError without matplotlib.
-    """
+    """Draw the first `most` vibration modes, each with its frequency [Hz]; return the figure. See `Modes.plot`."""
 
     def title(mode: int) -> str:
         if mode < len(modes.rigid):
@@ -45,11 +41,7 @@ def plot_modes(modes: "Modes", path: str | PathLike[str] | None = None, most: in
 
 
 def plot_buckling(buckling: "Buckling", path: str | PathLike[str] | None = None, most: int = _MOST) -> Any:
-    """Draw the first `most` buckling modes, each with its critical load factor; return the matplotlib figure.
-
-    Pale: the critical state; dark: the same state plus the mode; dashed: the reference.
-    Raises InputError; MissingPackageError without matplotlib.
-    """
+    """Draw the first `most` buckling modes, each with its critical load factor; return the figure: `Buckling.plot`."""
 
     def title(mode: int) -> str:
         ends = " (limit point)" if buckling.kinds[mode] == "limit point" else ""
@@ -95,6 +87,4 @@ def _plot(
         axes.set_visible(False)
     entries = [original, *(entry(0.5 * (order + 1), name) for order, name in enumerate(names))]
     figure.legend(handles=entries, loc="outside lower center", ncols=len(entries), frameon=False, fontsize=9)
-    if path is not None:
-        save_figure(figure, path)
-    return figure
+    return save_figure(figure, path)

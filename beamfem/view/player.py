@@ -165,13 +165,7 @@ _LEVELS = 65534  # into which the box of all shapes is cut
 
 
 def write_player(solution: Solution, path: str | PathLike[str], title: str | None = None, frames: int = 60) -> Path:
-    """Write a self-contained page with a slider over up to `frames` steps and return its path; folders are created.
-
-    The body moves with its supports, optionally coloured by a section force [N, N m], a stress [Pa], utilisation,
-    rotation [rad], displacement [m] or speed [m/s]; a curve of the largest displacement and the statistics are shown
-    beside it. Below 1 MB: for large models only the axes and fewer steps are drawn. Raises InputError for a suffix
-    other than .html.
-    """
+    """Write a self-contained page with a slider over up to `frames` steps and return its path: `Solution.to_html`."""
     target = path_of(path)
     if target.suffix != ".html":
         right = target.with_suffix(".html") if target.name else target / "steps.html"

@@ -42,11 +42,14 @@ def quiet(axes: Any) -> None:
 
 # compiled code of matplotlib takes an interrupt for a wrong argument, or ignores it
 @uninterrupted
-def save_figure(figure: Any, path: str | PathLike[str]) -> None:
-    """Write a figure to PNG, SVG or PDF according to the suffix of `path`; folders are created."""
+def save_figure(figure: Any, path: str | PathLike[str] | None) -> Any:
+    """Write a figure, if a path is given, to PNG, SVG or PDF according to its suffix; return the figure."""
+    if path is None:
+        return figure
     kinds = figure.canvas.get_supported_filetypes()
     kind = path_of(path).suffix.lower().removeprefix(".")
     if kind not in kinds:
         raise InputError(f'a picture is a .png, .svg or .pdf file, or one of {", ".join(sorted(kinds))}; got "{path}"')
     with whole(path) as partial:
         figure.savefig(partial, dpi=_DOTS_PER_INCH, format=kind)
+    return figure

@@ -40,12 +40,7 @@ def plot_history(
     quantity: str = "displacement",
     path: str | PathLike[str] | None = None,
 ) -> Any:
-    """Plot a quantity at one or several points against time [s] or load factor; return the matplotlib figure.
-
-    quantity: "displacement", "ux", "uy", "position" [m], "velocity" [m/s], "rotation" [rad]; at supports "force" [N]
-    and "reaction_moment" [N m]; without a point, "energy" [J].
-    Raises InputError; MissingPackageError without matplotlib.
-    """
+    """Plot a quantity at points against time [s] or load factor; return the figure. See `Solution.plot_history`."""
     if isinstance(quantity, str) and quantity == "energy":
         energy = solution.energy()
         curves = {name: getattr(energy, name) for name in ("kinetic", "strain", "potential", "total")}
@@ -76,19 +71,13 @@ def plot_history(
     axes.margins(x=0.02)
     if several:
         figure.legend(loc="outside upper center", ncols=4 if len(parts) == 1 else 2, frameon=False)
-    if path is not None:
-        save_figure(figure, path)
-    return figure
+    return save_figure(figure, path)
 
 
 def plot_load_displacement(
     solution: Solution, point: Point, quantity: str = "uy", path: str | PathLike[str] | None = None
 ) -> Any:
-    """Plot the load factor against a displacement or rotation of a point; return the matplotlib figure.
-
-    Limit points (circles) and bifurcations (diamonds) of a `Path` are marked, each with its load factor.
-    quantity: "ux", "uy" [m] or "rotation" [rad]. Raises InputError; MissingPackageError without matplotlib.
-    """
+    """Plot the load factor against a motion of a point; return the figure. See `Solution.plot_load_displacement`."""
     one_of("what the load is drawn over", quantity, ("ux", "uy", "rotation"))
     load = solution.load_factor
     label, _ = _quantity(quantity)
@@ -101,14 +90,16 @@ def plot_load_displacement(
     marked: list[tuple[float, float]] = []
     colours: list[str] = []
     if isinstance(solution, Path):
-        kinds = (("limit point", solution.limit_points, _ring, 1), ("bifurcation", solution.bifurcations, _diamond, 2))
-        for name, states, look, number in kinds:
-            colour = COLOURS[number]
+        # at one place with a bifurcation both are seen
+        ring: dict[str, Any] = {"marker": "o", "markersize": 10, "markerfacecolor": "none", "markeredgewidth": 1.8}
+        diamond: dict[str, Any] = {"marker": "D", "markersize": 6, "markeredgecolor": "white"}
+        kinds = (("limit point", solution.limit_points, ring), ("bifurcation", solution.bifurcations, diamond))
+        for (name, states, look), colour in zip(kinds, COLOURS[1:], strict=False):
             if not states:
                 continue
             alone = _together(solution, states)
             x = value_of(alone, point, what)
-            axes.plot(x, alone.at, linestyle="none", label=name, zorder=3, **look(colour))
+            axes.plot(x, alone.at, linestyle="none", label=name, color=colour, zorder=3, **look)
             marked += zip(x.tolist(), alone.at.tolist(), strict=True)
             colours += len(states) * [colour]
         if solution.limit_points or solution.bifurcations:
@@ -118,18 +109,7 @@ def plot_load_displacement(
     axes.margins(0.06, 0.1)
     if marked:
         write_labels(axes, marked, [f"{at:.5g}" for _, at in marked], colours, np.column_stack([curve, load]))
-    if path is not None:
-        save_figure(figure, path)
-    return figure
-
-
-def _ring(colour: str) -> dict[str, Any]:
-    """Return the look of a limit point: at one place with a bifurcation both are seen."""
-    return {"marker": "o", "markersize": 10, "color": colour, "markerfacecolor": "none", "markeredgewidth": 1.8}
-
-
-def _diamond(colour: str) -> dict[str, Any]:
-    return {"marker": "D", "markersize": 6, "color": colour, "markeredgecolor": "white"}
+    return save_figure(figure, path)
 
 
 def _quantity(name: str) -> tuple[str, tuple[str, ...]]:
@@ -169,14 +149,7 @@ ENERGIES = ("kinetic", "strain", "potential", "total")
 
 
 def plot_curve(solution: Solution, x: Drawn, y: Drawn, path: str | PathLike[str] | None = None) -> Any:
-    """Plot one quantity against another, one point per row; return the matplotlib figure.
-
-    x, y: a pair of a name and a point, such as ("uy", beam.end), with the names "ux", "uy", "x", "y" [m], "rotation"
-    [rad], "vx", "vy" [m/s], at supports "fx", "fy" [N] and "m" [N m], of the section there "normal", "shear" [N],
-    "moment" [N m] and the stresses of `plot` [Pa]; "load_factor" or "time" [s]; "kinetic", "strain", "potential" or
-    "total" energy [J]; a pair of a label and numbers (steps,), or numbers. Where two elements meet or a load acts, a
-    section is that on the side towards the beam's end. Raises InputError; MissingPackageError without matplotlib.
-    """
+    """Plot one quantity against another, one point per row; return the figure. See `Solution.plot_curve`."""
     (across, horizontal), (up, vertical) = (_taken(solution, *pair) for pair in (("x", x), ("y", y)))
     figure, axes = new_figure()
     marker = "." if len(solution) <= _MARKED else None
@@ -184,9 +157,7 @@ def plot_curve(solution: Solution, x: Drawn, y: Drawn, path: str | PathLike[str]
     axes.set_xlabel(across)
     axes.set_ylabel(up)
     axes.margins(0.04)
-    if path is not None:
-        save_figure(figure, path)
-    return figure
+    return save_figure(figure, path)
 
 
 def _taken(solution: Solution, which: str, given: Drawn) -> tuple[str, np.ndarray]:

@@ -34,11 +34,7 @@ def picture(
     colour: str | None = None,
     size: tuple[int, int] = (1400, 900),
 ) -> Path:
-    """Write a picture (.png) of the solid body in a row, off screen; return its path. Folders are created.
-
-    colour: a field as in `plot`; size: width and height in pixels. Rendering is tried in a child process first; if VTK
-    cannot render, matplotlib draws the same row in the plane and a warning is given. Raises InputError.
-    """
+    """Write a picture (.png) of the solid body in a row, off screen; return its path, see `Solution.picture`."""
     target = path_of(path)
     if target.suffix != ".png":
         right = target.with_suffix(".png") if target.name else target / "body.png"
@@ -59,18 +55,13 @@ def picture(
 
 
 def show(solution: Solution, colour: str | None = None, size: tuple[int, int] = (1400, 900)) -> Any:
-    """Open a window with the solid body and a slider over the steps, and wait until it is closed.
-
-    colour: a field as in `plot`. Without a display, or if VTK cannot render, a warning is given and a matplotlib figure
-    is returned instead. Raises InputError.
-    """
+    """Open a window with the solid body and a slider over the steps, and wait until it is closed: `Solution.show`."""
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to show")
     _require_size(size)
     reason = "there is no display" if not has_display() else "" if can_render() else f"VTK cannot render; {ADVICE}"
     if reason:
-        message = f"no window can be opened: {reason}. A figure is returned; to_html writes a page with a slider"
-        warn(message)
+        warn(f"no window can be opened: {reason}. A figure is returned; to_html writes a page with a slider")
         return plot_shapes(solution, colour=colour)
     plotter = slider_scene(solution, colour, size, off_screen=False)
     plotter.show()

@@ -163,7 +163,7 @@ class Beam:
         return f"Beam({called}{curve}, {count} x {self.element.name})"
 
     def _repr_html_(self) -> str:
-        from beamfem.view.result_tables import beam_table
+        from beamfem.view.summary import beam_table
 
         return beam_table(self)
 

@@ -87,7 +87,7 @@ class BeamStress:
         return f"BeamStress({rows} rows, {stations} stations of {self.beam!r}; peaks: {peaks})"
 
     def _repr_html_(self) -> str:
-        from beamfem.view.result_tables import stress_table
+        from beamfem.view.summary import stress_table
 
         return stress_table(self)
 

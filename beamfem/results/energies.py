@@ -53,7 +53,7 @@ class Energy:
         return self.unit
 
     def _repr_html_(self) -> str:
-        from beamfem.view.result_tables import energy_table
+        from beamfem.view.summary import energy_table
 
         return energy_table(self)
 

@@ -99,7 +99,7 @@ class SectionForces:
         return self.units.of({"arc_length": "m", "moment": "N m"}.get(name, "N"))
 
     def _repr_html_(self) -> str:
-        from beamfem.view.result_tables import section_forces_table
+        from beamfem.view.summary import section_forces_table
 
         return section_forces_table(self)
 

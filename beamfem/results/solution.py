@@ -77,7 +77,7 @@ class State:
         require_state(self)
 
     def _repr_html_(self) -> str:
-        from beamfem.view.result_tables import state_table
+        from beamfem.view.summary import state_table
 
         return state_table(self)
 

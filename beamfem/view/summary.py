@@ -1,17 +1,25 @@
-"""Models and solutions as small tables for notebooks."""
+"""Models, solutions, states, beams, energies, section forces and stresses as small tables for notebooks."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
+from dataclasses import is_dataclass
 from html import escape
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamfem.model.beam import names
+from beamfem.model.beam import Beam, names
 from beamfem.model.model import Model
-from beamfem.results.solution import Solution
+from beamfem.results.beam_stress import PARTS, BeamStress
+from beamfem.results.energies import Energy
+from beamfem.results.extremes import Force
+from beamfem.results.section_forces import SectionForces, extreme_force
+from beamfem.results.solution import Solution, State
+from beamfem.results.status import Statistics
 from beamfem.solve.motion.period_error import lengthened_period
 from beamfem.tables import as_html
+from beamfem.validation import shown
+from beamfem.view.frames import axis_points, moment_of
 from beamfem.view.labels import place
 
 if TYPE_CHECKING:
@@ -20,6 +28,7 @@ if TYPE_CHECKING:
 
 _BEAMS = 12  # listed each
 _VALUES = 500_000  # most points in one array
+_LONG = 160  # characters of what a beam is made of
 _EQUAL = 1e-9  # what differs by less is the same: points of two beams at their joint, the round-off of a zero
 
 
@@ -45,10 +54,7 @@ def solution_rows(solution: Solution) -> list[tuple[str, str]]:
     rows = [("rows", str(len(solution)))]
     if len(solution):
         rows.append((name, f"{solution.at[0]:.6g} to {solution.at[-1]:.6g}{unit}"))
-    rows += [
-        ("solved in", statistics.effort),
-        ("ended", statistics.outcome),
-    ]
+    rows += [("solved in", statistics.effort), ("ended", statistics.outcome)]
     if solution.energy_drift is not None:
         rows.append(("energy", str(solution.energy_drift)))
     frequency, error = lengthened_period(solution)
@@ -56,15 +62,12 @@ def solution_rows(solution: Solution) -> list[tuple[str, str]]:
         text = f"lengthens the period by {100 * error:.2g} % at {frequency:.4g} {solution.model.unit('Hz')}"
         rows.append(("time step", text))
     if len(solution):
-        name, value = largest_displacement(solution)
-        rows.append((name, value))
+        rows.append(largest_displacement(solution))
     return rows + [("warning", sentence) for sentence in solution.warnings]
 
 
 def largest_displacement(solution: Solution, with_row: bool = True) -> tuple[str, str]:
     """Return the largest displacement of all rows, its place, and its time or load factor unless there is one row."""
-    from beamfem.view.frames import axis_points, moment_of
-
     best = (-1.0, np.zeros(2), np.zeros(2), 0)
     for points in axis_points(solution, _VALUES // len(solution)):
         chunk = max(1, _VALUES // len(points.xi))
@@ -76,14 +79,9 @@ def largest_displacement(solution: Solution, with_row: bool = True) -> tuple[str
                 best = float(size[row, point]), moved[row, point], points.reference[point], first + int(row)
     largest, moved, at, number = best
     length = solution.model.unit("m")
-    text = f"{largest:.4g} {length}: {_vector(moved)} {length} at {place(solution.model, at)}"
-    return "largest displacement", text + (f", {moment_of(solution, number)}" if with_row else "")
-
-
-def _vector(moved: np.ndarray) -> str:
-    """Return a displacement as text, without the round-off of a zero."""
     ux, uy = np.where(np.abs(moved) <= _EQUAL * np.abs(moved).max(), 0.0, moved)
-    return f"({ux:.4g}, {uy:.4g})"
+    text = f"{largest:.4g} {length}: ({ux:.4g}, {uy:.4g}) {length} at {place(solution.model, at)}"
+    return "largest displacement", text + (f", {moment_of(solution, number)}" if with_row else "")
 
 
 def model_table(model: Model) -> str:
@@ -130,9 +128,85 @@ def _beams(model: Model) -> str:
 
 
 def _kinds(items: Sequence[object]) -> str:
-    return _counted(type(item).__name__ for item in items) or "none"
+    counted = Counter(type(item).__name__ for item in items).items()
+    return ", ".join(name if number == 1 else f"{number} {name}" for name, number in counted) or "none"
 
 
-def _counted(names: Iterable[str]) -> str:
-    counted = Counter(names)
-    return ", ".join(name if number == 1 else f"{number} {name}" for name, number in counted.items())
+def state_table(state: State) -> str:
+    """Return a state and its model as an HTML table."""
+    turned = None if state.turned is None else state.turned[None]
+    parts = (np.array([state.at]), state.p[None], state.v[None], state.a[None], Statistics(0, 0, 0, "one state"))
+    alone = Solution(state.model, True, *parts, turned=turned)
+    speed = float(np.abs(state.v).max()) if state.v.size else 0.0
+    rows = [
+        ("load factor or time", f"{state.at:.6g}"),
+        largest_displacement(alone, with_row=False),
+        ("at rest", "no" if speed else "yes"),
+        *model_rows(state.model),
+    ]
+    return f"<b>{type(state).__name__}</b>{as_html((), rows)}"
+
+
+def beam_table(beam: Beam) -> str:
+    """Return what a beam is made of as an HTML table."""
+    ends = " to ".join(f"({x:.4g}, {y:.4g})" for x, y in (beam.start.reference, beam.end.reference))
+    rows = [
+        ("curve", f"{type(beam.curve).__name__}, {ends}"),
+        ("length", f"{beam.curve.length:.6g}"),
+        ("elements", str(beam.element_count)),
+        ("element", f"{beam.element.name}, {beam.element.forces.name}"),
+        ("section", _numbers(beam.section) if beam.prismatic else "varies along the beam"),
+        ("material", "of the section" if beam.material is None else _numbers(beam.material)),
+    ]
+    rows += [] if beam.damping is None else [("damping", f"{type(beam.damping).__name__}, {_numbers(beam.damping)}")]
+    return f"<b>Beam</b>{as_html((), rows)}"
+
+
+def energy_table(energy: Energy) -> str:
+    """Return energies as an HTML table: at the start, at the end, and between which values they were."""
+    unit = energy.unit
+    head = ("energy", *(f"{name} [{unit}]" for name in ("first", "last", "smallest", "largest")))
+    rows = []
+    for name in ("kinetic", "strain", "potential", "total"):
+        values = getattr(energy, name)
+        if len(values):
+            rows.append((name, *map(float, (values[0], values[-1], values.min(), values.max()))))
+    return f"<b>Energy</b>{as_html(head, rows)}"
+
+
+def section_forces_table(forces: SectionForces) -> str:
+    """Return the extremes of section forces as an HTML table, each with its place and row."""
+    unit = forces.units.of
+    rows = []
+    named: tuple[tuple[Force, str], ...] = (("normal", "N"), ("shear", "N"), ("moment", "N m"))
+    for name, si in named:
+        for which, measure in (("smallest", np.negative), ("largest", np.asarray)):
+            value, at, row = extreme_force(forces, name, measure)
+            value = 0.0 if abs(value) <= _EQUAL * np.abs(getattr(forces, name)).max() else value
+            rows.append((f"{which} {name} [{unit(si)}]", value, at, row))
+    head = ("", "value", f"at arc length [{unit('m')}]", "row")
+    return f"<b>SectionForces</b>{as_html(head, rows)}"
+
+
+def stress_table(stress: BeamStress) -> str:
+    """Return the peaks of stresses as an HTML table, each with its place, row and load factor or time."""
+    unit = stress.units.of
+    rows: list[tuple[Any, ...]] = []
+    for part in PARTS:
+        peak = stress.peak(part)
+        name = f"{part} [{'-' if part == 'utilisation' else unit('Pa')}]"
+        cells = (peak.value, peak.arc_length, peak.row, peak.at) if peak.row >= 0 else ("not known", "", "", "")
+        rows.append((name, *cells))
+    when = "load factor" if stress.static else f"time [{unit('s')}]"
+    head = ("", "extreme", f"at arc length [{unit('m')}]", "row", when)
+    return f"<b>Stress, peaks</b>{as_html(head, rows)}"
+
+
+def _numbers(item: Any) -> str:
+    """Return the numbers of a dataclass that are not zero, by name; of others their text, cut."""
+    members = vars(item) if is_dataclass(item) else {}
+    named = [
+        f"{name.replace('_', ' ')} {value:.4g}" for name, value in members.items() if type(value) is float and value
+    ]
+    text = ", ".join(named) or " ".join(shown(item).split())
+    return text if len(text) <= _LONG else f"{text[: _LONG - 2]} …"

@@ -26,11 +26,6 @@ def spread_rows(solution: Solution, most: int) -> np.ndarray:
     return np.unique(np.abs(solution.at[:, None] - times).argmin(axis=0))
 
 
-def one_row(solution: Solution, row: int) -> Solution:
-    """Return a solution of one row only."""
-    return solution[row : row + 1]
-
-
 def axis_points(solution: Solution, total: int = _POINTS) -> list[AxisPoints]:
     """Return the points of each beam to draw, about `total` of them if there are few elements."""
     elements = sum(mesh.elements for mesh in solution.model.meshes)

@@ -14,7 +14,6 @@ from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
 from beamfem.results.stations import StationsOfRows
 from beamfem.view import symbols
-from beamfem.view.frames import one_row
 from beamfem.view.support_symbols import Stamps
 
 
@@ -22,7 +21,7 @@ class PlacedRow:
     """A row of a solution, with the members that shapes need."""
 
     def __init__(self, solution: Solution, row: int) -> None:
-        self.only = one_row(solution, row)
+        self.only = solution[row : row + 1]
 
     @property
     def time(self) -> float:
@@ -76,11 +75,11 @@ _MARGIN = 4.0  # between words and the edge of the axes [points of print]
 _SLOPED = 0.3  # of a unit normal
 
 
-def draw_imposed(axes: Any, solution: Solution, items: list[tuple[Strains, int]], colour: str) -> Any:
+def _imposed(axes: Any, solution: Solution, items: list[tuple[Strains, int]]) -> Any:
     """Draw the strains imposed by loads in a row of a solution as text; yield the artists."""
     beside: dict[int, int] = {}
     for strains, row in items:
-        only, beam = one_row(solution, row), strains.beam
+        only, beam = solution[row : row + 1], strains.beam
         at, along = only.position(beam.at(0.5))[0], only.fields(beam.at(0.5)).r_x[0]
         chord = only.position(beam.at(0.25))[0] + only.position(beam.at(0.75))[0] - 2.0 * at
         outward = np.array([-along[1], along[0]]) / np.linalg.norm(along)
@@ -97,7 +96,7 @@ def draw_imposed(axes: Any, solution: Solution, items: list[tuple[Strains, int]]
             at,
             offset,
             textcoords="offset points",
-            color=colour,
+            color=FORCE,
             fontsize=8.0,
             ha="left" if outward[0] > _SLOPED else "right" if outward[0] < -_SLOPED else "center",
             va="top" if sideways else "center",
@@ -148,7 +147,9 @@ def draw_loads(axes: Any, solution: Solution, rows: np.ndarray) -> list[Any]:
                 case Force():
                     forces.append((shape, placed))
                 case Moment():
-                    _moment(stamps, placed.position(shape.point), shape.moment)
+                    arc, head = symbols.turn(0.25 * np.pi, span=float(1.5 * np.pi * np.sign(shape.moment)))
+                    stamps.add(placed.position(shape.point), arc, FORCE, 1.5)
+                    stamps.add(placed.position(shape.point), head, FORCE, 0.5, FORCE)
                 case ForcesAlong():
                     drawn += _distributed(axes, placed.positions(shape), shape)
                 case Acceleration():
@@ -157,17 +158,11 @@ def draw_loads(axes: Any, solution: Solution, rows: np.ndarray) -> list[Any]:
                     strains.append((shape, int(rows[best])))
                 case _:
                     assert_never(shape)
-    drawn += draw_imposed(axes, solution, strains, FORCE)
+    drawn += _imposed(axes, solution, strains)
     return [*_forces(axes, forces), *drawn, *stamps.draw(axes, 18.0, 5.0)]
 
 
-def _moment(stamps: Stamps, at: np.ndarray, moment: float) -> None:
-    arc, head = symbols.turn(0.25 * np.pi, span=float(1.5 * np.pi * np.sign(moment)))
-    stamps.add(at, arc, FORCE, 1.5)
-    stamps.add(at, head, FORCE, 0.5, FORCE)
-
-
-def _arrows(axes: Any, at: np.ndarray, vector: np.ndarray, pivot: str, width: float = 1.5) -> Any:
+def _arrows(axes: Any, at: np.ndarray, vector: np.ndarray, pivot: str, width: float = 1.5, **options: Any) -> Any:
     """Draw arrows at places (n, 2) [m] of vectors (n, 2) [points of print]."""
     return axes.quiver(
         *at.T,
@@ -184,6 +179,7 @@ def _arrows(axes: Any, at: np.ndarray, vector: np.ndarray, pivot: str, width: fl
         color=FORCE,
         pivot=pivot,
         zorder=5.0,
+        **options,
     )
 
 
@@ -223,22 +219,7 @@ def _gravity(axes: Any, vector: np.ndarray) -> list[Any]:
         return []
     # to the left of the upper right corner, which is left to the arrow
     at, ahead = np.array([0.955, 0.9]), vector / size
-    arrow = axes.quiver(
-        *at,
-        *(26.0 * ahead / 72.0),
-        angles="uv",
-        units="inches",
-        scale=1.0,
-        scale_units="inches",
-        width=1.5 / 72.0,
-        headwidth=4.5,
-        headlength=5.5,
-        headaxislength=5.0,
-        color=FORCE,
-        pivot="mid",
-        transform=axes.transAxes,
-        zorder=5.0,
-    )
+    arrow = _arrows(axes, at[None], 26.0 * ahead[None], "mid", transform=axes.transAxes)
     offset = -9.0 * np.abs(across(ahead))
     name = axes.annotate(
         "g",

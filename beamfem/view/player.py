@@ -189,8 +189,10 @@ def _data(solution: Solution, frames: int) -> dict[str, Any]:
     sides = shapes.body if body else [axis[:, :, None] for axis in shapes.axis]
     low, high = shapes.box
     size = float(np.max(high - low)) or 1.0
-    # (rows, points, sides, 2)
-    numbers = np.round((np.concatenate(sides, axis=1) - low) / size * _LEVELS - 0.5 * _LEVELS).astype("<i2")
+
+    def levels(places: np.ndarray) -> str:
+        return as_text(np.round((places - low) / size * _LEVELS - 0.5 * _LEVELS).astype("<i2"))
+
     moved = [
         np.linalg.norm(axis - points.reference, axis=-1)
         for axis, points in zip(shapes.axis, shapes.points, strict=True)
@@ -211,12 +213,8 @@ def _data(solution: Solution, frames: int) -> dict[str, Any]:
         "axis": f"{name} [{unit}]",
         "length": solution.model.unit("m"),
         "moved": [float(f"{value:.5g}") for value in np.concatenate(moved, axis=1).max(axis=1)],
-        "points": as_text(numbers),
-        "reference": as_text(
-            np.round(
-                (np.concatenate([points.reference for points in shapes.points]) - low) / size * _LEVELS - 0.5 * _LEVELS
-            ).astype("<i2")
-        ),
+        "points": levels(np.concatenate(sides, axis=1)),  # (rows, points, sides, 2)
+        "reference": levels(np.concatenate([points.reference for points in shapes.points])),
         "loads": loads_of(shapes),
         "outlines": outlines,
         "places": places,
@@ -252,12 +250,8 @@ def _supports(shapes: Shapes) -> tuple[list[Any], list[Any]]:
         }
         for key, colour, _, fill in by_row[0].places
     ]
-    places = [[[_rounded(place) for place in group] for group in stamps.places.values()] for stamps in by_row]
+    places = [[[_short(place) for place in group] for group in stamps.places.values()] for stamps in by_row]
     return outlines, places[:1] if all(row_places == places[0] for row_places in places) else places
-
-
-def _rounded(place: np.ndarray) -> list[float]:
-    return [float(f"{value:.6g}") for value in place]
 
 
 def _css(colour: str) -> str:

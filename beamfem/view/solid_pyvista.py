@@ -16,7 +16,7 @@ from beamfem.results.solution import Solution
 from beamfem.validation import count, items, number_below, shown
 from beamfem.view.deformed_shapes import FIELD_COLOURS, Shapes
 from beamfem.view.drawing import plot_shapes
-from beamfem.view.frames import moment_of, one_row, spread_rows
+from beamfem.view.frames import moment_of, spread_rows
 from beamfem.view.notebook_paths import WrittenFile
 from beamfem.view.rendering import ADVICE, can_render, has_display, no_display_needed
 
@@ -43,7 +43,7 @@ def picture(
     _require_size(size)
     if not can_render():
         warn(f"VTK cannot render here, so {target} is drawn flat by matplotlib; {ADVICE}")
-        plot_shapes(one_row(solution, number), target, colour)
+        plot_shapes(solution[number : number + 1], target, colour)
         return WrittenFile(target)
     scene = _Scene(Shapes(solution, np.array([number]), colour, _POINTS), off_screen=True, size=size)
     scene.show_row(0)
@@ -119,7 +119,7 @@ class _Scene:
     @cached_property
     def widths(self) -> list[np.ndarray]:
         """Width out of the plane at each point of each beam (points,) [m]."""
-        return _widths(self.shapes)
+        return [_width(points) for points in self.shapes.points]
 
     def show_row(self, order: int) -> None:
         """Move the surface to a row and name it in the corner."""
@@ -167,12 +167,8 @@ class _Scene:
         return np.repeat(np.concatenate(fields), 2)
 
 
-def _widths(shapes: Shapes) -> list[np.ndarray]:
-    """Return the width out of the plane [m]: area over height, or the height for sections without an area."""
-    return [_width(points) for points in shapes.points]
-
-
 def _width(points: AxisPoints) -> np.ndarray:
+    """Return the width out of the plane [m]: area over height, or the height for sections without an area."""
     height = points.faces[:, 1] - points.faces[:, 0]
     if points.mesh.beam.prismatic:
         area = np.full(len(height), getattr(points.mesh.beam.section, "area", 0.0))

@@ -24,7 +24,6 @@ from beamfem.model.model import Model
 from beamfem.parts.at_points import PartAlongBeam, PartAtPoints
 from beamfem.results.solution import Solution
 from beamfem.view import symbols
-from beamfem.view.frames import one_row
 
 SIZE = 15.0  # of a symbol [points of print]
 INK = "0.15"
@@ -88,8 +87,7 @@ def supports_of(solution: Solution, row: int, centre: np.ndarray) -> Stamps:
 
     centre: of all shapes (2,) [m], which decides the side on which a symbol is drawn.
     """
-    only = one_row(solution, row)
-    stamps = Stamps()
+    only, stamps = solution[row : row + 1], Stamps()
     for support in solution.model.supports:
         for shape in drawn(support, support.shapes(), SupportShape):
             match shape:
@@ -114,7 +112,7 @@ def draw_joints(axes: Any, solution: Solution, row: int) -> list[Any]:
 def _draw_connectors(axes: Any, solution: Solution, row: int) -> list[Any]:
     """Draw connectors and masses; a user-defined one is a dashed line through its points, which are dots."""
     connectors = solution.model.at_points
-    only = one_row(solution, row) if connectors else solution
+    only = solution[row : row + 1] if connectors else solution
     artists, stamps, line = [], Stamps(), {"color": INK, "zorder": 6.0}
     for connector in connectors:
         if isinstance(connector, PartAlongBeam):
@@ -171,10 +169,8 @@ def joints_of(solution: Solution, row: int) -> Stamps:
     """Return the hinges of a model in a row as circles."""
     stamps = Stamps()
     rings = [shape for joint in solution.model.shared_joints for shape in drawn(joint, joint.shapes(), JointShape)]
-    if rings:
-        only = one_row(solution, row)
-        for ring in rings:
-            stamps.add(only.position(ring.point)[0], symbols.HINGE, INK, 1.1, "white")
+    for ring in rings:
+        stamps.add(solution[row : row + 1].position(ring.point)[0], symbols.HINGE, INK, 1.1, "white")
     return stamps
 
 

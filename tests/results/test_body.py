@@ -35,7 +35,7 @@ def test_tapered_sections_are_as_wide_as_their_area_says():
         bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), lambda s: bf.Rectangle(0.05, 0.1 - 0.05 * s), bf.Material(1e9, 0.3, 1.0)
     )
     solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 1.0))]))
-    np.testing.assert_allclose(body._widths(Shapes(solution, np.array([0]))), 0.05, rtol=1e-12)
+    np.testing.assert_allclose(body._width(Shapes(solution, np.array([0])).points[0]), 0.05, rtol=1e-12)
 
 
 @renders

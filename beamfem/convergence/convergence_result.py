@@ -91,24 +91,10 @@ class Convergence:
         return f"Convergence of {self.quantity} over {self.refine}"
 
     def points(self, rounded: bool = False) -> tuple[list[str], list[list[Any]]]:
-        """Return the table of points.
+        """Return header and rows of the table of points, without solutions, which `curves` holds.
 
-        Parameters
-        ----------
-        rounded : bool, default False
-            Whether to return values, errors and orders as short text instead of numbers.
-
-        Returns
-        -------
-        header : list of str
-            Names of the columns: parameters, refinement, value, error, order, GCI, other numbers and seconds [s].
-        rows : list of list
-            One row per point. Solutions are left out; `curves` holds them.
-
-        Raises
-        ------
-        InputError
-            If `rounded` is not a bool.
+        Columns: parameters, refinement, value, error, order, GCI, other numbers and seconds [s]; rounded: values,
+        errors and orders as short text instead of numbers. Raises InputError if it is not a bool.
         """
         names = list(dict.fromkeys(name for curve in self.curves for name in curve.texts))
         whole = {
@@ -135,14 +121,9 @@ class Convergence:
         return header, rows
 
     def summary(self) -> tuple[list[str], list[list[str]]]:
-        """Return the table of curves.
+        """Return header and rows, as text, of the table of curves.
 
-        Returns
-        -------
-        header : list of str
-            Names of the columns: curve, order, its 95 % confidence band, fitted range, limit, estimated error, remark.
-        rows : list of list of str
-            One row per curve, as text.
+        Columns: curve, order, its 95 % confidence band, fitted range, limit, estimated error, remark.
         """
         header = ["curve", "order", "95 % band", f"fitted over {self.refine}", "limit", "estimated error", "remark"]
         rows = []
@@ -169,48 +150,18 @@ class Convergence:
         return "\n\n".join(part for part in (points, curves, EXPLANATION, failed) if part) + "\n"
 
     def to_csv(self, path: str | PathLike[str]) -> None:
-        """Write the table of points with all digits; nan if there is no error or order.
-
-        Parameters
-        ----------
-        path : path
-            File to write; folders are created.
-
-        Raises
-        ------
-        FileError
-            If the system refuses to write.
-        """
+        """Write the table of points with all digits; nan if there is no error or order. Raises FileError."""
         tabulate.write_csv(path, *self.points())
 
     def to_pandas(self) -> Any:
-        """Return the table of points, without solutions.
-
-        Returns
-        -------
-        pandas.DataFrame
-            One row per point.
-
-        Raises
-        ------
-        MissingPackageError
-            Without pandas.
-        """
+        """Return the table of points, without solutions, as a pandas.DataFrame. Raises MissingPackageError."""
         return tabulate.as_pandas(*self.points())
 
     def to_xarray(self) -> Any:
-        """Return the numbers of the study over curves and refinement.
+        """Return the numbers of the study over curves and refinement as an xarray.Dataset. Raises MissingPackageError.
 
-        Returns
-        -------
-        xarray.Dataset
-            Value, error, order, GCI, seconds [s] and the other numbers (curve, refinement), nan where a curve has no
-            such point; fitted_order, limit and estimated_error (curve,).
-
-        Raises
-        ------
-        MissingPackageError
-            Without xarray.
+        Value, error, order, GCI, seconds [s] and the other numbers (curve, refinement), nan where a curve has no such
+        point; fitted_order, limit and estimated_error (curve,).
         """
         from beamfem.convergence.study_arrays import as_grid
 
@@ -219,24 +170,8 @@ class Convergence:
     def plot(self, path: str | PathLike[str] | None = None) -> Any:
         """Plot the error against the refinement on logarithmic axes, one line per curve.
 
-        Hollow markers are errors at round-off, which the fitted order leaves out.
-
-        Parameters
-        ----------
-        path : path, optional
-            File to write (PNG, SVG, PDF); folders are created.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The figure.
-
-        Raises
-        ------
-        InputError
-            For another suffix.
-        MissingPackageError
-            Without matplotlib.
+        Hollow markers are errors at round-off, which the fitted order leaves out. path: file to write (PNG, SVG, PDF).
+        Returns the figure. Raises InputError for another suffix, MissingPackageError without matplotlib.
 
         Examples
         --------
@@ -248,22 +183,9 @@ class Convergence:
         return plot_errors(self, path)
 
     def to_html(self, path: str | PathLike[str]) -> Path:
-        """Write an HTML page with the picture and the tables: a single file that works offline.
+        """Write an HTML page with picture and tables, a single file that works offline, and return its path.
 
-        Parameters
-        ----------
-        path : path
-            File to write, .html; folders are created.
-
-        Returns
-        -------
-        Path
-            The file.
-
-        Raises
-        ------
-        MissingPackageError
-            Without matplotlib.
+        Raises MissingPackageError without matplotlib.
         """
         from beamfem.convergence.convergence_page import write_study
 

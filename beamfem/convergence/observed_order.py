@@ -32,14 +32,7 @@ _SMALLEST_ORDER, _LARGEST_ORDER = 1e-9, 60.0
 class OrderFit:
     """Order of the asymptotic part: slope of the least-squares line of log error over log size.
 
-    Parameters
-    ----------
-    order : float, [-]
-        The slope.
-    band : float, [-]
-        Half width of its 95 % confidence interval (Student's t), nan with two points.
-    first, last : int
-        Index of the first and the last point used.
+    band: half width of its 95 % confidence interval (Student's t), nan with two points; first, last: points used.
     """
 
     order: float

@@ -24,38 +24,13 @@ from beamfem.reprs import brief
 class Curve:
     """One curve of a convergence study: one combination of the other parameters, without failed points.
 
-    Parameters
-    ----------
-    refinement : tuple, (n,)
-        Values of the parameter of refinement, from coarse to fine.
-    size : array, (n,)
-        Size h: 1/refinement for counts, the refinement itself for step sizes.
-    value : array, (n,)
-        The quantity.
-    error : array, (n,)
-        Difference from `limit`, relative unless that is zero; nan if the value is the limit itself.
-    relative : bool
-        Whether errors are relative.
-    order : array, [-], (n,)
-        Observed order between each point and the one before it; nan where there is none.
-    gci : array, [-], (n,)
-        Grid convergence index of Roache.
-    fit : OrderFit or None
-        Order of the asymptotic part with its confidence band.
-    limit : float
-        The reference, or the extrapolated limit.
-    estimated_error : float
-        Estimated error of the finest value, nan if unknown.
-    notes : tuple of str
-        What the estimate is based on, and remarks.
-    label : str
-        The other parameters as text, for legends.
-    parameters, texts : mapping
-        The other parameters by name, as values and as text.
-    others : mapping
-        The other numbers (n,) that the function returns, by name.
-    seconds : array, [s], (n,)
-        Duration of each call.
+    refinement (n,): from coarse to fine; size (n,): h, 1/refinement for counts, the refinement itself for step sizes;
+    value (n,): the quantity; error (n,): difference from `limit`, `relative` unless that is zero, nan if the value is
+    the limit itself; order (n,): observed between each point and the one before it, nan where there is none; gci (n,):
+    grid convergence index of Roache; fit: order of the asymptotic part; limit: the reference, or extrapolated;
+    estimated_error: of the finest value, nan if unknown; notes: what the estimate is based on, and remarks; label: the
+    other parameters as text, for legends; parameters, texts: the same by name, as values and as text; others: the other
+    numbers (n,) that the function returns; seconds (n,): duration of each call.
     """
 
     refinement: tuple[Any, ...]

@@ -57,43 +57,14 @@ class Frame:
     __repr__ = brief
 
     def members(self, name: str) -> tuple[Beam, ...]:
-        """Return the beams of a member set.
-
-        Parameters
-        ----------
-        name : str
-            Name of the set.
-
-        Returns
-        -------
-        tuple of Beam
-            The beams.
-
-        Raises
-        ------
-        InputError
-            For an unknown name.
-        """
+        """Return the beams of a member set. Raises InputError for an unknown name."""
         numbers = np.unique(self.owner[_named(self.mesh.member_sets, "member", name)])
         return tuple(self.beams[number] for number in numbers)
 
     def points(self, name: str) -> tuple[Point, ...]:
         """Return a point at each node of a point set, on the first of the beams there.
 
-        Parameters
-        ----------
-        name : str
-            Name of the set.
-
-        Returns
-        -------
-        tuple of Point
-            The points.
-
-        Raises
-        ------
-        InputError
-            For an unknown name, or a point of the set at which no line ends.
+        Raises InputError for an unknown name, or a point of the set at which no line ends.
         """
         nodes = _named(self.mesh.point_sets, "point", name)
         if np.any(nodes < 0) or not all(self.places[node] for node in nodes):
@@ -101,22 +72,9 @@ class Frame:
         return tuple(self.places[node][0] for node in nodes)
 
     def at(self, x: float, y: float) -> Point:
-        """Return the point at the node at a position, on the first of the beams there.
+        """Return the point at the node at a position [m], on the first of the beams there.
 
-        Parameters
-        ----------
-        x, y : float, [m]
-            Position of the node.
-
-        Returns
-        -------
-        Point
-            The point.
-
-        Raises
-        ------
-        InputError
-            If no line ends there.
+        Raises InputError if no line ends there.
         """
         position = np.array(vector("point", (x, y)))
         nodes = np.array([node for node, points in enumerate(self.places) if points])

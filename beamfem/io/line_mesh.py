@@ -95,36 +95,12 @@ class LineMesh:
     ) -> "Frame":
         """Return beams along the lines and the joints between those that share a node.
 
-        Members that share a node are joined rigidly. Each of elements, element, section, material and damping may
-        be a mapping from names of member sets, which together must name each cell once.
-
-        Parameters
-        ----------
-        elements : int or mapping
-            Finite elements per cell.
-        element : Element or mapping
-            Kind of the elements.
-        section : Section or mapping
-            Section, see `Beam`.
-        material : Material or mapping, optional
-            Material, see `Beam`.
-        members : {"cells", "chains"}, default "cells"
-            "cells" makes each cell a beam; "chains" joins cells that follow each other between branches, hinges, turns
-            of 30 degrees or more and changes of their sets into one beam.
-        hinges : str or sequence of str, default ()
-            Point sets at which members rotate freely against each other.
-        damping : Rayleigh, KelvinVoigt or mapping, optional
-            Damping, see `Beam`.
-
-        Returns
-        -------
-        Frame
-            Beams and joints for a `Model`.
-
-        Raises
-        ------
-        InputError
-            For an unknown name, or a cell that is named never or twice.
+        elements: finite elements per cell; element, section, material, damping: see `Beam`. Each of the five may be a
+        mapping from names of member sets, which together must name each cell once. members: "cells" makes each cell a
+        beam; "chains" joins cells that follow each other between branches, hinges, turns of 30 degrees or more and
+        changes of their sets into one beam. Members that share a node are joined rigidly, except at the point sets
+        `hinges`, where they rotate freely against each other. Raises InputError for an unknown name, or a cell that is
+        named never or twice.
 
         Examples
         --------

@@ -95,22 +95,8 @@ class BeamStress:
         """Return the peak along the beam, at and between its stations, and over the rows.
 
         It is the smallest value of `compression`, the largest magnitude of `lower` and `upper`, and the largest value
-        of the others.
-
-        Parameters
-        ----------
-        part : str, default "von_mises"
-            "lower", "upper", "tension", "compression", "shear", "von_mises" or "utilisation".
-
-        Returns
-        -------
-        Peak
-            Value, arc length [m], row, load factor or time there, and beam; nan if no value is known.
-
-        Raises
-        ------
-        InputError
-            For another part.
+        of the others; nan if no value is known. part: "lower", "upper", "tension", "compression", "shear", "von_mises"
+        or "utilisation". Raises InputError for another one.
 
         Examples
         --------

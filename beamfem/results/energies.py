@@ -21,23 +21,11 @@ from beamfem.results.solution_system import loading
 
 @dataclass(frozen=True)
 class Energy:
-    """Energies of a solution.
+    """Energies of a solution (steps,) [J], and the name of the model's unit of energy.
 
-    Parameters
-    ----------
-    kinetic : array, [J], (steps,)
-        Kinetic energy.
-    strain : array, [J], (steps,)
-        Strain energy.
-    potential : array, [J], (steps,)
-        Potential of gravity, other constant dead loads, springs and foundations; follower forces and pressures have
-        none.
-    recorded : array, [J], (steps,)
-        Energy dissipated since the start by sections and stops with history.
-    unit : str
-        Name of the model's unit of energy.
-    solution : Solution, optional
-        The solution, over whose rows `work` and `dissipated` are integrated.
+    potential: of gravity, other constant dead loads, springs and foundations; follower forces and pressures have none.
+    recorded: dissipated since the start by sections and stops with history; solution: the one over whose rows `work`
+    and `dissipated` are integrated.
     """
 
     kinetic: np.ndarray

@@ -15,28 +15,10 @@ Part = Literal["lower", "upper", "tension", "compression", "shear", "von_mises",
 
 @dataclass(frozen=True)
 class Peak:
-    """The extreme of a section force or a stress, which unpacks into its value, arc length and row.
+    """The extreme of a section force or a stress, which unpacks into its value, arc length [m] and row.
 
-    Parameters
-    ----------
-    value : float, [Pa]
-        The stress; a utilisation is a ratio [-], a section force [N] or [N m].
-    arc_length : float, [m]
-        Where it is.
-    row : int
-        Row of the solution.
-    at : float
-        Load factor of that row, or time of a motion [s].
-    beam : Beam
-        The beam.
-    part : str
-        Which stress or section force it is.
-    static : bool, default True
-        Whether `at` is a load factor.
-    units : Units
-        Units of the model, for the text.
-    unit : str, default "Pa"
-        SI unit of the value.
+    part: which stress [Pa], utilisation [-] or section force [N], [N m] it is, whose SI unit is `unit`; at: load factor
+    of the row, or time [s] unless `static`; units: those of the model, for the text.
 
     Examples
     --------

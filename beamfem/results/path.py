@@ -61,100 +61,28 @@ class PathState(State):
         return bool(self.alone.stable[0]) if self.stability is None else self.stability
 
     def position(self, point: Point) -> np.ndarray:
-        """Return the position of a point.
-
-        Parameters
-        ----------
-        point : Point
-            A point of a beam.
-
-        Returns
-        -------
-        array, [m], (2,)
-            Position.
-        """
+        """Return the position (2,) [m] of a point."""
         return np.asarray(self.alone.position(point)[0])
 
     def displacement(self, point: Point) -> np.ndarray:
-        """Return the displacement of a point from the reference configuration.
-
-        Parameters
-        ----------
-        point : Point
-            A point of a beam.
-
-        Returns
-        -------
-        array, [m], (2,)
-            Displacement.
-        """
+        """Return the displacement (2,) [m] of a point from the reference configuration."""
         return np.asarray(self.alone.displacement(point)[0])
 
     def rotation(self, point: Point) -> float:
-        """Return the rotation of the section, counter-clockwise positive, full turns included.
-
-        Parameters
-        ----------
-        point : Point
-            A point of a beam.
-
-        Returns
-        -------
-        float, [rad]
-            Rotation from the reference.
-        """
+        """Return the rotation [rad] of the section, counter-clockwise positive, full turns included."""
         return float(self.alone.rotation(point)[0])
 
     def reaction(self, point: Point) -> np.ndarray:
-        """Return the reaction of the supports on the beam.
-
-        Parameters
-        ----------
-        point : Point
-            A supported point.
-
-        Returns
-        -------
-        array, (3,)
-            fx, fy [N], m [N m].
-
-        Raises
-        ------
-        InputError
-            If the point has no support.
-        """
+        """Return fx, fy [N] and m [N m] (3,) of the supports at a point. Raises InputError if there are none."""
         return np.asarray(self.alone.reaction(point)[0])
 
     def fields(self, point: Point) -> Fields:
-        """Return position, gradients, rotation, shear angle, strain and stress at a point.
-
-        Parameters
-        ----------
-        point : Point
-            A point of a beam.
-
-        Returns
-        -------
-        Fields
-            The fields, without the axis of steps.
-        """
+        """Return position, gradients, rotation, shear angle, strain and stress at a point, without an axis of steps."""
         of_row = self.alone.fields(point)
-        values = [getattr(of_row, name) for name in Fields.__dataclass_fields__]
-        return Fields(*(_first(value) for value in values))
+        return Fields(*(_first(getattr(of_row, name)) for name in Fields.__dataclass_fields__))
 
     def section_forces(self, beam: Beam) -> "SectionForces":
-        """Return normal force, shear force and moment of a beam.
-
-        Parameters
-        ----------
-        beam : Beam
-            A beam of the model.
-
-        Returns
-        -------
-        SectionForces
-            Normal and shear force [N] and moment [N m], (stations,).
-        """
+        """Return normal force, shear force [N] and moment [N m] (stations,) of a beam."""
         forces = self.alone.section_forces(beam)
         return replace(forces, normal=forces.normal[0], shear=forces.shear[0], moment=forces.moment[0])
 

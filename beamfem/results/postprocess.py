@@ -69,13 +69,7 @@ class Fields:
 
 @dataclass(frozen=True)
 class Components:
-    """Components of a symmetric tensor along the beam (x) and across it (y).
-
-    Parameters
-    ----------
-    xx, yy, xy : array, (...)
-        The components, strain [-] or stress [Pa], over steps and points as in `Fields`.
-    """
+    """Components (...) of a symmetric tensor along the beam (x) and across it (y), strain [-] or stress [Pa]."""
 
     xx: np.ndarray
     yy: np.ndarray

@@ -71,20 +71,7 @@ class SectionForces:
     def peak(self, part: Force = "moment") -> Peak:
         """Return the section force of largest magnitude along the beam, at and between its stations, and over the rows.
 
-        Parameters
-        ----------
-        part : str, default "moment"
-            "normal", "shear" or "moment".
-
-        Returns
-        -------
-        Peak
-            Value [N] or [N m], arc length [m], row, load factor or time there, and beam.
-
-        Raises
-        ------
-        InputError
-            For another part.
+        part: "normal", "shear" or "moment". Raises InputError for another one.
 
         Examples
         --------

@@ -35,22 +35,9 @@ class FieldOnBasis:
     __repr__ = brief
 
     def interpolate(self, row: int = -1) -> DiscreteField:
-        """Return position and gradient at the quadrature points in a state, for use in forms.
+        """Return position r (2, ne, nq) [m] and gradient F = (dr/ds, dr/dy) (2, 2, ne, nq) [-] in a row, for forms.
 
-        Parameters
-        ----------
-        row : int, default -1
-            Row of the solution.
-
-        Returns
-        -------
-        skfem.DiscreteField
-            r (2, ne, nq) [m] and its gradient F = (dr/ds, dr/dy) (2, 2, ne, nq) [-].
-
-        Raises
-        ------
-        InputError
-            For a row that does not exist.
+        ne elements have nq quadrature points each. Raises InputError for a row that does not exist.
 
         Examples
         --------

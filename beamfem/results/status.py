@@ -17,27 +17,11 @@ class Status(Enum):
 
 @dataclass(frozen=True)
 class Statistics:
-    """How a solve went.
+    """How a solve went: Newton iterations, completed steps, cuts of steps, why it ended, and sentences to heed.
 
-    Parameters
-    ----------
-    iterations : int
-        Total number of Newton iterations.
-    steps : int
-        Number of completed steps.
-    cuts : int
-        Number of times a step was cut.
-    ended : str
-        Why the solve ended, in a sentence.
-    status : Status
-        How it ended.
-    warnings : tuple of str
-        Sentences to heed before using the results.
-    digits : float, [-]
-        Exact digits of the forces of the last equilibrium, from the balance of loads and reactions, or of the largest
-        force of the path where they have few; nan if unknown.
-    rule : tuple of float
-        Of a motion by a scheme, its time step [s], alpha_m, alpha_f, gamma and beta [-], see `Scheme`; else empty.
+    digits: exact digits of the forces of the last equilibrium, from the balance of loads and reactions, or of the
+    largest force of the path where they have few; nan if unknown. rule: of a motion by a scheme, its time step [s],
+    alpha_m, alpha_f, gamma and beta [-], see `Scheme`; else empty.
     """
 
     iterations: int

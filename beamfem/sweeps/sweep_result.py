@@ -104,17 +104,7 @@ class Sweep:
         ]
 
     def column(self, name: str) -> str:
-        """Return the name of a column of the table.
-
-        Parameters
-        ----------
-        name : str
-            Name of a parameter or result, or "value" for results without names.
-
-        Returns
-        -------
-        str
-            `name`, or the name of the function for "value" if results have no names.
+        """Return the name of a column of the table: `name`, for "value" that of the function if results have no names.
 
         Examples
         --------
@@ -194,26 +184,9 @@ class Sweep:
     def plot(self, value: str | None = None, over: str | None = None, path: str | PathLike[str] | None = None) -> Any:
         """Plot a result against a parameter, one curve for each combination of the others, without points that failed.
 
-        Parameters
-        ----------
-        value : str, optional
-            Name of the result, by default the first.
-        over : str, optional
-            Name of a varied numeric parameter, by default the first.
-        path : path, optional
-            File to write (PNG, SVG, PDF).
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The figure.
-
-        Raises
-        ------
-        InputError
-            For an unknown name, or if there are no numbers to plot.
-        MissingPackageError
-            Without matplotlib.
+        value: name of the result; over: name of a varied numeric parameter; by default the first of each; path: file to
+        write (PNG, SVG, PDF). Returns the figure. Raises InputError for an unknown name, or if there are no numbers to
+        plot; MissingPackageError without matplotlib.
 
         Examples
         --------
@@ -225,17 +198,7 @@ class Sweep:
         return plot_sweep(self, value, over, path)
 
     def to_csv(self, path: str | PathLike[str]) -> None:
-        """Write the table of all points with all digits, without solutions.
-
-        Parameters
-        ----------
-        path : path
-            File to write.
-
-        Raises
-        ------
-        FileError
-            If it cannot be written.
+        """Write the table of all points with all digits, without solutions. Raises FileError if it cannot be written.
 
         Examples
         --------

@@ -20,19 +20,7 @@ _CHUNK_SECONDS = 0.05  # sending a chunk costs about 0.3 ms
 
 @dataclass(frozen=True)
 class Failure:
-    """A failed call.
-
-    Parameters
-    ----------
-    parameters : mapping
-        Its parameters.
-    label : str
-        The same as text.
-    error : str
-        The error in a sentence.
-    traceback : str
-        The traceback, empty if there is none.
-    """
+    """A failed call: its parameters, the same as text, the error in a sentence, and the traceback ("" for none)."""
 
     parameters: Mapping[str, Any] = field(repr=False)
     label: str

@@ -17,7 +17,8 @@ from beamfem.atomic_write import make_folder, path_of, whole
 from beamfem.errors import FileError, InputError
 from beamfem.extras import needed_for
 from beamfem.io.vtk_boundary import Boundary
-from beamfem.io.vtk_cells import LINE, UNITS, Cells, Content, Geometry, Grid, times
+from beamfem.io.vtk_cells import LINE, UNITS, Cells, Content, Geometry, times
+from beamfem.io.vtkhdf import write_vtkhdf
 from beamfem.results.solution import Solution
 from beamfem.validation import items
 
@@ -41,16 +42,7 @@ def write_vtk(
     fields: Sequence[str] | None = None,
     single: bool = False,
 ) -> None:
-    """Write the body into `path`; beside it centrelines and supports and loads, <stem>_centreline and <stem>_boundary.
-
-    .vtkhdf, also where `path` has no suffix: all steps in one file, for ParaView 5.12 or newer; .pvd: a collection
-    of .vtu files, one a step, in the folder <stem>. geometry: "reference" leaves the points where they were, to be
-    warped by `displacement`. fields: names of those to write, by default all but the stress tensors of bodies, with
-    which VTK would drop fields: it draws curved cells with at most 18 numbers at a point; single: numbers of four
-    bytes, half the size, seven digits. Names and units: docs/paraview.md. Raises InputError for another suffix and for
-    unknown fields; BeamfemError if .vtkhdf is asked for without h5py. Warns where the shape of a section, and so its
-    stress, is not known.
-    """
+    """Write body, centrelines, and supports and loads into `path` and files beside it, see `Solution.to_vtk`."""
     path = path_of(path)
     if path.name and not path.suffix:
         path = path.with_suffix(".vtkhdf")
@@ -67,22 +59,16 @@ def write_vtk(
     boundary = Boundary(solution.model, content)
     if chosen is not None:
         content.require_known([*Cells(solution.model, True).names(solution), *boundary.names])
-    grids: dict[str, Grid] = {"": bodies, "_centreline": Cells(solution.model, False, content=content)}
+    grids: dict[str, Cells | Boundary] = {"": bodies, "_centreline": Cells(solution.model, False, content=content)}
     if boundary.points:
         grids["_boundary"] = boundary
     for name, cells in grids.items():
-        target = path.with_stem(path.stem + name)
-        if suffix == ".pvd":
-            _write_series(solution, target, cells)
-        else:
-            from beamfem.io.vtkhdf import write_vtkhdf
-
-            write_vtkhdf(solution, target, cells, max(1, VALUES_IN_MEMORY // cells.points))
+        target, chunk = path.with_stem(path.stem + name), max(1, VALUES_IN_MEMORY // cells.points)
+        (_write_series if suffix == ".pvd" else write_vtkhdf)(solution, target, cells, chunk)
 
 
-def _write_series(solution: Solution, path: Path, cells: Grid) -> None:
+def _write_series(solution: Solution, path: Path, cells: Cells | Boundary, chunk: int) -> None:
     series = _Series(path, cells, "load_factor" if solution.static else "time", times(solution.at))
-    chunk = max(1, VALUES_IN_MEMORY // cells.points)
     try:
         for first in range(0, len(solution), chunk):
             series.write(solution, slice(first, first + chunk))
@@ -98,7 +84,7 @@ class _Series:
     otherwise into its own, and the .pvd lists those so far.
     """
 
-    def __init__(self, path: Path, cells: Grid, name: str, at: np.ndarray) -> None:
+    def __init__(self, path: Path, cells: Cells | Boundary, name: str, at: np.ndarray) -> None:
         self.path, self.cells, self.folder = path, cells, path.with_suffix("")
         self.name, self.times = name, at
         self.earlier = path.exists()

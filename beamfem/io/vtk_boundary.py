@@ -12,56 +12,34 @@ from beamfem.results.solution import Solution
 
 
 class Boundary:
-    """The vertices of a model, written as `Cells` are."""
+    """The vertices of a model, with the attributes of `Cells`."""
 
-    cell_type = VERTEX
+    cell_type, degrees = VERTEX, None
 
     def __init__(self, model: Model, content: Content) -> None:
         self.content, self.beams, self.unit = content, model.beams, model.unit
         self.groups = vertices(model)
         numbers = {id(mesh): number for number, mesh in enumerate(model.meshes)}
-        self.kinds = list(dict.fromkeys(group.kind for group in self.groups))
+        kinds = list(dict.fromkeys(group.kind for group in self.groups))
         self._sizes = [len(group.xi) for group in self.groups]
-        self._beam = [numbers[id(group.mesh)] for group in self.groups]
-        owner = np.repeat(np.array(self._beam, dtype=np.int64), self._sizes)
+        self.points = sum(self._sizes)
+        self.connectivity, self.offsets = np.arange(self.points), np.arange(self.points + 1)
+        beam = [numbers[id(group.mesh)] for group in self.groups]
+        kind, role = [kinds.index(group.kind) for group in self.groups], [group.role for group in self.groups]
+        # cell data (cells,) by name, and names of these numbers
+        self.numbers = {
+            name: np.repeat(np.array(values, dtype=np.int64), self._sizes)
+            for name, values in (("beam", beam), ("kind", kind), ("role", role))
+        }
+        self.legend = {**legend_of_beams(self.beams), "kinds": kinds, "roles": list(ROLES)}
         self._element, self._xi = (
             np.concatenate([getattr(group, name) for group in self.groups]) if self.groups else np.empty(0)
             for name in ("element", "xi")
         )
         # the vertices of each beam that has some
-        self._places = [(model.meshes[number], np.flatnonzero(owner == number)) for number in dict.fromkeys(self._beam)]
-
-    @property
-    def points(self) -> int:
-        """Number of vertices."""
-        return sum(self._sizes)
-
-    @property
-    def connectivity(self) -> np.ndarray:
-        """Points of all cells, one each."""
-        return np.arange(self.points)
-
-    @property
-    def offsets(self) -> np.ndarray:
-        """Offset of each cell in the connectivity, and its length."""
-        return np.arange(self.points + 1)
-
-    @property
-    def degrees(self) -> None:
-        """Vertices have no degree."""
-        return
-
-    @property
-    def numbers(self) -> dict[str, np.ndarray]:
-        """Cell data (cells,) by name."""
-        kind = [self.kinds.index(group.kind) for group in self.groups]
-        values = {"beam": self._beam, "kind": kind, "role": [group.role for group in self.groups]}
-        return {name: np.repeat(np.array(value, dtype=np.int64), self._sizes) for name, value in values.items()}
-
-    @property
-    def legend(self) -> dict[str, list[str]]:
-        """Names of the numbers of kinds and roles."""
-        return {**legend_of_beams(self.beams), "kinds": self.kinds, "roles": list(ROLES)}
+        self._places = [
+            (model.meshes[number], np.flatnonzero(self.numbers["beam"] == number)) for number in dict.fromkeys(beam)
+        ]
 
     @property
     def names(self) -> list[str]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import numpy as np
 
@@ -70,65 +70,20 @@ class Content:
 WHOLE = Content()
 
 
-class Grid(Protocol):
-    """Data to write: cells of one type, the fields at their points, and numbers of the cells."""
-
-    @property
-    def cell_type(self) -> int:
-        """Number of the type of the cells in VTK."""
-        ...
-
-    @property
-    def points(self) -> int:
-        """Number of points."""
-        ...
-
-    @property
-    def connectivity(self) -> np.ndarray:
-        """Points of all cells, one cell after the other."""
-        ...
-
-    @property
-    def offsets(self) -> np.ndarray:
-        """Offset of each cell in the connectivity, and its length."""
-        ...
-
-    @property
-    def degrees(self) -> np.ndarray | None:
-        """Degrees of the Lagrange cells (cells, 3), None for other cells."""
-        ...
-
-    @property
-    def numbers(self) -> dict[str, np.ndarray]:
-        """Cell data (cells,) by name."""
-        ...
-
-    def unit(self, unit: str) -> str:
-        """Return the name of the model's unit for one of SI."""
-        ...
-
-    @property
-    def legend(self) -> dict[str, list[str]]:
-        """Meaning of the numbers of cells, by name."""
-        ...
-
-    def arrays(self, solution: Solution, rows: slice) -> dict[str, np.ndarray]:
-        """Return points and fields (steps, points) and (steps, points, 3 or 6) of some rows of a solution."""
-        ...
-
-
 class Cells:
     """The cells of all beams: bodies, one cell an element and layer, or lines; elements share no points with others.
 
-    alike: of one degree in both directions; readers of VTKHDF files before VTK 9.7 take no others.
+    alike: of one degree in both directions; readers of VTKHDF files before VTK 9.7 take no others. cell_type: in VTK;
+    points: their number; connectivity: points of all cells, one cell after the other; offsets of each cell in it, and
+    its length; degrees (cells, 3) of Lagrange cells, None for lines; numbers: cell data (cells,) by name, beam,
+    material and section, and the layer of bodies from the bottom up; legend: names of these numbers.
     """
 
     def __init__(self, model: Model, whole: bool, alike: bool = False, content: Content = WHOLE) -> None:
         self.whole, self.content = whole, content
         self.beams, self.unit = model.beams, model.unit
         self.samples: Sequence[Samples] = bodies(model, alike) if whole else centrelines(model)
-        self.materials = _distinct(_materials(model))
-        self.sections = _distinct([beam.section for beam in model.beams])
+        materials, sections = _distinct(_materials(model)), _distinct([beam.section for beam in model.beams])
         # elements by beams and their layers, of all samples
         beam = np.concatenate([part.beam for part in self.samples])
         sample = np.repeat(np.arange(len(self.samples)), [len(part.element) for part in self.samples])
@@ -136,11 +91,21 @@ class Cells:
         order = np.lexsort((layer[sample], beam))
         pieces = np.array([1 if whole else part.points.pieces for part in self.samples])
         cells = np.repeat(sample[order], pieces[sample[order]])  # the sample of each cell
-        self.beam = np.repeat(beam[order], pieces[sample[order]])
-        material = _numbers([part.material for part in self.samples], self.materials)
-        section = _numbers([part.mesh.beam.section for part in self.samples], self.sections)
-        self.material, self.section, self.layer = np.array(material)[cells], np.array(section)[cells], layer[cells]
-        self.degree = np.array([(part.points.pieces, part.across) for part in self.samples])[cells]
+        material = _numbers([part.material for part in self.samples], materials)
+        section = _numbers([part.mesh.beam.section for part in self.samples], sections)
+        self.numbers = {
+            "beam": np.repeat(beam[order], pieces[sample[order]]),
+            "material": np.array(material)[cells],
+            "section": np.array(section)[cells],
+            **({"layer": layer[cells]} if whole else {}),
+        }
+        self.legend = {
+            **legend_of_beams(self.beams),
+            "materials": [material_in_words(item, self.unit) for item in materials],
+            "sections": [section_in_words(item, self.unit) for item in sections],
+        }
+        degree = np.array([(part.points.pieces, part.across, 1.0) for part in self.samples])[cells]
+        self.degrees = degree if whole else None
         self.cell_type = LAGRANGE_QUADRILATERAL if whole else LINE
         self.points = sum(part.size for part in self.samples)
         corners = np.array([len(part.order) for part in self.samples])[sample]
@@ -152,29 +117,6 @@ class Cells:
             last = np.cumsum(corners[order]) - 1
             first = np.setdiff1d(np.arange(self.points), last, assume_unique=True)
             self.connectivity, self.offsets = np.column_stack([first, first + 1]).ravel(), 2 * np.arange(len(first) + 1)
-
-    @property
-    def degrees(self) -> np.ndarray | None:
-        """Degrees of the Lagrange cells (cells, 3), None for lines."""
-        if not self.whole:
-            return None
-        return np.column_stack([self.degree, np.ones(len(self.degree))]).astype(float)
-
-    @property
-    def numbers(self) -> dict[str, np.ndarray]:
-        """Cell data (cells,) by name: beam, material and section, and the layer of bodies from the bottom up."""
-        numbers = {"beam": self.beam, "material": self.material, "section": self.section}
-        return numbers | {"layer": self.layer} if self.whole else numbers
-
-    @property
-    def legend(self) -> dict[str, list[str]]:
-        """Names of the numbers of materials and sections, and of beams if some have names."""
-        unit = self.unit
-        return {
-            **legend_of_beams(self.beams),
-            "materials": [material_in_words(item, unit) for item in self.materials],
-            "sections": [section_in_words(item, unit) for item in self.sections],
-        }
 
     def warn_of_unknown_stress(self) -> None:
         """Warn of beams whose stress is left out, or nan beside that of others."""

@@ -4,19 +4,21 @@ Source: Kitware, VTKHDF File Format 2.6 (temporal UnstructuredGrid), docs.vtk.or
 """
 
 from collections.abc import Callable
+from math import prod
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from beamfem.io.hdf5 import write_hdf5
-from beamfem.io.vtk_cells import UNITS, Grid, times
+from beamfem.io.vtk_boundary import Boundary
+from beamfem.io.vtk_cells import UNITS, Cells, times
 from beamfem.results.solution import Solution
 
 _CHUNK_BYTES = 2**16
 
 
-def write_vtkhdf(solution: Solution, path: Path, cells: Grid, chunk: int) -> None:
+def write_vtkhdf(solution: Solution, path: Path, cells: Cells | Boundary, chunk: int) -> None:
     """Write the cells of a solution, `chunk` rows at a time; readers see the old file or the whole new one.
 
     Cells are stored once, points and point data for every step. Raises MissingPackageError without h5py.
@@ -28,7 +30,9 @@ def write_vtkhdf(solution: Solution, path: Path, cells: Grid, chunk: int) -> Non
     write_hdf5(path, fill)
 
 
-def _write(root: Any, solution: Solution, cells: Grid, chunk: int, require_written: Callable[[], None]) -> None:
+def _write(
+    root: Any, solution: Solution, cells: Cells | Boundary, chunk: int, require_written: Callable[[], None]
+) -> None:
     root.attrs["Version"] = np.array([2, 6])
     # a string of fixed length, as the format demands
     root.attrs.create("Type", np.bytes_("UnstructuredGrid"))
@@ -54,33 +58,18 @@ def _write(root: Any, solution: Solution, cells: Grid, chunk: int, require_writt
             group = root if array == "points" else point_data
             key = "Points" if array == "points" else array
             if key not in group:
-                tail = values.shape[2:]
-                size = max(
-                    1, min(_CHUNK_BYTES // (values.itemsize * int(np.prod(tail, dtype=int))), steps * cells.points)
-                )
-                group.create_dataset(
-                    key,
-                    (steps * cells.points, *tail),
-                    values.dtype,
-                    chunks=(size, *tail),
-                    compression="gzip",
-                    shuffle=True,
-                )
+                tail, count = values.shape[2:], steps * cells.points
+                size = max(1, min(_CHUNK_BYTES // (values.itemsize * prod(tail)), count))
+                options = {"chunks": (size, *tail), "compression": "gzip", "shuffle": True}
+                group.create_dataset(key, (count, *tail), values.dtype, **options)
                 if array in UNITS:
                     group[key].attrs["units"] = cells.unit(UNITS[array])
             flat = values.reshape(-1, *values.shape[2:])
             group[key][first * cells.points : first * cells.points + len(flat)] = flat
         root.file.flush()
         require_written()
-    _write_steps(root.create_group("Steps"), solution, cells, list(point_data), list(cell_data), name)
-
-
-def _write_steps(
-    group: Any, solution: Solution, cells: Grid, point_data: list[str], cell_data: list[str], name: str
-) -> None:
-    """Say where in the arrays each step begins; one part and one set of cells for all."""
-    steps = len(solution)
-    begin = np.arange(steps) * cells.points
+    # where in the arrays each step begins; one part and one set of cells for all
+    group, begin = root.create_group("Steps"), np.arange(steps) * cells.points
     same = np.zeros(steps, dtype=np.int64)
     group.attrs["NSteps"] = steps
     group["Values"] = times(solution.at)

@@ -38,11 +38,7 @@ _CHECKSUMS = "checksums"  # of each block of rows
 
 
 def save(solution: Solution, path: str | PathLike[str]) -> None:
-    """Write model and states into one HDF5 file with checksums; folders in the path are created.
-
-    An earlier file is replaced when the new one is complete. Raises InputError for a model with parts that cannot be
-    saved, FileError if the system refuses to write, MissingPackageError without h5py.
-    """
+    """Write model and states into one HDF5 file with checksums, see `Solution.save`."""
     at = np.append(solution.at, load_factors(solution)) if isinstance(solution, EquilibriumPath) else solution.at
     description = _text(describe(solution.model, at))
     block = max(min(_BLOCK_BYTES // (8 * solution.p.shape[1]), len(solution)), 1)

@@ -84,7 +84,7 @@ def groups_of(model: Model, beam: Beam | None, rows: int) -> list[LikeBeams]:
 def stations(model: Model, group: LikeBeams) -> Variables:
     """Return the coordinates of the stations of like beams by name, see `arrays`."""
     points, about = group.points, partial(named, model)
-    attributes = _called(model)
+    attributes = {"names": ", ".join(names(model.beams))} if any(one.name for one in model.beams) else {}
     coordinates = {
         "beam": (np.repeat(group.numbers, group.counts), about("number of the beam", "1") | attributes),
         "arc_length": (points.arc_length, about("arc length in the reference", "m")),
@@ -94,23 +94,8 @@ def stations(model: Model, group: LikeBeams) -> Variables:
     return {name: (("station",), *variable) for name, variable in coordinates.items()}
 
 
-def _called(model: Model) -> dict[str, str]:
-    """Return the names of all beams as an attribute, where there are any; made once for all beams."""
-    known: dict[str, dict[str, str]] = model.__dict__
-    if "_called" not in known:
-        known["_called"] = {"names": ", ".join(names(model.beams))} if any(one.name for one in model.beams) else {}
-    return known["_called"]
-
-
 def to_xarray(solution: Solution, beam: Beam | None = None) -> Any:
-    """Return an xarray.Dataset of the `arrays` of a beam, or of all beams in succession; statistics are its attributes.
-
-    Of one beam, arc_length is a dimension, so that `sel`, `interp` and `plot` go by it. No arc length is there twice,
-    and no value is lost where section forces jump: the station before an end that two elements share stands one unit of
-    the last digit before it, so that the arc length itself has the side towards the end of the beam, as in `fields`. Of
-    all beams the dimension is station, since their arc lengths overlap. Raises InputError for a beam of another model;
-    MissingPackageError without xarray.
-    """
+    """Return an xarray.Dataset of the `arrays` of a beam, or of all beams in succession, see `Solution.to_xarray`."""
     data, coordinates = arrays(solution, beam)
     # files hold texts and numbers
     words = {"status": solution.status.name, "warnings": "\n".join(solution.statistics.warnings)}
@@ -130,12 +115,7 @@ def as_dataset(data: Variables, coordinates: Variables, attributes: dict[str, An
 
 
 def to_pandas(solution: Solution, beam: Beam | None = None) -> Any:
-    """Return a pandas.DataFrame of quantities along a beam, or along all, with a row for each time and station.
-
-    Its index is time [s] or load_factor, number of the beam and arc_length [m]; columns: see `arrays`. No row of the
-    index is there twice: see `told_apart`, for both sides of a shared end and for the rows before and after a jump.
-    Raises InputError for a beam of another model; MissingPackageError without pandas.
-    """
+    """Return a pandas.DataFrame of the `arrays`, with a row for each time and station, see `Solution.to_pandas`."""
     with needed_for("to_pandas"):
         import pandas
     data, coordinates = arrays(solution, beam)

@@ -1,14 +1,15 @@
 """Fields along the axes of beams, at points suited to plotting and export."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
 import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.mesh.reference import reference_axis
+from beamfem.mesh.reference import reference_position
 from beamfem.mesh.section_stress import Distributions, distributions, layers
 from beamfem.model.beam import Beam
 from beamfem.results import postprocess
@@ -61,11 +62,7 @@ class AxisPoints:
     @cached_property
     def reference(self) -> np.ndarray:
         """Position in the reference configuration (points, 2) [m]."""
-        return self.mesh.position[self.mesh.node[self.element, 0]] + self._reference_axis.r
-
-    @cached_property
-    def _reference_axis(self) -> postprocess.Axis:
-        return reference_axis(self.mesh, self.element, self.xi)
+        return reference_position(self.mesh, self.element, self.xi)
 
     def positions(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return r [m] and d [-] (steps, points, 2) in the states p (steps, n)."""
@@ -138,11 +135,8 @@ class Quantity:
         return why if all(laws) else f"{why}; besides, {self.unknown}"
 
 
-def _section_force(name: str) -> Callable[..., np.ndarray]:
-    def values(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
-        return section_forces(points, solution, rows)[name]
-
-    return values
+def _section_force(name: str, points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
+    return section_forces(points, solution, rows)[name]
 
 
 def _axial_strain(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
@@ -161,11 +155,8 @@ def _speed(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> 
     return np.asarray(np.linalg.norm(points.velocities(solution.p[rows], solution.v[rows]), axis=-1))
 
 
-def _stress(name: str) -> Callable[..., np.ndarray]:
-    def values(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
-        return stress_at(solution, points.mesh, points.element, points.xi, rows)[name]
-
-    return values
+def _stress(name: str, points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
+    return stress_at(solution, points.mesh, points.element, points.xi, rows)[name]
 
 
 def _outer(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
@@ -173,25 +164,24 @@ def _outer(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> 
     return np.where(np.abs(stress["upper"]) >= np.abs(stress["lower"]), stress["upper"], stress["lower"])
 
 
+def _over_height(
+    name: Literal["von_mises", "utilisation"], points: AxisPoints, solution: Solution, rows: slice | np.ndarray
+) -> np.ndarray:
+    return stress_over_height(solution, points.mesh, Cuts(points.element, points.xi), rows, name)
+
+
 _NO_STRESS = "stresses need sections with a material and a height"
 
 
 def _of_stress(label: str, name: str) -> Quantity:
-    return Quantity(label, "Pa", _stress(name), _NO_STRESS)
+    return Quantity(label, "Pa", partial(_stress, name), _NO_STRESS)
 
 
-def _over_height(name: Literal["von_mises", "utilisation"]) -> Values:
-    def values(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
-        return stress_over_height(solution, points.mesh, Cuts(points.element, points.xi), rows, name)
-
-    return values
-
-
-_VON_MISES = Quantity("von Mises stress", "Pa", _stress("von_mises"), _NO_STRESS, _over_height("von_mises"))
+_VON_MISES = replace(_of_stress("von Mises stress", "von_mises"), over_height=partial(_over_height, "von_mises"))
 QUANTITIES = {
-    "moment": Quantity("bending moment", "N m", _section_force("moment")),
-    "normal": Quantity("normal force", "N", _section_force("normal")),
-    "shear": Quantity("shear force", "N", _section_force("shear")),
+    "moment": Quantity("bending moment", "N m", partial(_section_force, "moment")),
+    "normal": Quantity("normal force", "N", partial(_section_force, "normal")),
+    "shear": Quantity("shear force", "N", partial(_section_force, "shear")),
     "stress": _VON_MISES,
     "von_mises": _VON_MISES,
     "upper": _of_stress("stress at the upper face", "upper"),
@@ -203,9 +193,9 @@ QUANTITIES = {
     "utilisation": Quantity(
         "utilisation of the strength",
         "-",
-        _stress("utilisation"),
+        partial(_stress, "utilisation"),
         "give a material its strength, Material(..., strength=)",
-        _over_height("utilisation"),
+        partial(_over_height, "utilisation"),
     ),
     "rotation": Quantity("rotation", "rad", rotation),
     "displacement": Quantity("displacement", "m", _displacement),

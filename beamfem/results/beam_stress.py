@@ -1,6 +1,6 @@
 """Stress of a beam: extremes over each section, their peaks along the beam, and the utilisation of the strength."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -104,7 +104,7 @@ class BeamStress:
         >>> round(arc_length, 3), row
         (0.0, 1)
         """
-        _require_part(part)
+        require_known(f"there is no stress {shown(part)}", part, PARTS)
         unit = "-" if part == "utilisation" else "Pa"
 
         def at(solution: Solution, mesh: BeamMesh, cuts: Cuts, rows: np.ndarray) -> np.ndarray:
@@ -136,23 +136,15 @@ def peak_stress(solution: Solution, part: Part = "von_mises") -> Peak:
 
     Warns of beams with sections that define no stress.
     """
-    _require_part(part)
+    require_known(f"there is no stress {shown(part)}", part, PARTS)
     measure, beams = _measure(part), solution.model.beams
-    sizes = np.array([_estimate(solution, beam, part, measure) for beam in beams])
+    by_mesh = zip(solution.model.meshes, (getattr(beam_stress(solution, beam), part) for beam in beams), strict=True)
+    sizes = np.array([estimate(*by_element(mesh, values), measure) for mesh, values in by_mesh])
     unknown = np.isnan(sizes)
     if part != "utilisation":  # which a material without a strength does not have either
         what = "nan" if unknown.all() else "left out"
         warn_of_unknown_stress(beams, np.flatnonzero(unknown).tolist(), what)
     return extreme_of_beams(sizes, measure, lambda number: beam_stress(solution, beams[number]).peak(part))[1]
-
-
-def _require_part(part: str) -> None:
-    require_known(f"there is no stress {shown(part)}", part, PARTS)
-
-
-def _estimate(solution: Solution, beam: Beam, part: Part, measure: Measure) -> float:
-    values, mesh = getattr(beam_stress(solution, beam), part), solution.model.meshes[solution.model.number_of(beam)]
-    return estimate(*by_element(mesh, values), measure)
 
 
 def _measure(part: Part) -> Measure:
@@ -210,8 +202,17 @@ def _of_rows(
             "utilisation": np.fmax.reduce(equivalent / strength, axis=-1),
         }
         # missing layers of a section coincide with its upper face
-        extremes = {name: _joined(name, extremes[name], stresses[name]) for name in stresses} if extremes else stresses
+        joined = {name: _JOINED.get(name, np.fmax)(extremes[name], stresses[name]) for name in extremes}
+        extremes = joined or stresses
     return extremes
+
+
+# of layers from the bottom up
+_JOINED: dict[str, Callable[[np.ndarray, np.ndarray], np.ndarray]] = {
+    "lower": lambda before, layer: before,
+    "upper": lambda before, layer: layer,
+    "compression": np.fmin,
+}
 
 
 _PARABOLIC = 1e-9  # of the largest stress: deviation from a parabola through three heights
@@ -245,11 +246,3 @@ def _layers(
         along = distribution.normal_stress(layer, y, normal, moment)
         along = along + self_stress(solution, mesh, element, xi, layer, y, rows)
         yield along, distribution.shear_stress(layer, y, shear), strength[layer][:, None]
-
-
-def _joined(name: str, before: np.ndarray, layer: np.ndarray) -> np.ndarray:
-    if name == "lower":
-        return before
-    if name == "upper":
-        return layer
-    return np.fmin(before, layer) if name == "compression" else np.fmax(before, layer)

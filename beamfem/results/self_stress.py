@@ -39,19 +39,14 @@ def self_stress(
     sections = [beam.section_at(s) for s in (arc[:1] if beam.prismatic else arc).tolist()]
     if all(expands_evenly(section, beam.material) for section in sections):
         return 0.0
-    units = np.array(
-        [_units(section, mesh, layer, heights) for section, heights in zip(_each(sections, y), y, strict=True)]
-    )
+    each = sections * len(y) if len(sections) == 1 else sections
+    units = np.array([_units(section, mesh, layer, heights) for section, heights in zip(each, y, strict=True)])
     factors = solution.computed(imposing)[rows]
     result = np.zeros((len(factors), *y.shape))
     for number, load in imposed:
         inside = mesh.arc_length_inside(element, xi, jumps_along(load))
         result += factors[:, number, None, None] * np.einsum("nhc,nc->nh", units, heat_of(load, inside))
     return result
-
-
-def _each(sections: list[CrossSection], y: np.ndarray) -> list[CrossSection]:
-    return sections * len(y) if len(sections) == 1 else sections
 
 
 def _units(section: CrossSection, mesh: BeamMesh, layer: int | None, y: np.ndarray) -> np.ndarray:

@@ -19,9 +19,9 @@ from beamfem.model.beam import beam_in_words
 from beamfem.model.model import Model
 from beamfem.precision.roundoff import row_floors
 from beamfem.results import postprocess
-from beamfem.results.finding import Finding
-from beamfem.results.imposed_measures import imposed_measures
 from beamfem.results.solution import Solution, State
+from beamfem.results.solution_system import imposed_measures
+from beamfem.results.status import Finding
 
 ROWS = 32  # of a solution that are looked at
 

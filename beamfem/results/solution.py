@@ -501,7 +501,7 @@ class Solution:
 
         from beamfem.results.connector_results import kinetic_of_connectors
         from beamfem.results.energies import Energy, potential, recorded
-        from beamfem.results.imposed_measures import imposed_measures
+        from beamfem.results.solution_system import imposed_measures
 
         kinetic = sum((m.kinetic for m in self._momenta), kinetic_of_connectors(self))
         imposed = ((mesh, imposed_measures(self, mesh)) for mesh in self.model.meshes)

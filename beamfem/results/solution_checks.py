@@ -24,13 +24,12 @@ from beamfem.model.model import Model
 from beamfem.results import locking
 from beamfem.results.beam_stress import peak_stress
 from beamfem.results.energy_balance import energy_warnings
-from beamfem.results.finding import Finding
-from beamfem.results.imposed_measures import imposed_measures
 from beamfem.results.locking import ROWS, heights, pairs, rows_looked_at
 from beamfem.results.nodal import axis, nodal_vectors
 from beamfem.results.postprocess import nodal_rotations
 from beamfem.results.solution import Solution
-from beamfem.results.solution_system import loading
+from beamfem.results.solution_system import imposed_measures, loading
+from beamfem.results.status import Finding
 from beamfem.section.protocol import CrossSection
 
 _MUCH = 1.5  # [rad]: an element that turns by this much between its ends is far from the curve that it stands for

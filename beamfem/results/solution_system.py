@@ -1,8 +1,9 @@
-"""The equations that the rows of a solution satisfy, and the load factors or times of their loads."""
+"""The equations that the rows of a solution satisfy, the load factors or times of their loads, and imposed strains."""
 
 import numpy as np
 
 from beamfem.assembly.system import System, system_of
+from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.results.solution import Solution
 
 
@@ -17,3 +18,14 @@ def imposing(solution: Solution) -> np.ndarray:
     """Return the factors (steps, k) of the loads that impose strains."""
     system, at = loading(solution)
     return np.array([system.imposing(time) for time in at.tolist()]).reshape(len(at), -1)
+
+
+def imposed_measures(solution: Solution, mesh: BeamMesh, rows: slice | np.ndarray = slice(None)) -> np.ndarray | float:
+    """Return the imposed strains (steps, points, ns) at the strain energy points of a beam; 0 if there are none."""
+    system, _ = loading(solution)
+    imposed = system.blocks[mesh.block].imposed
+    if imposed is None:
+        return 0.0
+    strains = imposed.of(slice(mesh.first_element, mesh.first_element + mesh.elements))
+    values = [strains.at(factors) for factors in solution.computed(imposing)[rows]]
+    return np.array(values).reshape(len(values), -1, strains.first.shape[-1])

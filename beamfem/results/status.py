@@ -1,7 +1,8 @@
-"""How a solve ended."""
+"""How a solve ended, and what is found wrong with its results."""
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 from numpy import nan
 
@@ -48,3 +49,10 @@ class Statistics:
 def counted(number: int, what: str) -> str:
     """Return a number of things in words, such as "1 step"."""
     return f"{number} {what}{'' if number == 1 else 's'}"
+
+
+class Finding(NamedTuple):
+    """A sentence for `warnings` of a result; kind: category of its Python warning, None if it is too small for one."""
+
+    sentence: str
+    kind: type[Warning] | None = None

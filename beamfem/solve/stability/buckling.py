@@ -11,11 +11,10 @@ from beamfem.errors import ConvergenceError, InputError, RoundOffWarning
 from beamfem.linalg.eigenpairs import digits_for
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
-from beamfem.results.finding import Finding
 from beamfem.results.locking import critical_load_locking
 from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import advice, may_lock, warn_of
-from beamfem.results.status import Statistics, Status
+from beamfem.results.status import Finding, Statistics, Status
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.stability.linearised import linear_reach, linear_solution, linearised_loads
 from beamfem.solve.stability.loading_path import InvertedError, LoadingPath, PathLostError

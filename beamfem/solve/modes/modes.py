@@ -220,7 +220,7 @@ class Modes:
         >>> bf.solve_modes(model, count=2).to_xarray(beam)["frequency"].values.round(1)
         array([ 20.8, 129.1])
         """
-        from beamfem.io.mode_table import modes_to_xarray
+        from beamfem.io.table import modes_to_xarray
 
         return modes_to_xarray(self, beam)
 

@@ -126,7 +126,7 @@ class Buckling:
         Shapes are along a beam, or along all beams, scaled as `modes`. Raises InputError for a beam of another model,
         MissingPackageError without xarray.
         """
-        from beamfem.io.mode_table import buckling_to_xarray
+        from beamfem.io.table import buckling_to_xarray
 
         return buckling_to_xarray(self, beam)
 

@@ -1,14 +1,156 @@
 """Supports, loads and connectors in ParaView files: a vertex for each place, with what acts on the beam there."""
 
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+
 import numpy as np
 
 from beamfem.cached_properties import cached_property
-from beamfem.io.boundary_conditions import COMPONENTS, ROLES, vertices
 from beamfem.io.vtk_cells import VERTEX, Content, by_precision, legend_of_beams
-from beamfem.mesh.reference import reference_position
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.reference import length_points, reference_position
+from beamfem.model.beam import Beam, Point
+from beamfem.model.contribution import Contribution
+from beamfem.model.load_base import Load, factor
 from beamfem.model.model import Model
+from beamfem.model.state_protocols import in_plane
+from beamfem.model.supports import DIRECTIONS, LineSupport, PointSupport
+from beamfem.parts.at_points import PartAlongBeam
 from beamfem.results import postprocess
+from beamfem.results.reactions import reaction_of
 from beamfem.results.solution import Solution
+from beamfem.results.solution_system import loading
+from beamfem.results.stations import StationsOfRows
+from beamfem.validation import require_known
+
+# values of a vertex by name, and how many components each has
+_COMPONENTS = {"force": 3, "moment": 1, "line_force": 3, "acceleration": 3, "prescribed": 3, "stiffness": 3}
+_ROLES = ("support", "load", "connector")
+_SUPPORT, _LOAD, _CONNECTOR = range(3)
+_ACTION = ("force", "moment")
+_Values = dict[str, np.ndarray]
+
+
+@dataclass(frozen=True, eq=False)
+class _Vertices:
+    """Places (n,) of a beam at which something acts: its class, its role and its values (steps, n, components).
+
+    fields: names of the values.
+    """
+
+    kind: str
+    role: int
+    fields: tuple[str, ...]
+    mesh: BeamMesh
+    element: np.ndarray
+    xi: np.ndarray
+    values: Callable[[Solution], _Values]
+
+
+def _flat(vectors: np.ndarray) -> np.ndarray:
+    """Return vectors of the plane (..., 2) with a third component, zero."""
+    return np.pad(vectors, [(0, 0)] * (vectors.ndim - 1) + [(0, 1)])
+
+
+def _at(model: Model, point: Point) -> tuple[BeamMesh, np.ndarray, np.ndarray]:
+    mesh = model.mesh_of(point)
+    element, xi = mesh.locate(point.fraction)
+    return mesh, np.array([element]), np.array([xi])
+
+
+def _along(model: Model, beam: Beam) -> tuple[BeamMesh, np.ndarray, np.ndarray]:
+    mesh = model.meshes[model.number_of(beam)]
+    element, xi, _ = length_points(mesh)
+    return mesh, element, xi
+
+
+def _supports(model: Model) -> Iterator[_Vertices]:
+    """Yield one vertex for each point that is supported, since its reaction is that of all supports there."""
+    at_node: dict[tuple[int, int], list[PointSupport]] = {}
+    for support in model.point_supports:
+        beam, fraction = support.point.beam, support.point.fraction
+        at_node.setdefault((id(beam), model.mesh_of(support.point).node_at(fraction)), []).append(support)
+    for supports in at_node.values():
+        kind = " + ".join(dict.fromkeys(type(support).__name__ for support in supports))
+        fixed = _fixed(supports)
+        place = _at(model, supports[0].point)
+        yield _Vertices(kind, _SUPPORT, (*_ACTION, *fixed), *place, partial(_reaction, supports, fixed))
+    for foundation in model.line_supports:
+        kind, place = type(foundation).__name__, _along(model, foundation.beam)
+        yield _Vertices(kind, _SUPPORT, ("line_force",), *place, partial(_of_foundation, foundation, *place))
+
+
+def _fixed(supports: list[PointSupport]) -> _Values:
+    """Return which directions the supports of a point prescribe, and the stiffness of their springs (3,), if any."""
+    prescribed, stiffness = np.zeros(3), np.zeros(3)
+    for support in supports:
+        for name in support.prescribed():
+            if support.direction is not None and name == "normal":
+                prescribed[:2] = support.direction
+            else:
+                prescribed[DIRECTIONS.index(name)] = 1.0
+        for name, value in support.springs().items():
+            stiffness[DIRECTIONS.index(name)] += value
+    return {name: array for name, array in (("prescribed", prescribed), ("stiffness", stiffness)) if array.any()}
+
+
+def _reaction(supports: list[PointSupport], fixed: _Values, part: Solution) -> _Values:
+    reactions = reaction_of(part, supports)[:, None]
+    constant = {name: np.tile(array, (len(part), 1, 1)) for name, array in fixed.items()}
+    return {"force": _flat(reactions[..., :2]), "moment": reactions[..., 2:], **constant}
+
+
+def _of_foundation(
+    foundation: LineSupport, mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, part: Solution
+) -> _Values:
+    position = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, part.p), element, xi).r
+    return {"line_force": _flat(-np.array(foundation.stiffness) * (position - reference_position(mesh, element, xi)))}
+
+
+def _loads(model: Model) -> Iterator[_Vertices]:
+    """Yield the vertices of the loads; strains that are imposed act nowhere from outside."""
+    named = [(type(load).__name__, part) for load in model.loads for part in load.parts if isinstance(part, Load)]
+    for kind, load in named:
+        where = load.place
+        if where is None:  # all mass, drawn in the middle of every beam
+            places = [_at(model, beam.at(0.5)) for beam in model.beams]
+        else:
+            places = [_at(model, where) if isinstance(where, Point) else _along(model, where)]
+        for mesh, element, xi in places:
+            acting = load.acting(mesh.arc_length(element, xi))
+            for name in acting:
+                require_known(f"acting of {kind} has the unknown quantity {name!r}", name, _COMPONENTS)
+            if acting:
+                place = mesh, element, xi
+                yield _Vertices(kind, _LOAD, tuple(acting), *place, partial(_of_load, load, acting, *place))
+
+
+def _of_load(
+    load: Load, acting: Mapping[str, np.ndarray], mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, part: Solution
+) -> _Values:
+    system, times = loading(part)
+    factors = np.array([factor(load, float(time), system.static) for time in times])[:, None, None]
+    stations = StationsOfRows(part, mesh, element, xi)
+    sized = {name: factors * numbers for name, numbers in acting.items()}
+    return {
+        name: _flat(in_plane(numbers, load.axes, stations)) if numbers.shape[-1] == 2 else numbers
+        for name, numbers in sized.items()
+    }
+
+
+def _connectors(model: Model) -> Iterator[_Vertices]:
+    for connector in model.at_points:
+        if isinstance(connector, PartAlongBeam):
+            continue  # acts along a beam
+        for number, point in enumerate(connector.points):
+            values = partial(_of_connector, connector, number)
+            yield _Vertices(type(connector).__name__, _CONNECTOR, _ACTION, *_at(model, point), values)
+
+
+def _of_connector(connector: Contribution, number: int, part: Solution) -> _Values:
+    forces = part.connector_force(connector)[:, number : number + 1]
+    return {"force": _flat(forces[..., :2]), "moment": forces[..., 2:]}
 
 
 class Boundary:
@@ -18,7 +160,7 @@ class Boundary:
 
     def __init__(self, model: Model, content: Content) -> None:
         self.content, self.beams, self.unit = content, model.beams, model.unit
-        self.groups = vertices(model)
+        self.groups = [*_supports(model), *_loads(model), *_connectors(model)]
         numbers = {id(mesh): number for number, mesh in enumerate(model.meshes)}
         kinds = list(dict.fromkeys(group.kind for group in self.groups))
         self._sizes = [len(group.xi) for group in self.groups]
@@ -31,7 +173,7 @@ class Boundary:
             name: np.repeat(np.array(values, dtype=np.int64), self._sizes)
             for name, values in (("beam", beam), ("kind", kind), ("role", role))
         }
-        self.legend = {**legend_of_beams(self.beams), "kinds": kinds, "roles": list(ROLES)}
+        self.legend = {**legend_of_beams(self.beams), "kinds": kinds, "roles": list(_ROLES)}
         self._element, self._xi = (
             np.concatenate([getattr(group, name) for group in self.groups]) if self.groups else np.empty(0)
             for name in ("element", "xi")
@@ -45,7 +187,7 @@ class Boundary:
     def names(self) -> list[str]:
         """The fields that there are."""
         present = {name for group in self.groups for name in group.fields}
-        return ["displacement", *(name for name in COMPONENTS if name in present)]
+        return ["displacement", *(name for name in _COMPONENTS if name in present)]
 
     def arrays(self, solution: Solution, rows: slice) -> dict[str, np.ndarray]:
         """Return points and fields (steps, points) and (steps, points, 3) of some rows; what nothing has is left out.
@@ -57,14 +199,14 @@ class Boundary:
         result = {"points": position, "displacement": position - self._reference}
         if self.content.geometry == "reference":
             result["points"] = np.repeat(self._reference[None], len(part), axis=0)
-        names = [name for name in chosen if name in COMPONENTS]
+        names = [name for name in chosen if name in _COMPONENTS]
         values = [group.values(part) for group in self.groups] if names else []
         for name in names:
             result[name] = self._table(name, values, len(part))
         return by_precision({name: result[name] for name in ("points", *chosen)}, self.content)
 
     def _table(self, name: str, values: list[dict[str, np.ndarray]], steps: int) -> np.ndarray:
-        components = COMPONENTS[name]
+        components = _COMPONENTS[name]
         sizes = zip(values, self._sizes, strict=True)
         parts = [fields[name] if name in fields else np.zeros((steps, size, components)) for fields, size in sizes]
         table = np.concatenate(parts, axis=1)

@@ -14,10 +14,15 @@ from beamfem.reprs import brief
 from beamfem.sweeps.parameters import is_solution
 from beamfem.sweeps.tasks import Failure
 from beamfem.validation import require_known, shown
+from beamfem.view.plots import COLOURS, new_figure, save_figure
 
 _ROWS_REPORTED = 40
 _ROWS_PRINTED = 6
 _PRINTED = 110  # characters of a failure
+_MARKERS = "osD^vP*X<>"
+_NAMED = 12  # curves in a legend
+_ABOVE = 50  # characters of all names in a line
+_CUT, _WIDEST = 40, 3.2  # characters of the longest name, and their width [inch]
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,9 +198,37 @@ class Sweep:
         >>> results = bf.sweep(lambda force, length: {"moment": force * length}, force=[1.0, 2.0], length=[3.0, 5.0])
         >>> figure = results.plot("moment", over="length", path="sweep.png")
         """
-        from beamfem.sweeps.sweep_figure import plot_sweep
-
-        return plot_sweep(self, value, over, path)
+        names, texts = list(self.labels[0]), self.labels
+        numeric = [name for name in names if all(_is_number(point[name]) for point in self.parameters)]
+        results = [name for name in self.table()[0] if name not in (*names, "seconds") and _is_row(self[name])]
+        if not numeric or not results:
+            what = "parameter that varies" if not numeric else "result"
+            raise InputError(f"the sweep has no {what} whose values are numbers, so there is nothing to draw")
+        over, value = numeric[0] if over is None else over, results[0] if value is None else self.column(value)
+        require_known(f"over is no parameter that varies and is a number, got {shown(over)}", over, numeric)
+        what = f"value is no result of the sweep that is a number, got {shown(value)}"
+        require_known(what, value, [*results, "seconds"])
+        curves: dict[str, list[tuple[float, float]]] = {}
+        for point, text, height in zip(self.parameters, texts, self[value].tolist(), strict=True):
+            label = ", ".join(f"{name}={text[name]}" for name in names if name != over)
+            curves.setdefault(label, []).append((float(point[over]), height))
+        named = 1 < len(curves) <= _NAMED
+        # a legend of few short names stands above the axes, a longer one beside them in a wider figure
+        legend_beside = named and sum(map(len, curves)) > _ABOVE
+        figure, axes = new_figure(6.4 + (_WIDEST * min(1.0, max(map(len, curves)) / _CUT) if legend_beside else 0.0))
+        for number, (label, points) in enumerate(curves.items()):
+            x, y = np.array(sorted(points)).T
+            colour, marker = COLOURS[number % len(COLOURS)], _MARKERS[number % len(_MARKERS)]
+            label = label if len(label) <= _CUT else f"{label[: _CUT - 2]} …"
+            axes.plot(x, y, color=colour, marker=marker, markersize=4, linewidth=1.4, label=label)
+        axes.set_xlabel(over)
+        axes.set_ylabel(value)
+        axes.margins(0.04)
+        if legend_beside:
+            figure.legend(frameon=False, fontsize=9, loc="outside right upper")
+        elif named:
+            figure.legend(frameon=False, fontsize=9, loc="outside upper left", ncols=len(curves))
+        return save_figure(figure, path)
 
     def to_csv(self, path: str | PathLike[str]) -> None:
         """Write the table of all points with all digits, without solutions. Raises FileError if it cannot be written.
@@ -206,3 +239,11 @@ class Sweep:
         >>> results.to_csv("sweep.csv")
         """
         tabulate.write_csv(path, *self._rows())
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float | np.number) and not isinstance(value, bool)
+
+
+def _is_row(values: np.ndarray) -> bool:
+    return values.ndim == 1 and values.dtype.kind in "fiu"

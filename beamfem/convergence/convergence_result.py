@@ -3,6 +3,7 @@
 import textwrap
 from dataclasses import dataclass, field
 from html import escape
+from numbers import Real
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 
 from beamfem import tables as tabulate
 from beamfem.convergence.refinement_curve import Curve
+from beamfem.extras import needed_for
 from beamfem.sweeps.parameters import is_solution
 from beamfem.sweeps.tasks import Failure
 from beamfem.validation import flag
@@ -163,9 +165,29 @@ class Convergence:
         Value, error, order, GCI, seconds [s] and the other numbers (curve, refinement), nan where a curve has no such
         point; fitted_order, limit and estimated_error (curve,).
         """
-        from beamfem.convergence.study_arrays import as_grid
-
-        return as_grid(self)
+        with needed_for("to_xarray"):
+            import xarray
+        sizes = {value: size for curve in self.curves for value, size in zip(curve.refinement, curve.size, strict=True)}
+        refinement = sorted(sizes, key=lambda value: -sizes[value])  # from coarse to fine
+        header, rows = self.points()
+        shape = len(self.curves), len(refinement)
+        places = [
+            (number, refinement.index(value)) for number, curve in enumerate(self.curves) for value in curve.refinement
+        ]
+        data: dict[str, Any] = {
+            "fitted_order": ("curve", [curve.fit.order if curve.fit else np.nan for curve in self.curves]),
+            "limit": ("curve", [curve.limit for curve in self.curves]),
+            "estimated_error": ("curve", [curve.estimated_error for curve in self.curves]),
+        }
+        for name, column in zip(header, zip(*rows, strict=True), strict=True):
+            if name != self.refine and all(value is None or isinstance(value, Real) for value in column):
+                grid = np.full(shape, np.nan)
+                for index, value in zip(places, column, strict=True):
+                    grid[index] = np.nan if value is None else value
+                title = f"{name} (result)" if name in data or name == "curve" else name
+                data[title] = ("curve", self.refine), grid
+        coordinates = {"curve": [curve.label for curve in self.curves], self.refine: refinement}
+        return xarray.Dataset(data, coordinates, {"function": self.function, "quantity": self.quantity})
 
     def plot(self, path: str | PathLike[str] | None = None) -> Any:
         """Plot the error against the refinement on logarithmic axes, one line per curve.

@@ -1,5 +1,6 @@
 """Drawings of models and solutions: shapes, supports, loads and joints in axes of equal scale."""
 
+from dataclasses import dataclass
 from os import PathLike
 from typing import Any
 
@@ -9,16 +10,81 @@ from beamfem.assembly.callbacks import uninterrupted
 from beamfem.assembly.system import system_of
 from beamfem.errors import InputError
 from beamfem.model.model import Model
+from beamfem.results import extremes
+from beamfem.results.axis_fields import PointsAt
+from beamfem.results.extremes import estimate, extreme_of_beams
+from beamfem.results.free_bodies import Cuts
 from beamfem.results.path import Path
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics
 from beamfem.validation import count, flag
-from beamfem.view.deformed_shapes import FIELD_COLOURS, ORIGINAL, Shapes, draw_undeformed, shade
-from beamfem.view.field_extreme import extreme_of
+from beamfem.view.deformed_shapes import FIELD_COLOURS, ORIGINAL, Shapes, draw_undeformed, even, shade
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
+from beamfem.view.labels import place
 from beamfem.view.load_drawing import draw_loads
 from beamfem.view.plots import empty_figure, quiet, save_figure
 from beamfem.view.support_symbols import draw_joints, draw_supports
+
+_COLOUR = "#CC3311"
+
+
+@dataclass(frozen=True, eq=False)
+class _Extreme:
+    """Text of the legend for the value of largest magnitude, in two parts, and its position (2,) [m].
+
+    at: None if all values are equal.
+    """
+
+    value: str
+    where: str
+    at: np.ndarray | None
+
+    def draw(self, axes: Any, lines: int) -> Any:
+        """Mark the value and return an entry for the legend, in one or two lines."""
+        from matplotlib.lines import Line2D
+
+        label = f"{self.value}{' ' if lines == 1 else chr(10)}{self.where}"
+        if self.at is None:
+            return Line2D([], [], linestyle="none", label=label)
+        look: dict[str, Any] = {"marker": "D", "markersize": 5.0, "linestyle": "none"}
+        look |= {"markerfacecolor": "white", "markeredgecolor": _COLOUR}
+        axes.plot(*self.at, zorder=7.0, **look)
+        return Line2D([], [], label=label, **look)
+
+
+def _extreme_of(shapes: Shapes) -> _Extreme:
+    """Return the value of largest magnitude of the field of some shapes, at and between the points of their axes."""
+    assert shapes.quantity is not None
+    fields = []
+    for points, values in zip(shapes.points, shapes.values, strict=True):
+        count = points.pieces + 1  # points of an element
+        fields.append((values.reshape(len(values), points.mesh.elements, count), points.xi[:count]))
+    estimates = np.array([estimate(*field, np.abs) for field in fields])
+    beam, found = extreme_of_beams(estimates, np.abs, lambda number: _of_beam(shapes, number, *fields[number]))
+    solution, unit = shapes.solution, shapes.quantity.unit
+    value = f"{found.value:.4g}" + ("" if unit == "-" else f" {solution.model.unit(unit)}")
+    if even(shapes.values):
+        return _Extreme(value, "everywhere", None)
+    row = int(shapes.rows[found.row])
+    points = _points_at(shapes, beam, np.array([found.element]), np.array([found.xi]))
+    where = f"at {place(solution.model, points.reference[0])}"
+    when = f", {moment_of(solution, row)}" if len(shapes.rows) > 1 else ""
+    return _Extreme(f"extreme {value}", where + when, points.positions(solution.p[[row]])[0][0, 0])
+
+
+def _of_beam(shapes: Shapes, beam: int, values: np.ndarray, xi: np.ndarray) -> extremes.Extreme:
+    assert shapes.quantity is not None
+    along = shapes.quantity.values
+
+    def at(order: int, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
+        return along(_points_at(shapes, beam, element, xi), shapes.solution, shapes.rows[[order]])[0]
+
+    return extremes.extreme(values, xi, np.abs, at)
+
+
+def _points_at(shapes: Shapes, beam: int, element: np.ndarray, xi: np.ndarray) -> PointsAt:
+    return PointsAt(shapes.points[beam].mesh, 0, Cuts(element, xi))
+
 
 _ROOM = 0.45  # [inch] around the shapes for symbols and arrows
 _LONGER_SIDE = 5.6  # [inch]
@@ -50,7 +116,7 @@ def plot_shapes(
     if colour is not None and solution.static and len(rows) > 1:
         rows = rows[1:]  # without load the field is nothing, and its shape would hide the others
     drawn = Shapes(solution, rows, colour)
-    extreme = None if colour is None else extreme_of(drawn)
+    extreme = None if colour is None else _extreme_of(drawn)
     dashed, names = [ORIGINAL] if undeformed else [], [moment_of(solution, int(row)) for row in rows]
     width = _inches(drawn.box)[0] + _LEFT + (_RIGHT if extreme is None else _BAR)
     crowded = len(rows) > _NAMED or _wide([*dashed, *names]) > width
@@ -121,8 +187,7 @@ def bar(figure: Any, axes: Any, shapes: Shapes) -> None:
     from matplotlib.colors import Normalize
 
     assert shapes.quantity is not None
-    colours = ScalarMappable(Normalize(*shapes.limits), FIELD_COLOURS)
-    _add_bar(figure, axes, colours, shapes.label)
+    _add_bar(figure, axes, ScalarMappable(Normalize(*shapes.limits), FIELD_COLOURS), shapes.label)
 
 
 def _bar_of_rows(figure: Any, axes: Any, solution: Solution, rows: np.ndarray) -> None:

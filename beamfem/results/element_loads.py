@@ -1,6 +1,7 @@
 """Forces acting on elements isolated as free bodies: weight, inertia, loads and foundations, at points."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -12,7 +13,6 @@ from beamfem.element.fields import d_slots, r_slots
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import inertia_points, length_points, scales
 from beamfem.quadrature import gauss
-from beamfem.results.lumped_values import nearest, to_more_points
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
 
@@ -217,3 +217,37 @@ def _tables(mesh: BeamMesh, element: np.ndarray, xi: np.ndarray) -> tuple[np.nda
 def _at(table: np.ndarray, vectors: np.ndarray, element: np.ndarray) -> np.ndarray:
     """Return the interpolation (steps, m, 2) of nodal vectors (steps, ne, nv, 2) at points."""
     return np.einsum("mi,smic->smc", table, vectors[:, element])
+
+
+def fractions_before(points: int, at: np.ndarray, cut: np.ndarray) -> np.ndarray:
+    """Return the fraction (m,) before a cut (m,) of the amount lumped at a Gauss point `at` (m,), density interpolated.
+
+    It is the integral from 0 to the cut of the Lagrange polynomial of that point, over its integral from 0 to 1.
+    """
+    xi, integral = _integrals(points)
+    return np.einsum("mk,mk->m", integral[nearest(xi, at)], np.polynomial.legendre.legvander(2.0 * cut - 1.0, points))
+
+
+def to_more_points(points: int, more: int) -> np.ndarray:
+    """Return the matrix (more, points) that transfers lumped values from `points` to `more` Gauss points.
+
+    It keeps the polynomial density through the fewer points.
+    """
+    (xi, _), (fine, weights) = gauss(points), gauss(more)
+    old_values, new_values = (np.polynomial.legendre.legvander(2.0 * at - 1.0, points - 1) for at in (xi, fine))
+    return np.asarray(weights[:, None] * ((new_values * (2 * np.arange(points) + 1)) @ old_values.T))
+
+
+def nearest(xi: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Return the indices (m,) of the points xi (n,) nearest to `at` (m,)."""
+    return np.asarray(np.abs(xi - at[:, None]).argmin(axis=1))
+
+
+@lru_cache(maxsize=32)
+def _integrals(points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return Gauss points on [0, 1] and the integrals of their Lagrange polynomials as Legendre series."""
+    xi, weights = gauss(points)
+    degree = np.arange(points)
+    legendre = np.polynomial.legendre.legvander(2.0 * xi - 1.0, points - 1)
+    coefficients = legendre * weights[:, None] * (2 * degree + 1)
+    return xi, np.polynomial.legendre.legint(coefficients, lbnd=-1.0, axis=1) / (2.0 * weights[:, None])

@@ -16,8 +16,7 @@ from beamfem.element.axis import cross, dot
 from beamfem.kernels.block import Block
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import interpolate
-from beamfem.results.element_loads import Acting, Rows, acting_on, at_more_points
-from beamfem.results.lumped_values import fractions_before
+from beamfem.results.element_loads import Acting, Rows, acting_on, at_more_points, fractions_before
 from beamfem.results.postprocess import direction
 
 

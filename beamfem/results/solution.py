@@ -195,7 +195,6 @@ class Solution:
 
         A solve has issued those of errors of 1 % and more as Python warnings too, each with a category.
         """
-
         from beamfem.results.solution_checks import findings
 
         return (*self.statistics.warnings, *(finding.sentence for finding in findings(self)))
@@ -238,14 +237,7 @@ class Solution:
         """Return position, gradients, rotation, shear angle, strain and stress at a point over the steps.
 
         Where two elements meet or a load acts, strain and stress are those on the side towards the beam's end.
-
-        Examples
-        --------
-        >>> fields = solution.fields(beam.at(0.5))
-        >>> fields.position[-1].round(4)
-        array([ 0.9999, -0.0096])
         """
-
         from beamfem.results.full_turns import turned_of
         from beamfem.results.section_forces import Cuts, at_points
         from beamfem.results.self_stress import self_stress
@@ -258,13 +250,7 @@ class Solution:
         return Fields(*(postprocess.at_single_point(getattr(result, name)) for name in Fields.__dataclass_fields__))
 
     def position(self, point: Point) -> np.ndarray:
-        """Return the position (x, y) of a point (steps, 2) [m].
-
-        Examples
-        --------
-        >>> solution.position(beam.end)[-1].round(4)
-        array([ 1.9997, -0.0305])
-        """
+        """Return the position (x, y) of a point (steps, 2) [m]."""
         return postprocess.position(self.model.mesh_of(point), self.p, point.fraction)
 
     def displacement(self, point: Point) -> np.ndarray:
@@ -279,29 +265,13 @@ class Solution:
         return self.position(point) - postprocess.start(mesh, point.fraction)
 
     def velocity(self, point: Point) -> np.ndarray:
-        """Return the velocity (vx, vy) of a point (steps, 2) [m/s].
-
-        Examples
-        --------
-        >>> motion = bf.simulate(model, duration=0.02, step=0.001)
-        >>> motion.velocity(beam.end)[-1].round(2)
-        array([-0.09, -2.44])
-        """
+        """Return the velocity (vx, vy) of a point (steps, 2) [m/s]."""
         mesh = self.model.mesh_of(point)
         element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
         return rate_at(mesh, self.p, self.v, element, xi).r[:, 0]
 
     def rotation(self, point: Point) -> np.ndarray:
-        """Return the rotation of the section from the reference (steps,) [rad].
-
-        Counter-clockwise positive, full turns included.
-
-        Examples
-        --------
-        >>> round(float(solution.rotation(beam.end)[-1]), 4)
-        -0.0229
-        """
-
+        """Return the rotation of the section (steps,) [rad], counter-clockwise positive, full turns included."""
         from beamfem.results.full_turns import rotations
 
         self.model.mesh_of(point)  # refuses what is no point of this model
@@ -317,7 +287,6 @@ class Solution:
         >>> solution.reaction(beam.start)[-1, 1:].round()  # fy, m
         array([10000., 19997.])
         """
-
         from beamfem.results.reactions import reaction
 
         return reaction(self, point)
@@ -326,12 +295,7 @@ class Solution:
         """Return fx, fy [N] and m [N m] of a connector on each of its m points (steps, m, 3).
 
         Raises InputError for a connector that is not in the model.
-
-        Examples
-        --------
-        >>> forces = solution.connector_force(model.connectors[0])  # doctest: +SKIP
         """
-
         from beamfem.results.connector_results import connector_force
 
         return connector_force(self, connector)
@@ -376,12 +340,7 @@ class Solution:
         """Return the k additional unknowns of a connector, such as multipliers (steps, k).
 
         Raises InputError for a connector that is not in the model.
-
-        Examples
-        --------
-        >>> tension = solution.multipliers(model.connectors[0])[:, 0]  # doctest: +SKIP
         """
-
         from beamfem.results.connector_results import multipliers
 
         return multipliers(self, connector)
@@ -404,7 +363,6 @@ class Solution:
     @cached_property
     def support_forces(self) -> np.ndarray:
         """Generalized forces of all supports and springs (steps, n) [N, N m]."""
-
         from beamfem.results.reactions import support_forces
 
         return support_forces(self)
@@ -415,62 +373,29 @@ class Solution:
 
         In a stiff part of a model they may change the forces noticeably; zero where they do not, and for a motion.
         """
-
         from beamfem.results.roundoff_corrections import remainders
 
         return remainders(self)
 
     def section_forces(self, beam: Beam) -> "SectionForces":
-        """Return normal force, shear force and moment along a beam over the steps.
-
-        Raises InputError for a beam of another model.
-
-        Examples
-        --------
-        >>> forces = solution.section_forces(beam)
-        >>> round(float(forces.moment[-1, 0]), -1)  # at the clamp
-        -20000.0
-        """
-
+        """Return normal and shear force [N] and moment [N m] along a beam. Raises InputError for another beam."""
         from beamfem.results.section_forces import section_forces
 
         self.model.number_of(beam)  # rejects beams of other models
         return section_forces(self, beam)
 
     def stresses(self, beam: Beam) -> "BeamStress":
-        """Return the extreme stresses of the sections along a beam over the steps.
-
-        Raises InputError for a beam of another model.
-
-        Examples
-        --------
-        >>> stress = solution.stresses(beam)
-        >>> round(stress.peak("von_mises").value / 1e6)  # MPa
-        240
-        """
-
+        """Return the extreme stresses of the sections along a beam. Raises InputError for a beam of another model."""
         from beamfem.results.beam_stress import beam_stress
 
         self.model.number_of(beam)
         return beam_stress(self, beam)
 
     def peak_stress(self, part: "Part" = "von_mises") -> "Peak":
-        """Return the peak of a stress over all beams and rows.
+        """Return the peak of a stress over all beams and rows, with its beam; nan if no value is known.
 
-        Parameters
-        ----------
-        part : str, default "von_mises"
-            See `BeamStress.peak`.
-
-        Returns
-        -------
-        Peak
-            The peak, with its beam; nan if no value is known.
-
-        Warns
-        -----
-        UnknownStressWarning
-            If sections of some beams define no stress, such as moments without a height.
+        part: see `BeamStress.peak`. Warns with `UnknownStressWarning` if sections of some beams define no stress, such
+        as moments without a height.
 
         Examples
         --------
@@ -478,7 +403,6 @@ class Solution:
         >>> round(peak.value / 1e6), peak.beam is beam  # MPa
         (240, True)
         """
-
         from beamfem.results.beam_stress import peak_stress
 
         return peak_stress(self, part)
@@ -498,7 +422,6 @@ class Solution:
         >>> energy.strain.round(1)
         array([  0. , 152.6])
         """
-
         from beamfem.results.connector_results import kinetic_of_connectors
         from beamfem.results.energies import Energy, potential, recorded
         from beamfem.results.solution_system import imposed_measures
@@ -516,35 +439,18 @@ class Solution:
 
         None for a static solution, and for a motion on which work is done.
         """
-
         from beamfem.results.energy_balance import energy_drift
 
         return energy_drift(self) if len(self) else None
 
     def linear_momentum(self) -> np.ndarray:
-        """Return the linear momentum in x and y (steps, 2) [kg m/s].
-
-        Examples
-        --------
-        >>> motion = bf.simulate(model, duration=0.02, step=0.001)
-        >>> motion.linear_momentum()[-1].round(1)
-        array([ -1.5, -58.4])
-        """
-
+        """Return the linear momentum in x and y (steps, 2) [kg m/s]."""
         from beamfem.results.connector_results import momenta_of_connectors
 
         return np.asarray(sum(m.linear for m in self._momenta) + momenta_of_connectors(self)[:, :2])
 
     def angular_momentum(self) -> np.ndarray:
-        """Return the angular momentum about the origin (steps,) [kg m^2/s].
-
-        Examples
-        --------
-        >>> motion = bf.simulate(model, duration=0.02, step=0.001)
-        >>> round(float(motion.angular_momentum()[-1]), 1)
-        -86.1
-        """
-
+        """Return the angular momentum about the origin (steps,) [kg m^2/s]."""
         from beamfem.results.connector_results import momenta_of_connectors
 
         return np.asarray(sum(m.angular for m in self._momenta) + momenta_of_connectors(self)[:, 2])
@@ -573,19 +479,11 @@ class Solution:
     def to_html(self, path: str | PathLike[str], *, title: str | None = None, frames: int = 60) -> Path:
         """Write an HTML page with a slider over the steps and return the path; the file works offline.
 
-        The body moves with its supports, optionally coloured by a section force [N, N m], rotation [rad], displacement
-        [m] or speed [m/s]; a curve of the largest displacement and the statistics are shown beside it. The file is
-        smaller than 1 MB: for large models only the axes and fewer steps are drawn. Raises InputError for another
-        suffix.
-
-        Parameters
-        ----------
-        path : path
-            File to write, .html.
-        title : str, optional
-            Heading of the page.
-        frames : int, default 60
-            Largest number of steps.
+        The body moves with its supports, optionally coloured by a section force [N, N m], a stress [Pa], the
+        utilisation [-], rotation [rad], displacement [m] or speed [m/s]; a curve of the largest displacement and the
+        statistics are shown beside it. The file is smaller than 1 MB: for large models only the axes and fewer steps
+        are drawn. path: file to write, .html; title: heading of the page; frames: largest number of steps. Raises
+        InputError for another suffix.
 
         Examples
         --------
@@ -607,24 +505,15 @@ class Solution:
     ) -> Any:
         """Draw the deformed body, at several steps later ones darker, and return the figure.
 
-        Raises InputError for an unknown option or value, MissingPackageError without matplotlib.
-
-        Parameters
-        ----------
-        path : path, optional
-            File to write (PNG, SVG, PDF); folders are created.
-        colour : str, optional
-            By default the time or load factor; or a field along the beams, whose extreme value is marked: "moment"
-            [N m], "normal", "shear" [N], "rotation" [rad], "displacement" [m], "speed" [m/s], "axial_strain" [-]
-            (Green strain xx of the axis), "shear_angle" [rad]; of the stress [Pa] "stress" or "von_mises" (von Mises
-            stress over the height), of each section "upper", "lower" (faces), "outer" (the larger of both),
-            "tension", "compression", "shear_stress" (extremes); or "utilisation" [-] of the strength, over the height.
-        shapes : int, optional
-            Number of steps, one of them the last; by default the last alone, of motions and paths 9.
-        undeformed : bool, default True
-            Whether to draw the reference axes dashed.
-        supports, loads : bool, default True
-            Whether to draw their symbols, each load on the shape at which it is largest.
+        path: file to write (PNG, SVG, PDF); folders are created. colour: by default the time or load factor; or a field
+        along the beams, whose extreme value is marked: "moment" [N m], "normal", "shear" [N], "rotation" [rad],
+        "displacement" [m], "speed" [m/s], "axial_strain" [-] (Green strain xx of the axis), "shear_angle" [rad]; of the
+        stress [Pa] "stress" or "von_mises" (von Mises stress over the height), of each section "upper", "lower"
+        (faces), "outer" (the larger of both), "tension", "compression", "shear_stress" (extremes); or "utilisation" [-]
+        of the strength, over the height. shapes: number of steps, one of them the last; by default the last alone, of
+        motions and paths 9. undeformed, supports, loads: whether to draw the reference axes dashed, and symbols, each
+        load on the shape at which it is largest. Raises InputError for an unknown option or value, MissingPackageError
+        without matplotlib.
 
         Examples
         --------
@@ -632,9 +521,7 @@ class Solution:
         """
         from beamfem.view.drawing import plot_shapes
 
-        return plot_shapes(
-            self, path, colour=colour, shapes=shapes, undeformed=undeformed, supports=supports, loads=loads
-        )
+        return plot_shapes(self, path, colour, shapes, undeformed, supports, loads)
 
     def plot_history(
         self,
@@ -644,17 +531,9 @@ class Solution:
     ) -> Any:
         """Plot a quantity at one or several points against time or load factor and return the figure.
 
-        Raises InputError for an unknown quantity, or one that needs a point; MissingPackageError without matplotlib.
-
-        Parameters
-        ----------
-        point : Point or sequence of Point, optional
-            Where to evaluate the quantity.
-        quantity : str, default "displacement"
-            "displacement", "ux", "uy", "position" [m], "velocity" [m/s], "rotation" [rad]; at supports "force" [N] and
-            "reaction_moment" [N m]; without a point "energy" [J].
-        path : path, optional
-            File to write (PNG, SVG, PDF).
+        quantity: "displacement", "ux", "uy", "position" [m], "velocity" [m/s], "rotation" [rad]; at supports "force"
+        [N] and "reaction_moment" [N m]; without a point "energy" [J]. path: file to write (PNG, SVG, PDF). Raises
+        InputError for an unknown quantity, or one that needs a point; MissingPackageError without matplotlib.
 
         Examples
         --------
@@ -665,32 +544,14 @@ class Solution:
         return plot_history(self, point, quantity, path)
 
     def plot_curve(self, x: Any, y: Any, path: str | PathLike[str] | None = None) -> Any:
-        """Plot one quantity against another, one point per row.
+        """Plot one quantity against another, one point per row, and return the figure.
 
         A quantity is a pair of a name and a point, such as ("uy", beam.end), with the names "ux", "uy", "x", "y" [m],
         "rotation" [rad], "vx", "vy" [m/s], "normal", "shear" [N], "moment" [N m], those of stresses in `plot` [Pa] and,
         at supports, "fx", "fy" [N] and "m" [N m]; or "load_factor" or "time" [s]; or "kinetic", "strain", "potential"
         or "total" energy [J]; or a pair of a label and numbers (steps,); or numbers. Where two elements meet or a load
-        acts, a section is that on the side towards the beam's end.
-
-        Parameters
-        ----------
-        x, y : tuple, str or array
-            Quantities along the horizontal and the vertical axis.
-        path : path, optional
-            File to write (PNG, SVG, PDF).
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The figure.
-
-        Raises
-        ------
-        InputError
-            For an unknown quantity.
-        MissingPackageError
-            Without matplotlib.
+        acts, a section is that on the side towards the beam's end. path: file to write (PNG, SVG, PDF). Raises
+        InputError for an unknown quantity, MissingPackageError without matplotlib.
 
         Examples
         --------
@@ -703,19 +564,11 @@ class Solution:
     def plot_load_displacement(
         self, point: Point, quantity: str = "uy", path: str | PathLike[str] | None = None
     ) -> Any:
-        """Plot the load factor against a displacement or rotation of a point and return the figure.
+        """Plot the load factor against "ux", "uy" [m] or "rotation" [rad] of a point and return the figure.
 
-        Limit points (circles) and bifurcations (diamonds) of a `Path` are marked, each with its load factor. Raises
-        InputError for another quantity or a motion, MissingPackageError without matplotlib.
-
-        Parameters
-        ----------
-        point : Point
-            A point of a beam.
-        quantity : str, default "uy"
-            "ux", "uy" [m] or "rotation" [rad].
-        path : path, optional
-            File to write (PNG, SVG, PDF).
+        Limit points (circles) and bifurcations (diamonds) of a `Path` are marked, each with its load factor. path: file
+        to write (PNG, SVG, PDF). Raises InputError for another quantity or a motion, MissingPackageError without
+        matplotlib.
 
         Examples
         --------
@@ -739,26 +592,11 @@ class Solution:
     ) -> Path:
         """Write an animation as GIF or MP4, according to the suffix of `path`, and return the path.
 
-        About fps * seconds rows are shown, equally spaced in time (in statics by row); with fewer rows each is shown
-        longer. Loads are drawn in each frame with their current amplitude. Raises InputError for another suffix;
-        MissingPackageError without matplotlib, for .mp4 without imageio-ffmpeg.
-
-        Parameters
-        ----------
-        path : path
-            File to write, .gif or .mp4; folders are created.
-        fps : float, default 15.0
-            Frames per second.
-        seconds : float, [s], default 4.0
-            Duration.
-        colour : str, optional
-            A field along the beams, see `plot`.
-        undeformed : bool, default True
-            Whether to draw the reference axes dashed.
-        supports, loads : bool, default True
-            Whether to draw their symbols.
-        dpi : int, default 100
-            Pixels per inch, of a frame 4 to 8 inches wide.
+        About fps * seconds [s] rows are shown, equally spaced in time (in statics by row); with fewer rows each is
+        shown longer. Loads are drawn in each frame with their current amplitude. colour: a field along the beams, see
+        `plot`; undeformed, supports, loads: whether to draw the reference axes dashed and symbols; dpi: pixels per
+        inch, of a frame 4 to 8 inches wide. Raises InputError for another suffix; MissingPackageError without
+        matplotlib, for .mp4 without imageio-ffmpeg.
 
         Examples
         --------
@@ -766,39 +604,14 @@ class Solution:
         """
         from beamfem.view.animation import animate
 
-        return animate(
-            self,
-            path,
-            fps=fps,
-            seconds=seconds,
-            colour=colour,
-            undeformed=undeformed,
-            supports=supports,
-            loads=loads,
-            dpi=dpi,
-        )
+        return animate(self, path, fps, seconds, colour, undeformed, supports, loads, dpi)
 
     def show(self, *, colour: str | None = None, size: tuple[int, int] = (1400, 900)) -> Any:
         """Open a window with the solid body and a slider over the steps, and wait until it is closed.
 
-        Without a display, or if VTK cannot render, a warning is given and a matplotlib figure is returned instead.
-        Raises InputError for an invalid option.
-
-        Parameters
-        ----------
-        colour : str, optional
-            A field along the beams, see `plot`.
-        size : (int, int), default (1400, 900)
-            Width and height in pixels.
-
-        Returns
-        -------
-        pyvista.Plotter or matplotlib.figure.Figure
-            What was shown.
-
-        Examples
-        --------
-        >>> window = solution.show(colour="moment")  # doctest: +SKIP
+        colour: a field along the beams, see `plot`; size: width and height in pixels. Returns the plotter of PyVista;
+        without a display, or if VTK cannot render, a matplotlib figure, and a warning is given. Raises InputError for
+        an invalid option.
         """
         from beamfem.view.solid_pyvista import show
 
@@ -812,25 +625,11 @@ class Solution:
         size: tuple[int, int] = (1400, 900),
         row: int = -1,
     ) -> Path:
-        """Write a picture of the solid body in a row without opening a window, and return the path.
+        """Write a picture (.png) of the solid body in a row without opening a window, and return the path.
 
-        Rendering is tried in a child process first; if VTK cannot render, matplotlib draws the same row in the plane
-        and a warning is given. Raises InputError for another suffix or an invalid option.
-
-        Parameters
-        ----------
-        path : path
-            File to write, .png; folders are created.
-        colour : str, optional
-            A field along the beams, see `plot`.
-        size : (int, int), default (1400, 900)
-            Width and height in pixels.
-        row : int, default -1
-            Row of the solution, the last by default.
-
-        Examples
-        --------
-        >>> picture = solution.picture("body.png", row=-1, colour="stress")  # doctest: +SKIP
+        colour: a field along the beams, see `plot`; size: width and height in pixels. Rendering is tried in a child
+        process first; if VTK cannot render, matplotlib draws the same row in the plane and a warning is given. Raises
+        InputError for another suffix or an invalid option.
         """
         from beamfem.view.solid_pyvista import picture
 
@@ -847,26 +646,13 @@ class Solution:
         """Write solids, centrelines, supports and loads for ParaView.
 
         The body is written into `path`; centrelines, and supports and loads, into <stem>_centreline and <stem>_boundary
-        beside it. Names and units of the fields are listed in docs/paraview.md. Raises InputError for another suffix
-        and for unknown fields, MissingPackageError without VTK, and for .vtkhdf without h5py.
-
-        Parameters
-        ----------
-        path : path
-            .vtkhdf (the default suffix): all steps in one file, for ParaView 5.12 or newer; .pvd: a collection of .vtu
-            files, one per step, in the folder <stem>.
-        geometry : {"deformed", "reference"}, default "deformed"
-            "reference" writes the reference positions of the points, to be warped by `displacement`.
-        fields : sequence of str, optional
-            Names of the fields to write, by default all but the stress tensors of bodies: VTK draws curved cells with
-            at most 18 numbers at a point and drops what is more.
-        single : bool, default False
-            Whether to write numbers of four bytes: half the size, seven digits.
-
-        Warns
-        -----
-        UnknownStressWarning
-            If the shape of a section, and so its stress, is not known.
+        beside it. .vtkhdf (the default suffix): all steps in one file, for ParaView 5.12 or newer; .pvd: a collection
+        of .vtu files, one per step, in the folder <stem>. geometry: "reference" writes the reference positions of the
+        points, to be warped by `displacement`. fields: names of those to write, by default all but the stress tensors
+        of bodies: VTK draws curved cells with at most 18 numbers at a point and drops what is more. single: numbers of
+        four bytes, half the size, seven digits. Names and units of the fields are listed in docs/paraview.md. Raises
+        InputError for another suffix and for unknown fields, MissingPackageError without VTK, and for .vtkhdf without
+        h5py. Warns with `UnknownStressWarning` if the shape of a section, and so its stress, is not known.
 
         Examples
         --------
@@ -877,16 +663,12 @@ class Solution:
         write_vtk(self, path, geometry=geometry, fields=fields, single=single)
 
     def to_xarray(self, beam: Beam | None = None) -> Any:
-        """Return the results along a beam, or along all beams, over the steps as a labelled dataset.
+        """Return an xarray.Dataset of results along a beam, or along all beams, over the steps.
 
-        Raises InputError for a beam of another model, MissingPackageError without xarray.
-
-        Returns
-        -------
-        xarray.Dataset
-            Positions, rotations, section forces, stresses if sections have them, and energies; the statistics are its
-            attributes. Of one beam the arc length is a dimension: at an end that two elements share, the station before
-            it stands one last digit lower, so that both sides are kept.
+        Positions, rotations, section forces, stresses if sections have them, and energies; the statistics are its
+        attributes. Of one beam the arc length is a dimension: at an end that two elements share, the station before it
+        stands one last digit lower, so that both sides are kept. Raises InputError for a beam of another model,
+        MissingPackageError without xarray.
 
         Examples
         --------
@@ -899,17 +681,12 @@ class Solution:
         return to_xarray(self, beam)
 
     def to_pandas(self, beam: Beam | None = None) -> Any:
-        """Return the results along a beam, or along all beams, over the steps as a table.
+        """Return a pandas.DataFrame of results along a beam, or along all beams, with a row for each step and station.
 
-        Raises InputError for a beam of another model, MissingPackageError without pandas.
-
-        Returns
-        -------
-        pandas.DataFrame
-            One row for each step and station, with time [s] or load_factor, number of the beam and arc_length [m] as
-            index. Both sides of an end that two elements share have a row: the arc length of the one before it, like
-            the load factor of the row before a jump, is smaller by one last digit, so that no row of the index is
-            there twice.
+        Its index is time [s] or load_factor, number of the beam and arc_length [m]. Both sides of an end that two
+        elements share have a row: the arc length of the one before it, like the load factor of the row before a jump,
+        is smaller by one last digit, so that no row of the index is there twice. Raises InputError for a beam of
+        another model, MissingPackageError without pandas.
 
         Examples
         --------
@@ -922,15 +699,10 @@ class Solution:
         return to_pandas(self, beam)
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write model and states to one HDF5 file with checksums.
+        """Write model and states to one HDF5 file with checksums, which `load` reads; folders are created.
 
-        Folders in the path are created. An earlier file is replaced when the new one is complete. `load` reads it.
-        Raises InputError for a model with parts that cannot be saved, FileError if the system refuses to write,
-        MissingPackageError without h5py.
-
-        Examples
-        --------
-        >>> solution.save("cantilever.h5")
+        An earlier file is replaced when the new one is complete. Raises InputError for a model with parts that cannot
+        be saved, FileError if the system refuses to write, MissingPackageError without h5py.
         """
         from beamfem.io.results_hdf5 import save
 

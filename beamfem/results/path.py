@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, SupportsIndex, overload
+from typing import TYPE_CHECKING, SupportsIndex, overload
 
 import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.model.beam import Beam, Point
-from beamfem.results.postprocess import Components, Fields
+from beamfem.results.postprocess import Fields, part_of
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
 
@@ -78,8 +78,7 @@ class PathState(State):
 
     def fields(self, point: Point) -> Fields:
         """Return position, gradients, rotation, shear angle, strain and stress at a point, without an axis of steps."""
-        of_row = self.alone.fields(point)
-        return Fields(*(_first(getattr(of_row, name)) for name in Fields.__dataclass_fields__))
+        return part_of(self.alone.fields(point), 0)
 
     def section_forces(self, beam: Beam) -> "SectionForces":
         """Return normal force, shear force [N] and moment [N m] (stations,) of a beam."""
@@ -175,10 +174,3 @@ def _listed(name: str, points: Sequence[PathState]) -> str:
     factors = ", ".join(f"{point.at:.6g}" for point in points[:_SHOWN])
     more = ", ..." if len(points) > _SHOWN else ""
     return f"{len(points)} {name}{'s' * (len(points) > 1)} (load factor {factors}{more})"
-
-
-def _first(value: Any) -> Any:
-    """Drop the axis of steps."""
-    if isinstance(value, Components):
-        return Components(value.xx[0], value.yy[0], value.xy[0])
-    return value[0]

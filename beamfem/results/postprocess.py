@@ -266,8 +266,12 @@ def momenta(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> Momenta:
     return Momenta(kinetic, linear, angular, moment)
 
 
-def at_single_point(value: Any) -> Any:
-    """Drop the axis of points."""
-    if isinstance(value, Components):
-        return Components(value.xx[:, 0], value.yy[:, 0], value.xy[:, 0])
-    return value[:, 0]
+def part_of(fields: Fields, index: Any) -> Fields:
+    """Return the fields at an index of their steps and points."""
+
+    def taken(value: Any) -> Any:
+        if isinstance(value, Components):
+            return Components(value.xx[index], value.yy[index], value.xy[index])
+        return value[index]
+
+    return Fields(*(taken(getattr(fields, name)) for name in Fields.__dataclass_fields__))

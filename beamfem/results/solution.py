@@ -247,7 +247,7 @@ class Solution:
         forces = at_points(self, mesh, Cuts(element, xi))
         eigenstress = self_stress(self, mesh, element, xi, None, np.zeros((1, 1)))
         result = postprocess.fields(mesh, self.p, element, xi, forces, eigenstress, turned_of(self, mesh))
-        return Fields(*(postprocess.at_single_point(getattr(result, name)) for name in Fields.__dataclass_fields__))
+        return postprocess.part_of(result, (slice(None), 0))
 
     def position(self, point: Point) -> np.ndarray:
         """Return the position (x, y) of a point (steps, 2) [m]."""

@@ -14,7 +14,7 @@ from beamfem import tables as tabulate
 from beamfem.convergence.refinement_curve import Curve
 from beamfem.extras import needed_for
 from beamfem.sweeps.parameters import is_solution
-from beamfem.sweeps.tasks import Failure
+from beamfem.sweeps.workers import Failure
 from beamfem.validation import flag
 
 EXPLANATION = (

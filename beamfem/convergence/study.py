@@ -13,8 +13,7 @@ from beamfem.convergence.refinement_curve import Curve, judge
 from beamfem.errors import InputError
 from beamfem.progress import progress
 from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, name_of, split
-from beamfem.sweeps.tasks import Failure, TaskRunner
-from beamfem.sweeps.workers import ExecutorFactory, Outcome
+from beamfem.sweeps.workers import ExecutorFactory, Failure, Outcome, TaskRunner
 from beamfem.validation import finite, optional, positive, require_known, shown
 
 MOST_DOUBLINGS = 8

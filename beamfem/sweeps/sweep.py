@@ -11,8 +11,7 @@ from beamfem.progress import progress
 from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, name_of, split
 from beamfem.sweeps.result_cache import ResultCache
 from beamfem.sweeps.sweep_result import Sweep
-from beamfem.sweeps.tasks import Failure, TaskRunner
-from beamfem.sweeps.workers import ExecutorFactory, Outcome
+from beamfem.sweeps.workers import ExecutorFactory, Failure, Outcome, TaskRunner
 from beamfem.validation import flag
 
 _NOT_REACHED = "NotComputed: the sweep was interrupted before"

@@ -12,7 +12,7 @@ from beamfem.errors import InputError
 from beamfem.extras import needed_for
 from beamfem.reprs import brief
 from beamfem.sweeps.parameters import is_solution
-from beamfem.sweeps.tasks import Failure
+from beamfem.sweeps.workers import Failure
 from beamfem.validation import require_known, shown
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 

@@ -21,8 +21,7 @@ from beamfem.atomic_write import path_of
 from beamfem.errors import ChangedCodeWarning, FileError, InputError, MissingPackageError, NotStoredWarning, warn
 from beamfem.io.results_hdf5 import load
 from beamfem.results.solution import Solution
-from beamfem.sweeps.code_digest import code_digests
-from beamfem.sweeps.keys import global_digests, point_key
+from beamfem.sweeps.keys import code_digests, global_digests, point_key
 from beamfem.sweeps.workers import Outcome
 
 _NAMED = 5  # modules in a warning

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.convergence.limit_estimate import extrapolate
 from beamfem.convergence.observed_order import chance_hits, fit_order, highest_order, scale_of
+from beamfem.convergence.refinement_curve import extrapolate
 
 TOO_SMALL = 3.0
 

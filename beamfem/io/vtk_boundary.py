@@ -18,10 +18,10 @@ from beamfem.model.state_protocols import in_plane
 from beamfem.model.supports import DIRECTIONS, LineSupport, PointSupport
 from beamfem.parts.at_points import PartAlongBeam
 from beamfem.results import postprocess
+from beamfem.results.full_turns import StationsOfRows
 from beamfem.results.reactions import reaction_of
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
-from beamfem.results.stations import StationsOfRows
 from beamfem.validation import require_known
 
 # values of a vertex by name, and how many components each has

@@ -1,9 +1,12 @@
 """Full turns of beams without nodal angles, whose coordinates do not hold them, in the rows of a solution."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from beamfem.cached_properties import cached_property
+from beamfem.element.axis import Axis
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.beam import Point
 from beamfem.model.model import Model
@@ -51,3 +54,28 @@ def rotations(solution: Solution, points: Sequence[Point]) -> np.ndarray:
     element, xi = (np.array(each) for each in zip(*(mesh.locate(point.fraction) for point in points), strict=True))
     now = axis_at(mesh, solution.p, element, xi)
     return postprocess.section_rotation(mesh, solution.p, now, element, xi, turned_of(solution, mesh))
+
+
+@dataclass(frozen=True, eq=False)
+class StationsOfRows:
+    """Points (n,) of a beam, given by element and xi, in the rows of a solution."""
+
+    solution: Solution
+    mesh: BeamMesh
+    element: np.ndarray
+    xi: np.ndarray
+
+    @property
+    def rotation(self) -> np.ndarray:
+        """Rotations of the sections from the reference (steps, n) [rad]."""
+        turned = turned_of(self.solution, self.mesh)
+        return postprocess.section_rotation(self.mesh, self.solution.p, self._now, self.element, self.xi, turned)
+
+    @property
+    def slope(self) -> np.ndarray:
+        """Derivatives r0' (steps, n, 2) [-]."""
+        return self._now.r_s
+
+    @cached_property
+    def _now(self) -> Axis:
+        return axis_at(self.mesh, self.solution.p, self.element, self.xi)

@@ -10,9 +10,9 @@ from beamfem.mesh.reference import length_points
 from beamfem.model.beam import Beam, Point
 from beamfem.model.load_base import Load, factor
 from beamfem.model.load_shapes import Acceleration, Force, ForcesAlong, LoadShape, Moment, Strains, drawn
+from beamfem.results.full_turns import StationsOfRows
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
-from beamfem.results.stations import StationsOfRows
 from beamfem.view import symbols
 from beamfem.view.support_symbols import Stamps
 

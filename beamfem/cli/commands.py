@@ -141,8 +141,8 @@ def plot(
 
 def _loaded(results: Path) -> Any:
     """Return the solution of a results file. Raises InputError."""
+    from beamfem.io.description import NotImportedError
     from beamfem.io.results_hdf5 import load
-    from beamfem.io.user_classes import NotImportedError
 
     try:
         return load(results)

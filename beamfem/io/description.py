@@ -1,7 +1,11 @@
-"""A model as plain numbers, lists and names for JSON, and back."""
+"""A model as plain numbers, lists and names for JSON, and back.
 
+User-defined classes are saved by module and name, and found again if the module is imported.
+"""
+
+import sys
 from collections.abc import Callable
-from dataclasses import MISSING, fields, replace
+from dataclasses import MISSING, fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,12 +17,12 @@ from beamfem.element.element import Element
 from beamfem.element.fields import Cubic, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
 from beamfem.errors import InputError
-from beamfem.io.user_classes import made, name_of
 from beamfem.material import Material
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import energy_points, length_points, stations
 from beamfem.model.along_beam import AlongBeam, functions_along, jumps_along, kinks_along
 from beamfem.model.beam import Beam, Point
+from beamfem.model.check_replaceable import require_remade
 from beamfem.model.model import Model
 from beamfem.model.rotating_frame import RotatingFrame
 from beamfem.model.sampled_functions import Sampled, SampledAlong, SampledSection
@@ -39,6 +43,61 @@ from beamfem.section import (
 from beamfem.section.outline import RectangleOutline, TubeOutline
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import function_value
+
+
+class NotImportedError(InputError):
+    """A file holds a part of a class that no loaded module has."""
+
+    def __init__(self, kind: str, module: str) -> None:
+        if module == "__main__":
+            message = f"the file holds a {kind} of the script that saved it: define it in this one as it was"
+        else:
+            message = f"the file holds a {kind} of the module {module}: import that module before loading the file"
+        super().__init__(message)
+        self.kind, self.module = kind, module
+
+
+def name_of(part: Any) -> str:
+    """Return "module:Class" for a user-defined part of a model. Raises InputError if it cannot be found again."""
+    kind = type(part)
+    what = f"a {kind.__name__} cannot be saved"
+    if not is_dataclass(part):
+        raise InputError(f"{what}: only dataclasses can, whose fields tell what they hold")
+    if find(f"{kind.__module__}:{kind.__qualname__}") is not kind:
+        raise InputError(f"{what}: define its class at the top level of a module, so that it is found again")
+    hidden = [field.name for field in fields(part) if not field.init]
+    if hidden:
+        raise InputError(f"{what}: its field {hidden[0]} is not an argument of the class")
+    require_remade(what, part)
+    return f"{kind.__module__}:{kind.__qualname__}"
+
+
+def class_of(name: str) -> Any:
+    """Return the class of "module:Class" without importing anything. Raises NotImportedError if there is none."""
+    found = find(name)
+    if not (isinstance(found, type) and is_dataclass(found)):
+        module, _, kind = name.partition(":")
+        raise NotImportedError(kind, module)
+    return found
+
+
+def made(name: str, members: dict[str, Any]) -> Any:
+    """Return a part of the class "module:Class". Raises InputError if the class is missing or has changed."""
+    kind = class_of(name)
+    try:
+        return kind(**members)
+    except TypeError as error:
+        raise InputError(f"the class {name} is no longer that which the file was saved with: {error}") from error
+
+
+def find(name: str) -> Any:
+    """Return the attribute "module:name" of a loaded module, None if there is none."""
+    module, _, attribute = name.partition(":")
+    result: Any = sys.modules.get(module)
+    for part in attribute.split("."):
+        result = getattr(result, part, None)
+    return result
+
 
 _CLASSES = {
     kind.__name__: kind

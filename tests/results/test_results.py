@@ -10,8 +10,8 @@ import pytest
 
 import beamfem as bf
 from beamfem.io import description
+from beamfem.io import description as own_parts
 from beamfem.io import results_hdf5 as results
-from beamfem.io import user_classes as own_parts
 from beamfem.io.results_hdf5 import load, save
 from beamfem.model.sampled_functions import Sampled
 from beamfem.results.solution import Solution

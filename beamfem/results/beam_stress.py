@@ -13,9 +13,8 @@ from beamfem.results.extremes import Measure, Part, Peak, estimate, extreme_of_b
 from beamfem.results.free_bodies import Cuts
 from beamfem.results.neighbouring_beams import of_beam
 from beamfem.results.section_forces import at_points, by_element, in_parts, peak_of, stations
-from beamfem.results.self_stress import self_stress
 from beamfem.results.solution import Solution
-from beamfem.results.stresses import strengths, von_mises, warn_of_unknown_stress
+from beamfem.results.stresses import self_stress, strengths, von_mises, warn_of_unknown_stress
 from beamfem.units import Units, units_of
 from beamfem.validation import require_known, shown
 

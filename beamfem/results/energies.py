@@ -12,9 +12,9 @@ from beamfem.model.beam import Point
 from beamfem.model.load_base import Load, factor
 from beamfem.model.model import Model
 from beamfem.reprs import brief
-from beamfem.results.connector_results import potential_of_connectors
 from beamfem.results.displacements import Displacements
 from beamfem.results.postprocess import momenta
+from beamfem.results.reactions import potential_of_connectors
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
 

@@ -13,8 +13,8 @@ from beamfem.assembly.system import System, system_of
 from beamfem.kernels.motion_record import MotionLimits
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.time_functions import kinks_of
-from beamfem.results.connector_results import energies_of
 from beamfem.results.full_turns import start_rotations
+from beamfem.results.reactions import energies_of
 from beamfem.results.work_and_losses import Forces, forces_without_potential, work_between
 
 if TYPE_CHECKING:

@@ -15,10 +15,9 @@ from beamfem.model.load_base import Load, PointLoad, factor
 from beamfem.model.model import Model
 from beamfem.model.supports import PointSupport
 from beamfem.parts.motor import Motor
-from beamfem.results.connector_results import connector_force, forces_at
 from beamfem.results.element_loads import Rows
 from beamfem.results.free_bodies import Parted, cut_free
-from beamfem.results.reactions import reaction_of
+from beamfem.results.reactions import connector_force, forces_at, reaction_of
 from beamfem.results.section_forces import of_elements
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading

@@ -240,7 +240,7 @@ class Solution:
         """
         from beamfem.results.full_turns import turned_of
         from beamfem.results.section_forces import Cuts, at_points
-        from beamfem.results.self_stress import self_stress
+        from beamfem.results.stresses import self_stress
 
         mesh = self.model.mesh_of(point)
         element, xi = (np.array([value]) for value in mesh.locate(point.fraction))
@@ -296,7 +296,7 @@ class Solution:
 
         Raises InputError for a connector that is not in the model.
         """
-        from beamfem.results.connector_results import connector_force
+        from beamfem.results.reactions import connector_force
 
         return connector_force(self, connector)
 
@@ -341,7 +341,7 @@ class Solution:
 
         Raises InputError for a connector that is not in the model.
         """
-        from beamfem.results.connector_results import multipliers
+        from beamfem.results.reactions import multipliers
 
         return multipliers(self, connector)
 
@@ -422,8 +422,8 @@ class Solution:
         >>> energy.strain.round(1)
         array([  0. , 152.6])
         """
-        from beamfem.results.connector_results import kinetic_of_connectors
         from beamfem.results.energies import Energy, potential, recorded
+        from beamfem.results.reactions import kinetic_of_connectors
         from beamfem.results.solution_system import imposed_measures
 
         kinetic = sum((m.kinetic for m in self._momenta), kinetic_of_connectors(self))
@@ -445,13 +445,13 @@ class Solution:
 
     def linear_momentum(self) -> np.ndarray:
         """Return the linear momentum in x and y (steps, 2) [kg m/s]."""
-        from beamfem.results.connector_results import momenta_of_connectors
+        from beamfem.results.reactions import momenta_of_connectors
 
         return np.asarray(sum(m.linear for m in self._momenta) + momenta_of_connectors(self)[:, :2])
 
     def angular_momentum(self) -> np.ndarray:
         """Return the angular momentum about the origin (steps,) [kg m^2/s]."""
-        from beamfem.results.connector_results import momenta_of_connectors
+        from beamfem.results.reactions import momenta_of_connectors
 
         return np.asarray(sum(m.angular for m in self._momenta) + momenta_of_connectors(self)[:, 2])
 

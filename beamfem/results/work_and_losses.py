@@ -8,7 +8,7 @@ import numpy as np
 from beamfem.assembly.connectors import Connectors, follows_time
 from beamfem.assembly.equations import residual
 from beamfem.assembly.system import System, system_of
-from beamfem.results.connector_results import energies_of
+from beamfem.results.reactions import energies_of
 from beamfem.results.solution import Solution
 
 

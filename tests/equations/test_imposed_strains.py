@@ -10,7 +10,7 @@ from beamfem.assembly.equations import linearise, residual
 from beamfem.assembly.system import system_of
 from beamfem.element.coordinates import Gradients, ShearFree
 from beamfem.element.fields import Lagrange
-from beamfem.io.vtk_points import bodies
+from beamfem.io.vtk_cells import bodies
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics
 

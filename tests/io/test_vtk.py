@@ -18,7 +18,7 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 import beamfem as bf
 from beamfem.io import vtk
-from beamfem.io import vtk_points as cells
+from beamfem.io import vtk_cells as cells
 from beamfem.results import postprocess
 
 HEIGHT = 0.02

@@ -5,7 +5,7 @@ import pytest
 from section_laws import LinearLaw
 
 import beamfem as bf
-from beamfem.io.vtk_points import bodies
+from beamfem.io.vtk_cells import bodies
 
 # the same numbers under the names of several units
 pytestmark = pytest.mark.filterwarnings("ignore::beamfem.UnitsWarning")

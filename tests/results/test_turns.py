@@ -7,7 +7,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.io.table import arrays
-from beamfem.io.vtk_points import centrelines
+from beamfem.io.vtk_cells import centrelines
 
 MOMENT = 4.0
 INERTIA = 0.5 * (1.0 + 0.05**2) / 3  # of a bar of 0.5 kg about its end

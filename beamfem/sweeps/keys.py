@@ -243,12 +243,13 @@ def _has_file(item: FunctionType | type) -> bool:
 
 def _code(code: CodeType) -> Any:
     """Return what a function does, the same in each process."""
-    constants = [_code(item) if isinstance(item, CodeType) else _constant(item) for item in code.co_consts]
+    constants = [
+        _code(item)
+        if isinstance(item, CodeType)
+        else repr(sorted(map(repr, item)) if type(item) is frozenset else item)
+        for item in code.co_consts
+    ]
     return [code.co_code.hex(), constants, code.co_names, code.co_varnames, code.co_freevars]
-
-
-def _constant(value: Any) -> str:
-    return repr(sorted(map(repr, value))) if isinstance(value, frozenset) else repr(value)
 
 
 def _names(code: CodeType) -> set[str]:

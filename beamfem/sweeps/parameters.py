@@ -25,7 +25,14 @@ def split(parameters: Mapping[str, Any]) -> tuple[dict[str, tuple[Any, ...]], di
     """
     varied: dict[str, tuple[Any, ...]] = {}
     fixed: dict[str, Any] = {}
-    _require_fits_memory([len(value) for value in parameters.values() if _varies(value)])
+    counts = [len(value) for value in parameters.values() if _varies(value)]
+    points, memory = math.prod(counts), installed_memory()
+    if memory is not None and points * _POINT > USABLE_FRACTION * memory:
+        product = " x ".join(map(str, counts))
+        raise InputError(
+            f"{product} = {points:.3g} points need {in_gib(points * _POINT)} at the least, and this computer has "
+            f"{in_gib(memory)}; take fewer values, or several sweeps"
+        )
     for name, value in parameters.items():
         if _varies(value):
             varied[name] = tuple(value.tolist() if isinstance(value, np.ndarray) else value)
@@ -38,17 +45,6 @@ def split(parameters: Mapping[str, Any]) -> tuple[dict[str, tuple[Any, ...]], di
 
 def _varies(value: Any) -> bool:
     return isinstance(value, list | tuple | range) or (isinstance(value, np.ndarray) and value.ndim == 1)
-
-
-def _require_fits_memory(counts: Sequence[int]) -> None:
-    """Raise InputError if the points of a study need more memory than this computer has."""
-    points, memory = math.prod(counts), installed_memory()
-    if memory is not None and points * _POINT > USABLE_FRACTION * memory:
-        product = " x ".join(map(str, counts))
-        raise InputError(
-            f"{product} = {points:.3g} points need {in_gib(points * _POINT)} at the least, and this computer has "
-            f"{in_gib(memory)}; take fewer values, or several sweeps"
-        )
 
 
 def combinations(varied: Mapping[str, Sequence[Any]], fixed: Mapping[str, Any]) -> list[dict[str, Any]]:

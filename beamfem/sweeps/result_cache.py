@@ -64,7 +64,10 @@ class ResultCache:
                 if "sources" in record:
                     self._modules_of[record["code"]] = record["sources"]
                 else:
-                    self._keep(record["key"], record["code"], record["value"], record["seconds"])
+                    rows = self._known.setdefault(record["key"], {})
+                    found = record["value"], record["seconds"]
+                    rows.pop(record["code"], None)  # the last one written stands last
+                    rows[record["code"]] = found
             except (ValueError, KeyError, TypeError):
                 continue
         return self
@@ -128,11 +131,6 @@ class ResultCache:
         written = self._file.write(line)
         if written != len(line):
             raise OSError(ENOSPC, os.strerror(ENOSPC))
-
-    def _keep(self, key: str, code: str, value: Any, seconds: float) -> None:
-        rows = self._known.setdefault(key, {})
-        rows.pop(code, None)  # the last one written stands last
-        rows[code] = value, seconds
 
     def _outcome(self, key: str, code: str) -> Outcome | None:
         if code not in self._known.get(key, {}):

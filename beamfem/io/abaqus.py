@@ -91,7 +91,8 @@ def read_abaqus(path: Path) -> MeshFile:
     others: dict[str, None] = {}
     for section in _sections(path):
         if section.keyword not in _OF_THE_MESH:
-            others[_shown(section)] = None
+            name = section.parameters.get("NAME") or section.parameters.get("ELSET", "")
+            others[f"*{section.keyword} {name}".rstrip()] = None
         try:
             if section.keyword == "NODE":
                 _add_nodes(section, nodes, node_sets)
@@ -117,12 +118,6 @@ def read_abaqus(path: Path) -> MeshFile:
             NotReadWarning,
         )
     return content
-
-
-def _shown(section: _Section) -> str:
-    """Return a keyword with the name of the object it describes, if any."""
-    name = section.parameters.get("NAME") or section.parameters.get("ELSET", "")
-    return f"*{section.keyword} {name}".rstrip()
 
 
 def _add_nodes(section: _Section, nodes: dict[int, tuple[float, ...]], sets: _Sets) -> None:

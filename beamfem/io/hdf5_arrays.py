@@ -120,8 +120,8 @@ def load_factors(path: Path) -> np.ndarray:
 
 def save_critical(file: Any, path: Path) -> None:
     """Write the critical points of a path, one per row."""
-    for name, states, parts in _groups(path):
-        group = file.create_group(name)
+    for name, parts in (("limit_points", _STATE), ("bifurcations", _CROSSING)):
+        group, states = file.create_group(name), getattr(path, name)
         for part in parts:
             write_checked(group, part, np.array([getattr(state, part) for state in states]))
         turned = [state.turned for state in states if state.turned is not None]
@@ -142,16 +142,8 @@ def load_path(file: Any, rows: Solution) -> Solution:
         Bifurcation(p, zeros, zeros, float(at), model, mode, tangent, stability=False, turned=turned)
         for at, p, mode, tangent, turned in _rows(file["bifurcations"], _CROSSING)
     )
-    return Path(**_parts(rows), limit_points=states, bifurcations=crossings)
-
-
-def _parts(solution: Solution) -> dict[str, Any]:
-    """Return the members of a solution by name."""
-    return {name: getattr(solution, name) for name in Solution.__dataclass_fields__}
-
-
-def _groups(path: Path) -> tuple[tuple[str, tuple[PathState, ...], tuple[str, ...]], ...]:
-    return ("limit_points", path.limit_points, _STATE), ("bifurcations", path.bifurcations, _CROSSING)
+    members = {name: getattr(rows, name) for name in Solution.__dataclass_fields__}
+    return Path(**members, limit_points=states, bifurcations=crossings)
 
 
 def _rows(group: Any, parts: tuple[str, ...]) -> Any:

@@ -94,8 +94,11 @@ def read_through_meshio(path: Path) -> MeshFile:
     if any(nodes.shape[1:] == (0,) for _, nodes in blocks):
         raise InputError(f"{path}: it is damaged: it holds cells without nodes, as a file that ends early does")
     sizes = [len(nodes) for _, nodes in blocks]
-    cell_sets = _groups(mesh)
-    cell_sets |= {name: _counted(parts, sizes) for name, parts in mesh.cell_sets.items() if not _internal(name)}
+    cell_sets, first = _groups(mesh), np.concatenate([[0], np.cumsum(sizes)])
+    for name, parts in mesh.cell_sets.items():  # cells by blocks
+        if not name.startswith("gmsh:"):
+            numbers = [first[i] + np.asarray(part, dtype=np.int64) for i, part in enumerate(parts) if part is not None]
+            cell_sets[name] = np.concatenate([np.empty(0, dtype=np.int64), *numbers])
     point_sets = {name: np.asarray(nodes, dtype=np.int64) for name, nodes in mesh.point_sets.items()}
     counted = _NUMBERINGS if set(mesh.cell_data) >= _NUMBERINGS else set()
     for name, values in mesh.cell_data.items():
@@ -104,17 +107,6 @@ def read_through_meshio(path: Path) -> MeshFile:
     for name, values in mesh.point_data.items():
         point_sets |= _by_value(name, np.asarray(values))
     return MeshFile(np.asarray(mesh.points, dtype=float), blocks, cell_sets, point_sets)
-
-
-def _internal(name: str) -> bool:
-    return name.startswith("gmsh:")
-
-
-def _counted(parts: list[Any], sizes: list[int]) -> np.ndarray:
-    """Return the numbers over all blocks of the cells of a set that is given block by block."""
-    first = np.concatenate([[0], np.cumsum(sizes)])
-    numbers = [first[i] + np.asarray(part, dtype=np.int64) for i, part in enumerate(parts) if part is not None]
-    return np.concatenate([np.empty(0, dtype=np.int64), *numbers])
 
 
 def _groups(mesh: Any) -> dict[str, np.ndarray]:
@@ -139,7 +131,7 @@ def _by_value(name: str, values: np.ndarray, counted: bool = False) -> dict[str,
 
     counted: the numbers count from 0, so that zero is one of them and `name` is no set.
     """
-    if _internal(name) or values.ndim != 1 or not np.issubdtype(values.dtype, np.integer):
+    if name.startswith("gmsh:") or values.ndim != 1 or not np.issubdtype(values.dtype, np.integer):
         return {}
     sets = {f"{name}={value}": np.flatnonzero(values == value) for value in np.unique(values)}
     return sets if counted else {name: np.flatnonzero(values), **sets}

@@ -1,6 +1,5 @@
 """The picture and the page of a convergence study."""
 
-from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -10,7 +9,7 @@ import numpy as np
 
 from beamfem.convergence.convergence_result import EXPLANATION, Convergence
 from beamfem.convergence.refinement_curve import Curve
-from beamfem.tables import Rows, cells
+from beamfem.tables import cells
 from beamfem.view.html_page import Entry, Part, Table, write_page
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 
@@ -91,16 +90,10 @@ def write_study(study: Convergence, path: str | PathLike[str]) -> Path:
         reference = "Richardson extrapolation" if study.reference is None else f"the reference {study.reference!r}"
         found = f"Errors against {reference}. {EXPLANATION}"
         entry = Entry(study.error_name.capitalize(), picture, claim="", found=found)
-        summary = _table("Curves", *study.summary())
-        points = _table("Points", *study.points(rounded=True))
-        failed = [Table("Failed calls", ("parameters", "error"), [(f.label, f.error) for f in study.failures])] * bool(
-            study.failures
-        )
+        named = (("Curves", study.summary()), ("Points", study.points(rounded=True)))
+        tables = [Table(title, header, cells(rows)) for title, (header, rows) in named]
+        if study.failures:
+            rows = [(failure.label, failure.error) for failure in study.failures]
+            tables.append(Table("Failed calls", ("parameters", "error"), rows))
         text = f"{study.function}() called with {study.refine} refined; {len(study.failures)} calls failed."
-        return write_page(
-            path, study.title, [Part("Picture", text, [entry]), Part("Numbers", "", tables=[summary, points, *failed])]
-        )
-
-
-def _table(title: str, header: Sequence[str], rows: Rows) -> Table:
-    return Table(title, header, cells(rows))
+        return write_page(path, study.title, [Part("Picture", text, [entry]), Part("Numbers", "", tables=tables)])

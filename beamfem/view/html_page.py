@@ -22,6 +22,7 @@ figcaption { overflow-wrap: anywhere }
 @media (max-width: 45rem) { figure { grid-template-columns: minmax(0, 1fr) } h1 { font-size: 1.6rem }
 td, th { padding: .2rem .4rem; font-size: .85rem } }
 """
+_WORD = " class='word'"
 
 
 @dataclass(frozen=True)
@@ -91,12 +92,8 @@ def _entry(entry: Entry) -> str:
 
 def _table(table: Table) -> str:
     head = "".join(f"<th>{escape(cell)}</th>" for cell in table.header)
-    rows = "".join("<tr>" + "".join(_cell(cell) for cell in row) + "</tr>" for row in table.rows)
+    # a browser would break 1.5e-02 and ANCF-CRBF after the sign
+    cells = [[f"<td{'' if ' ' in text else _WORD}>{escape(text)}</td>" for text in row] for row in table.rows]
+    rows = "".join(f"<tr>{''.join(row)}</tr>" for row in cells)
     title = f"<h3>{escape(table.title)}</h3>"
     return f"{title}<div class='wide'><table><tr>{head}</tr>{rows}</table></div><p>{escape(table.remark)}</p>"
-
-
-def _cell(text: str) -> str:
-    # a browser would break 1.5e-02 and ANCF-CRBF after the sign
-    kind = "" if " " in text else " class='word'"
-    return f"<td{kind}>{escape(text)}</td>"

@@ -95,7 +95,9 @@ def loads_of(shapes: Shapes) -> list[dict[str, Any]]:
     """
     solution, rows = shapes.solution, [int(row) for row in shapes.rows]
     system, at = loading(solution)
-    loads = [_row(shapes, row, float(at[row]), system.static) for row in _chosen(shapes, rows)]
+    arrows = sum(55 if isinstance(load.place, Beam) else 5 for load in solution.model.loads)
+    chosen = rows if arrows * len(rows) <= _MOST else rows[-1:] if arrows <= _MOST else []
+    loads = [_row(shapes, row, float(at[row]), system.static) for row in chosen]
     forces = [force for row in loads for force in row["points"]]
     largest = max((float(np.linalg.norm(vector)) for _, vector, _ in forces), default=0.0) or 1.0
     dense = max((float(np.abs(vector).max()) for row in loads for _, vector in row["lines"]), default=0.0) or 1.0
@@ -115,12 +117,6 @@ def loads_of(shapes: Shapes) -> list[dict[str, Any]]:
         }
         for row in loads
     ]
-
-
-def _chosen(shapes: Shapes, rows: list[int]) -> list[int]:
-    loads = shapes.solution.model.loads
-    arrows = sum(55 if isinstance(load.place, Beam) else 5 for load in loads)
-    return rows if arrows * len(rows) <= _MOST else rows[-1:] if arrows <= _MOST else []
 
 
 def _row(shapes: Shapes, row: int, at: float, static: bool) -> dict[str, list[Any]]:

@@ -124,17 +124,7 @@ def locking(solution: Solution) -> tuple[Finding, ...]:
     return _found(solution.model, change, work, "the largest displacement")
 
 
-def frequency_locking(state: State, shapes: np.ndarray) -> tuple[Finding, ...]:
-    """Return a warning if locking changes a frequency, see `_stiffness_locking`."""
-    return _stiffness_locking(state, shapes, 0.5, "a frequency")
-
-
-def critical_load_locking(state: State, shapes: np.ndarray) -> tuple[Finding, ...]:
-    """Return a warning if locking changes a critical load factor, see `_stiffness_locking`."""
-    return _stiffness_locking(state, shapes, 1.0, "a critical load factor")
-
-
-def _stiffness_locking(state: State, shapes: np.ndarray, power: float, what: str) -> tuple[Finding, ...]:
+def stiffness_locking(state: State, shapes: np.ndarray, power: float, what: str) -> tuple[Finding, ...]:
     """Return a warning if locking changes a result, from the Rayleigh quotient with locking-free strains.
 
     state: the state about which the shapes (m, n), over all coordinates, were found; power: of their stiffness, with

@@ -15,7 +15,7 @@ from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 from beamfem.precision.roundoff import LOSES
-from beamfem.results.locking import frequency_locking
+from beamfem.results.locking import stiffness_locking
 from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import may_lock, warn_of
 from beamfem.results.status import Statistics, Status, counted
@@ -100,7 +100,8 @@ class Modes:
 
         `solve_modes` has issued those of errors of 1 % and more as Python warnings too.
         """
-        return tuple(finding.sentence for finding in frequency_locking(self.state, self._elastic_shapes))
+        found = stiffness_locking(self.state, self._elastic_shapes, 0.5, "a frequency")
+        return tuple(finding.sentence for finding in found)
 
     @property
     def _elastic_shapes(self) -> np.ndarray:
@@ -290,7 +291,7 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     frequencies = rates.imag / (2.0 * np.pi)
     modes = Modes(model, rest_state, frequencies, rates.real, upright(shapes), words[:count])
     if may_lock(system, rest_state.p):
-        warn_of(frequency_locking(rest_state, modes._elastic_shapes))
+        warn_of(stiffness_locking(rest_state, modes._elastic_shapes, 0.5, "a frequency"))
     return modes
 
 

@@ -11,7 +11,7 @@ from beamfem.errors import ConvergenceError, InputError, RoundOffWarning
 from beamfem.linalg.eigenpairs import digits_for
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
-from beamfem.results.locking import critical_load_locking
+from beamfem.results.locking import stiffness_locking
 from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import advice, may_lock, warn_of
 from beamfem.results.status import Finding, Statistics, Status
@@ -211,7 +211,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     shapes = [point.mode / largest_translation(model, point.p, point.mode) for point in criticals]
     if may_lock(system, p) and shapes:
         at_start = State(p, np.zeros_like(p), np.zeros_like(p), load_factor, model)
-        found += critical_load_locking(at_start, np.array(shapes))
+        found += stiffness_locking(at_start, np.array(shapes), 1.0, "a critical load factor")
     warn_of(found)
     return Buckling(
         model,

@@ -25,14 +25,8 @@ class PathState(State):
 
     Parameters
     ----------
-    p, v, a : array, (n,)
-        Coordinates and their rates, see `State`.
-    at : float, [-]
-        Load factor.
-    model : Model
-        The model.
-    turned : array, [rad], (m,), optional
-        See `State`; counted along the path.
+    p, v, a, at, model, turned
+        See `State`; `at` is the load factor [-], rotations are counted along the path.
     stability : bool, optional
         Whether the state is a stable equilibrium, None if not known; critical points are not stable.
     """
@@ -92,21 +86,13 @@ class Bifurcation(PathState):
 
     Parameters
     ----------
-    p, v, a : array, (n,)
-        Coordinates and their rates, see `State`.
-    at : float, [-]
-        Load factor.
-    model : Model
-        The model.
+    p, v, a, at, model, turned, stability
+        See `PathState`.
     mode : array, (n,)
         Null vector of the tangent stiffness, with root mean square 1 in lengths of the model and radians, and its
         largest component positive.
     tangent : array, (n + 1,)
         Direction of the path, the load factor last.
-    turned : array, [rad], (m,), optional
-        See `State`.
-    stability : bool, optional
-        See `PathState`.
     """
 
     mode: np.ndarray

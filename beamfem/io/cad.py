@@ -61,7 +61,8 @@ def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve
     >>> curves = bf.read_dxf("frame.dxf", layer="axes")  # doctest: +SKIP
     >>> beams = [bf.Beam(curve, 8, bf.CRBF(order=3), bf.Circle(0.02), steel) for curve in curves]  # doctest: +SKIP
     """
-    ezdxf = _ezdxf()
+    with needed_for("reading drawings"):
+        import ezdxf
     source = readable(path)
     optional(text)("layer", layer)
     try:
@@ -78,12 +79,6 @@ def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve
     return tuple(_curve(entity) for entity in chosen)
 
 
-def _ezdxf() -> Any:
-    with needed_for("reading drawings"):
-        import ezdxf
-    return ezdxf
-
-
 def _curve(entity: Any) -> Curve:
     kind = entity.dxftype()
     name = f"{kind} on layer {entity.dxf.layer!r}, handle {entity.dxf.handle}"
@@ -98,9 +93,10 @@ def _curve(entity: Any) -> Curve:
 
 def _flat(vector: Any) -> tuple[float, float]:
     """Return x and y of a point or direction in world coordinates."""
-    if abs(vector.z) > _FLAT * max(abs(vector.x), abs(vector.y), 1.0):
-        raise InputError(f"it must lie in the plane z = 0, but it reaches z = {vector.z:g}")
-    return vector.x, vector.y
+    x, y, z = map(float, vector)
+    if abs(z) > _FLAT * max(abs(x), abs(y), 1.0):
+        raise InputError(f"it must lie in the plane z = 0, but it reaches z = {z:g}")
+    return x, y
 
 
 def _side(entity: Any) -> float:
@@ -109,10 +105,6 @@ def _side(entity: Any) -> float:
     if np.hypot(axis.x, axis.y) > _FLAT:
         raise InputError(f"it must lie in the plane z = 0, but its normal is ({axis.x:g}, {axis.y:g}, {axis.z:g})")
     return 1.0 if axis.z > 0 else -1.0
-
-
-def _line(entity: Any) -> Curve:
-    return Line(_flat(entity.dxf.start), _flat(entity.dxf.end))
 
 
 def _arc(entity: Any) -> Curve:
@@ -186,12 +178,9 @@ def _piece(start: np.ndarray, end: np.ndarray, bulge: float) -> Curve:
 
 
 def _spline(entity: Any) -> Curve:
-    points = entity.control_points if len(entity.control_points) else entity.fit_points
-    for x, y, z in points:
-        _flat(_ezdxf().math.Vec3(x, y, z))
+    control = tuple(map(_flat, entity.control_points if len(entity.control_points) else entity.fit_points))
     if len(entity.control_points) and len(entity.knots):
         weights = tuple(entity.weights) if len(entity.weights) else None
-        control = tuple((float(x), float(y)) for x, y, _ in points)
         return BSpline(entity.dxf.degree, tuple(entity.knots), control, weights)
     drawn = entity.construction_tool()
     control = tuple(_flat(point) for point in drawn.control_points)
@@ -208,7 +197,7 @@ def _ellipse(entity: Any) -> Curve:
 
 
 _READERS: dict[str, Callable[[Any], Curve]] = {
-    "LINE": _line,
+    "LINE": lambda entity: Line(_flat(entity.dxf.start), _flat(entity.dxf.end)),
     "ARC": _arc,
     "CIRCLE": _arc,
     "LWPOLYLINE": _light_polyline,

@@ -13,7 +13,7 @@ import numpy as np
 from beamfem import tables as tabulate
 from beamfem.convergence.refinement_curve import Curve
 from beamfem.extras import needed_for
-from beamfem.sweeps.parameters import is_solution
+from beamfem.results.solution import Solution
 from beamfem.sweeps.workers import Failure
 from beamfem.validation import flag
 
@@ -99,10 +99,9 @@ class Convergence:
         errors and orders as short text instead of numbers. Raises InputError if it is not a bool.
         """
         names = list(dict.fromkeys(name for curve in self.curves for name in curve.texts))
-        whole = {
-            name for curve in self.curves for name, values in curve.others.items() if any(map(is_solution, values))
-        }
-        others = [name for name in dict.fromkeys(n for curve in self.curves for n in curve.others) if name not in whole]
+        values = [pair for curve in self.curves for pair in curve.others.items()]
+        whole = {name for name, column in values if any(isinstance(value, Solution) for value in column)}
+        others = [name for name in dict.fromkeys(name for name, _ in values) if name not in whole]
         flag("rounded", rounded)
         header = [*names, self.refine, self.quantity, self.error_name, "order", "GCI", *others, "seconds"]
         rows = []

@@ -12,7 +12,6 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.installed_memory import USABLE_FRACTION, in_gib, installed_memory
-from beamfem.results.solution import Solution
 from beamfem.validation import nearest
 
 _POINT = 1000  # bytes of a point; 1100 were measured with one parameter
@@ -76,11 +75,6 @@ def name_of(function: Callable[..., Any]) -> str:
         function = function.func
     name = getattr(function, "__name__", "")
     return name if name.isidentifier() else "value"
-
-
-def is_solution(value: Any) -> bool:
-    """Return whether a value is a whole solution, which tables of numbers omit."""
-    return isinstance(value, Solution)
 
 
 def labels(values: Sequence[Any]) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from beamfem import tables as tabulate
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
 from beamfem.reprs import brief
-from beamfem.sweeps.parameters import is_solution
+from beamfem.results.solution import Solution
 from beamfem.sweeps.workers import Failure
 from beamfem.validation import require_known, shown
 from beamfem.view.plots import COLOURS, new_figure, save_figure
@@ -128,7 +128,7 @@ class Sweep:
 
     def _rows(self) -> tuple[list[str], list[list[Any]]]:
         rows = [row | dict(texts) for row, texts in zip(self.table(), self._texts(), strict=True)]
-        numbers = [name for name in rows[0] if not any(is_solution(row[name]) for row in rows)]
+        numbers = [name for name in rows[0] if not any(isinstance(row[name], Solution) for row in rows)]
         return numbers, [[row[name] for name in numbers] for row in rows]
 
     def _texts(self) -> list[dict[str, Any]]:

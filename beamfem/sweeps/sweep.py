@@ -1,6 +1,6 @@
 """Parameter sweeps: a function called at every combination of values, in parallel if wanted, with results on disk."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from contextlib import ExitStack
 from os import PathLike
 from typing import Any
@@ -79,6 +79,25 @@ def sweep(
     check_call(function, points[0], ("executor", "store", "keep_stale"))
     texts = combinations({name: labels(values) for name, values in varied.items()}, {})
     outcomes: list[Outcome | None] = [None] * len(points)
+
+    def result(computed: int) -> Sweep:
+        found = [outcome or Outcome(seconds=np.nan, error=_NOT_REACHED) for outcome in outcomes]
+        failures = tuple(
+            Failure(point, assignments(text), outcome.error, outcome.traceback)
+            for point, text, outcome in zip(points, texts, found, strict=True)
+            if outcome.error is not None
+        )
+        return Sweep(
+            parameters=tuple(points),
+            values=tuple(outcome.value for outcome in found),
+            failures=failures,
+            seconds=np.array([outcome.seconds for outcome in found]),
+            shape=tuple(len(values) for values in varied.values()),
+            computed=computed,
+            labels=tuple(texts),
+            function=name_of(function),
+        )
+
     with ExitStack() as stack:
         cache = None if store is None else stack.enter_context(ResultCache(store, function, points))
         if cache is not None:
@@ -95,33 +114,7 @@ def sweep(
                 report(done)
         except BaseException as error:
             if computed := sum(outcomes[i] is not None for i in todo):
-                error.sweep = _result(points, texts, outcomes, varied, computed, name_of(function))  # type: ignore[attr-defined]
+                error.sweep = result(computed)  # type: ignore[attr-defined]
                 error.add_note(f"The {computed} points computed before are in the `sweep` of this exception.")
             raise
-    return _result(points, texts, outcomes, varied, len(todo), name_of(function))
-
-
-def _result(
-    points: list[dict[str, Any]],
-    texts: list[dict[str, Any]],
-    found: list[Outcome | None],
-    varied: Mapping[str, Sequence[Any]],
-    computed: int,
-    name: str,
-) -> Sweep:
-    outcomes = [outcome or Outcome(seconds=np.nan, error=_NOT_REACHED) for outcome in found]
-    failures = tuple(
-        Failure(point, assignments(text), outcome.error, outcome.traceback)
-        for point, text, outcome in zip(points, texts, outcomes, strict=True)
-        if outcome.error is not None
-    )
-    return Sweep(
-        parameters=tuple(points),
-        values=tuple(outcome.value for outcome in outcomes),
-        failures=failures,
-        seconds=np.array([outcome.seconds for outcome in outcomes]),
-        shape=tuple(len(values) for values in varied.values()),
-        computed=computed,
-        labels=tuple(texts),
-        function=name,
-    )
+    return result(len(todo))

@@ -17,7 +17,7 @@ from beamfem.view.drawing import LINE, bar, equal_axes, legend_above
 from beamfem.view.frames import moment_of, spread_rows
 from beamfem.view.load_drawing import FORCE, draw_loads
 from beamfem.view.notebook_paths import WrittenFile
-from beamfem.view.support_symbols import PRESCRIBED, draw_joints, draw_supports
+from beamfem.view.support_symbols import PRESCRIBED, draw_joints, supports_of
 
 _POINTS = 600  # of all beams; what moves in a small picture needs no more
 _FINEST = 1000  # pixels an inch: pictures of some inches have a hundred million
@@ -81,7 +81,7 @@ def _frames(shapes: Shapes, undeformed: bool, supports: bool, loads: bool, dpi: 
         canvas.restore_region(background)
         moving = shapes.draw(axes, order)
         if supports:
-            moving += draw_supports(axes, solution, int(row), shapes.centre)
+            moving += supports_of(solution, int(row), shapes.centre).draw(axes)
         moving += draw_joints(axes, solution, int(row))
         if loads:
             moving += draw_loads(axes, solution, np.array([row]))

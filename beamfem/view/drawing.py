@@ -23,7 +23,7 @@ from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
 from beamfem.view.labels import place
 from beamfem.view.load_drawing import draw_loads
 from beamfem.view.plots import empty_figure, quiet, save_figure
-from beamfem.view.support_symbols import draw_joints, draw_supports
+from beamfem.view.support_symbols import draw_joints, supports_of
 
 _COLOUR = "#CC3311"
 
@@ -128,7 +128,7 @@ def plot_shapes(
     for order in range(len(rows)):
         drawn.draw(axes, order, (order + 1) / len(rows))
     if supports:
-        draw_supports(axes, solution, int(rows[-1]), drawn.centre)
+        supports_of(solution, int(rows[-1]), drawn.centre).draw(axes)
     draw_joints(axes, solution, int(rows[-1]))
     if loads:
         draw_loads(axes, solution, rows)

@@ -12,7 +12,7 @@ from beamfem.validation import count
 from beamfem.view.deformed_shapes import Shapes, draw_undeformed
 from beamfem.view.drawing import entry, frame
 from beamfem.view.plots import empty_figure, save_figure
-from beamfem.view.support_symbols import draw_joints, draw_supports
+from beamfem.view.support_symbols import draw_joints, supports_of
 
 if TYPE_CHECKING:
     from beamfem.solve.modes.modes import Modes
@@ -78,7 +78,7 @@ def _plot(
         original = draw_undeformed(axes, item.points)
         for order in range(len(item.rows)):
             item.draw(axes, order, (order + 1) / len(item.rows))
-        draw_supports(axes, item.solution, int(item.rows[-1]), item.centre)
+        supports_of(item.solution, int(item.rows[-1]), item.centre).draw(axes)
         draw_joints(axes, item.solution, int(item.rows[-1]))
         frame(axes, box.mean(axis=0), size * 1.06 + 0.08 * size.max(), np.array([width, height - 0.7]), unit)
         axes.set_title(title(mode), fontsize=10)

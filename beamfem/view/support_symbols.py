@@ -77,11 +77,6 @@ class Stamps:
         return artists
 
 
-def draw_supports(axes: Any, solution: Solution, row: int, centre: np.ndarray) -> list[Any]:
-    """Draw the supports of a model in a row; see `supports_of`."""
-    return supports_of(solution, row, centre).draw(axes)
-
-
 def supports_of(solution: Solution, row: int, centre: np.ndarray) -> Stamps:
     """Return the symbols of supports in a row: rollers roll, prescribed motions start at their points.
 

@@ -59,19 +59,14 @@ class Part:
 def write_page(path: str | PathLike[str], title: str, parts: Sequence[Part]) -> Path:
     """Write one self-contained HTML file with the SVG figures inside, and a table of contents; return its path."""
     target = path_of(path)
-    body = _contents(parts) + "".join(_part(part, number) for number, part in enumerate(parts))
+    links = [f"<li><a href='#part{number}'>{escape(part.heading)}</a></li>" for number, part in enumerate(parts)]
+    contents = f"<nav><ul>{''.join(links)}</ul></nav>" if len(parts) > 1 else ""
+    body = contents + "".join(_part(part, number) for number, part in enumerate(parts))
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(title)}</title>'
     page = f"<!doctype html><html lang='en'><head>{head}<style>{_STYLE}</style></head>"
     with whole(target) as partial:
         partial.write_text(f"{page}<body><h1>{escape(title)}</h1>{body}</body></html>\n", encoding="utf-8")
     return WrittenFile(target)
-
-
-def _contents(parts: Sequence[Part]) -> str:
-    if len(parts) < 2:
-        return ""
-    links = [f"<li><a href='#part{number}'>{escape(part.heading)}</a></li>" for number, part in enumerate(parts)]
-    return f"<nav><ul>{''.join(links)}</ul></nav>"
 
 
 def _part(part: Part, number: int) -> str:

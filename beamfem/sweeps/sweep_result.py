@@ -200,7 +200,8 @@ class Sweep:
         """
         names, texts = list(self.labels[0]), self.labels
         numeric = [name for name in names if all(_is_number(point[name]) for point in self.parameters)]
-        results = [name for name in self.table()[0] if name not in (*names, "seconds") and _is_row(self[name])]
+        columns = {name: self[name] for name in self.table()[0] if name not in (*names, "seconds")}
+        results = [name for name, column in columns.items() if column.ndim == 1 and column.dtype.kind in "fiu"]
         if not numeric or not results:
             what = "parameter that varies" if not numeric else "result"
             raise InputError(f"the sweep has no {what} whose values are numbers, so there is nothing to draw")
@@ -243,7 +244,3 @@ class Sweep:
 
 def _is_number(value: Any) -> bool:
     return isinstance(value, int | float | np.number) and not isinstance(value, bool)
-
-
-def _is_row(values: np.ndarray) -> bool:
-    return values.ndim == 1 and values.dtype.kind in "fiu"

@@ -82,8 +82,14 @@ class LineMesh:
             sets = getattr(self, name)
             if not isinstance(sets, Mapping):
                 raise InputError(f"{name} of LineMesh must be a mapping from names to numbers, got {shown(sets)}")
-            by_name = {text(f"a name in {name} of LineMesh", key): numbers for key, numbers in sets.items()}
-            checked = {key: _set(f"{name}[{key!r}] of LineMesh", by_name[key], size, lowest) for key in by_name}
+            checked = {}
+            for key, values in sets.items():
+                what = f"{name}[{text(f'a name in {name} of LineMesh', key)!r}] of LineMesh"
+                entries = items(what, values)
+                numbers = np.array(entries)
+                if numbers.ndim != 1 or holds_truth_values(entries):
+                    raise InputError(f"{what} must be a list of whole numbers, got {shown(values)}")
+                checked[key] = _numbers_below(what, numbers, size, lowest)
             object.__setattr__(self, name, checked)
 
     def frame(
@@ -299,14 +305,6 @@ def _refuse_repeated(nodes: np.ndarray, cells: np.ndarray, owner: np.ndarray, si
         raise InputError(
             f"lines {owner[other]} and {owner[again[0]]} (counted from 0) are the same line from {where}; remove one"
         )
-
-
-def _set(name: str, values: Any, size: int, lowest: int) -> np.ndarray:
-    entries = items(name, values)
-    numbers = np.array(entries)
-    if numbers.ndim != 1 or holds_truth_values(entries):
-        raise InputError(f"{name} must be a list of whole numbers, got {shown(values)}")
-    return _numbers_below(name, numbers, size, lowest)
 
 
 def _numbers_below(name: str, numbers: np.ndarray, size: int, lowest: int) -> np.ndarray:

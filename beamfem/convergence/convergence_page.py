@@ -39,7 +39,12 @@ def plot_errors(study: Convergence, path: str | PathLike[str] | None = None) -> 
             triangles[round(curve.fit.order)] = curve, colour
     for curve, colour in triangles.values():
         _triangle(axes, curve, colour)
-    _axis_labels(axes, study)
+    axes.set_xlabel(study.refine)
+    axes.set_ylabel(f"{study.error_name} of {study.quantity}")
+    ticks = sorted({value for curve in study.curves for value in curve.refinement})
+    if len(ticks) <= 12:
+        axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+        axes.minorticks_off()
     if study.curves:
         axes.legend(frameon=False, fontsize=9)
     return save_figure(figure, path)
@@ -49,15 +54,6 @@ def _order(curve: Curve) -> str:
     assert curve.fit is not None
     band = curve.fit.band
     return f"{curve.fit.order:.2f}" if np.isnan(band) else f"{curve.fit.order:.2f} ± {band:.2f}"
-
-
-def _axis_labels(axes: Any, study: Convergence) -> None:
-    axes.set_xlabel(study.refine)
-    axes.set_ylabel(f"{study.error_name} of {study.quantity}")
-    ticks = sorted({value for curve in study.curves for value in curve.refinement})
-    if len(ticks) <= 12:
-        axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
-        axes.minorticks_off()
 
 
 def _triangle(axes: Any, curve: Curve, colour: str) -> None:

@@ -1,6 +1,7 @@
 """Labelled arrays in HDF5 files, with names and units as in netCDF: axes of beams, limit points and bifurcations."""
 
 from collections.abc import Callable, Iterator
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -12,27 +13,68 @@ from beamfem.results.path import Bifurcation, Path, PathState
 from beamfem.results.solution import Solution
 
 
-def _array(group: Any, name: str, shape: tuple[int, ...], meaning: str, unit: str) -> Any:
+def array(group: Any, name: str, shape: tuple[int, ...], meaning: str, unit: str) -> Any:
     """Return a new array of floats with the attributes `long_name` and `units`."""
-    made = group.create_dataset(name, shape, np.float64)
-    made.attrs["long_name"], made.attrs["units"] = meaning, unit
-    return made
+    from h5py import Dataset, h5d, h5s, h5t  # slow to import, and need not be installed
+
+    made = h5d.create(group.id, name.encode(), h5t.NATIVE_DOUBLE, h5s.create_simple(shape), _plain())
+    _describe(made, "long_name", meaning)
+    _describe(made, "units", unit)
+    return Dataset(made)
 
 
 def scale(group: Any, name: str, values: np.ndarray, meaning: str, unit: str) -> Any:
     """Return a new dimension scale."""
-    result = _array(group, name, values.shape, meaning, unit)
-    result[:] = values
-    result.make_scale(name)
+    from h5py import h5ds
+
+    result = array(group, name, values.shape, meaning, unit)
+    write(result, values)
+    h5ds.set_scale(result.id, name.encode())
     return result
 
 
 def variable(group: Any, name: str, meaning: str, unit: str, scales: tuple[Any, ...]) -> Any:
     """Return a new array over dimension scales."""
-    result = _array(group, name, tuple(len(over) for over in scales), meaning, unit)
-    for dimension, over in zip(result.dims, scales, strict=True):
-        dimension.attach_scale(over)
+    from h5py import h5ds
+
+    result = array(group, name, tuple(len(over) for over in scales), meaning, unit)
+    for dimension, over in enumerate(scales):
+        h5ds.attach_scale(result.id, over.id, dimension)
     return result
+
+
+def write(dataset: Any, values: np.ndarray, rows: slice = slice(None)) -> None:
+    """Write values into some rows of an array, or all."""
+    from h5py import h5s
+
+    if dataset.shape == values.shape:
+        dataset.id.write(h5s.ALL, h5s.ALL, np.ascontiguousarray(values, dtype=float))
+    else:
+        dataset[rows] = values
+
+
+@lru_cache(maxsize=1)
+def _plain() -> Any:
+    """Return the properties of new arrays: files do not tell when they were made."""
+    from h5py import h5p
+
+    properties = h5p.create(h5p.DATASET_CREATE)
+    properties.set_obj_track_times(False)
+    return properties
+
+
+@lru_cache(maxsize=1)
+def _kind_of_text() -> Any:
+    """Return the type and the shape of a text in a file."""
+    from h5py import h5s, h5t, string_dtype
+
+    return h5t.py_create(string_dtype(), logical=True), h5s.create(h5s.SCALAR)
+
+
+def _describe(made: Any, name: str, text: str) -> None:
+    from h5py import h5a, string_dtype
+
+    h5a.create(made, name.encode(), *_kind_of_text()).write(np.array(text, dtype=string_dtype()))
 
 
 AXES = "beams"
@@ -104,9 +146,9 @@ class _Axis:
     def write(self, rows: slice, table: np.ndarray) -> None:
         """Write some rows of the values of `_tables`."""
         for moved, values in zip(self._moved, table, strict=False):
-            moved[rows] = values[:, self._ends]
+            write(moved, values[:, self._ends], rows)
         for force, values in zip(self._forces, table[3:], strict=True):
-            force[rows] = values
+            write(force, values, rows)
 
 
 _STATE = ("at", "p")

@@ -77,3 +77,9 @@ def written(tmp_path):
         return file
 
     return write
+
+
+@pytest.fixture
+def uncut_steps(monkeypatch):
+    """Take steps as they are, however much energy they gain, and do not redo those that fail."""
+    monkeypatch.setattr("beamfem.solve.motion.cut_steps._MOST", 0)

@@ -15,7 +15,7 @@ from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.time_functions import kinks_of
 from beamfem.results.full_turns import start_rotations
 from beamfem.results.reactions import energies_of
-from beamfem.results.work_and_losses import Forces, forces_without_potential, work_between
+from beamfem.results.work_and_losses import Forces, driving_connectors, forces_without_potential, work_between
 
 if TYPE_CHECKING:
     from beamfem.results.energies import Energy
@@ -38,13 +38,13 @@ def resolved(solution: "Solution") -> bool:
         return False
     if len(solution) == steps + 1:
         before, now, after = (solution.v[first : steps - 1 + first : 1 + steps // _COMPARED] for first in range(3))
-        squares = np.array((now, before - 2.0 * now + after)) ** 2 @ system.table(_masses)
+        squares = np.array((now, before - 2.0 * now + after)) ** 2 @ system.table(masses)
         speed, change = squares.max(axis=1, initial=0.0).tolist()
         if change > _FAST * speed:
             return False
         speed, change = squares.sum(axis=1).tolist()
     else:
-        squares = np.array((solution.v, rule[0] * solution.a)) ** 2 @ system.table(_masses)
+        squares = np.array((solution.v, rule[0] * solution.a)) ** 2 @ system.table(masses)
         speed, acceleration = squares.sum(axis=1).tolist()
         change = acceleration**2 / (speed or 1.0)
     mean = change / (speed or 1.0)
@@ -69,7 +69,7 @@ def _third_cumulant(alpha: float) -> float:
     return alpha * (1.0 - alpha) * (1.0 - 2.0 * alpha) / 6.0
 
 
-def _masses(system: System) -> np.ndarray:
+def masses(system: System) -> np.ndarray:
     """Return the diagonal (n,) of the mass matrix in the reference."""
     p, result = system.reference, np.zeros(system.model.size)
     mass = linearise(system, p, result, result, 0.0, INERTIA)[1]
@@ -162,17 +162,20 @@ _BULGE = 0.1  # of an amplitude, by which it may differ from a straight line bet
 
 
 @dataclass(frozen=True)
-class _Balance:
+class Balance:
     """Energy in rows (rows,) [J] that work does not explain.
 
-    rise: change of energy less the work done; loss: its negative less what is dissipated, nan if that is not known;
-    doubt: how accurately rows give the work; exchanged: largest energy exchanged.
+    energy: its parts; rise: change of energy less the work done; loss: its negative less what is dissipated, nan if
+    that is not known; doubt: how accurately rows give the work; unsure: what they do not tell at all, and round-off;
+    exchanged: largest energy exchanged.
     """
 
     time: np.ndarray
+    energy: "Energy"
     rise: np.ndarray
     loss: np.ndarray
     doubt: np.ndarray
+    unsure: np.ndarray
     exchanged: float
     driven: bool
 
@@ -188,29 +191,29 @@ def energy_warnings(solution: "Solution") -> tuple[str, ...]:
     if solution.static or len(solution) < 2 or solution.loaded is not None or resolved(solution):
         return ()
     moved = any(callable(item.value) for item in system_of(solution.model, static=False).prescribed)
-    if not _takes_amplitudes(solution) or (moved and len(solution) != solution.statistics.steps + 1):
+    if not takes_amplitudes(solution) or (moved and len(solution) != solution.statistics.steps + 1):
         return ()
-    balance, unit = _balance(_some_rows(solution)), solution.model.unit
-    compared = f"compared with {balance.exchanged:.3g} {unit('J')} exchanged at most"
+    judged, unit = balance(_some_rows(solution)), solution.model.unit
+    compared = f"compared with {judged.exchanged:.3g} {unit('J')} exchanged at most"
     cases = (
-        (balance.rise, _MUCH, "rises", "more than the work that is done on it" if balance.driven else "",
+        (judged.rise, _MUCH, "rises", "more than the work that is done on it" if judged.driven else "",
          "the time steps do not resolve its high-frequency vibration"),
-        (balance.loss, _LOST, "falls", "more than work and damping explain",
+        (judged.loss, _LOST, "falls", "more than work and damping explain",
          "the numerical damping of the time steps removes it"),
     )  # fmt: skip
     for change, share, verb, explained, why in cases:
-        beyond = change - share * balance.exchanged - balance.doubt
+        beyond = change - share * judged.exchanged - judged.doubt - judged.unsure
         row = int(np.argmax(np.where(np.isfinite(beyond), beyond, -np.inf)))
         if beyond[row] > 0.0:
             explained = explained or "although no work is done on the motion"
             return (
-                f"the energy {verb} by {change[row]:.3g} {unit('J')} until {balance.time[row]:.6g} {unit('s')}, "
+                f"the energy {verb} by {change[row]:.3g} {unit('J')} until {judged.time[row]:.6g} {unit('s')}, "
                 f"{compared}, {explained}: {why}. Use smaller steps",
             )
     return ()
 
 
-def _takes_amplitudes(solution: "Solution") -> bool:
+def takes_amplitudes(solution: "Solution") -> bool:
     """Return whether the loads without a potential, whose work is a difference, are dataclasses with an amplitude."""
     loads = [load for load in solution.model.loads if not load.conservative]
     return all("amplitude" in getattr(type(load), "__dataclass_fields__", ()) for load in loads)
@@ -226,25 +229,23 @@ def _some_rows(solution: "Solution") -> "Solution":
     return with_rows(solution, np.unique([*range(FIRST), *fastest, len(solution) - 1]))
 
 
-def _balance(solution: "Solution") -> _Balance:
+def balance(solution: "Solution", accuracy: float = MotionLimits().tolerance) -> Balance:
+    """Return the energy balance of the rows of a motion; accuracy: of coordinates, relative to the model."""
     system, energy = system_of(solution.model, static=False), solution.energy()
-    connectors = system.connectors
-    if connectors.keep_energy:
-        connectors = Connectors(solution.model, False, ())
+    connectors = driving_connectors(solution, system)
     total = energy.total - energies_of(connectors, solution, solution.at).sum(axis=1)
     forces = forces_without_potential(solution, system, connectors)
     known, driving = _resolved(solution, system), np.fmin(energy.recorded, 0.0)
     work, lost, given = work_between(solution, forces, connectors)
     rise = _summed(np.diff(total) - work - np.maximum(given, 0.0) + np.diff(driving), known)
-    lost = np.maximum(lost, 0.0) + np.diff(energy.recorded if system.history.laws else np.zeros(len(solution)))
+    lost = np.maximum(lost, 0.0) + np.diff(energy.recorded)
     loss = -_summed(np.diff(total) - work - given + lost, known)
     parts = (energy.kinetic, energy.strain, energy.potential, _summed(work, known))
     exchanged = max(*(np.ptp(part) for part in parts), energy.kinetic.max(), _SMALL * np.abs(energy.strain).max())
     unknown = _summed(np.abs(np.diff(total)), ~known)
-    doubt = (
-        _doubt(solution, forces, connectors, work + given) + unknown + _inaccuracy(system, solution.p, energy.strain)
-    )
-    return _Balance(solution.at, rise, loss, doubt, float(exchanged), driven(solution))
+    unsure = unknown + _inaccuracy(system, solution.p, energy.strain, accuracy)
+    doubt = _doubt(solution, forces, connectors, work + given)
+    return Balance(solution.at, energy, rise, loss, doubt, unsure, float(exchanged), driven(solution))
 
 
 def _summed(change: np.ndarray, known: np.ndarray) -> np.ndarray:
@@ -280,13 +281,13 @@ def _doubt(solution: "Solution", forces: Forces, connectors: Connectors, work: n
     return np.asarray(largest[np.minimum((np.arange(len(fine)) + 1) // 2, len(largest) - 1)])
 
 
-def _inaccuracy(system: System, p: np.ndarray, strain: np.ndarray) -> float:
-    """Return the accuracy of strain energies U [J] for coordinates to round-off and the tolerance of time steps.
+def _inaccuracy(system: System, p: np.ndarray, strain: np.ndarray, accuracy: float) -> float:
+    """Return the accuracy of strain energies U [J] for coordinates to round-off and an accuracy.
 
     The energy u of such differences alone changes U by 2 sqrt(U u) + u (Cauchy and Schwarz).
     """
     reach, turn = sizes(system, np.abs(p).max(axis=0))
-    relative = ROUND_OFF + MotionLimits().tolerance
+    relative = ROUND_OFF + accuracy
     forces = relative * (reach * system.residual_errors[0] + turn * system.residual_errors[1])
     least = 0.5 * relative * float(forces @ np.where(system.positions, reach, turn))
     return float(2.0 * np.sqrt(np.abs(strain).max() * least) + least)

@@ -18,7 +18,7 @@ class Status(Enum):
 
 @dataclass(frozen=True)
 class Statistics:
-    """How a solve went: Newton iterations, completed steps, cuts of steps, why it ended, and sentences to heed.
+    """How a solve went: Newton iterations, completed steps, cuts of steps (of a motion, of groups of steps), why it ended.
 
     digits: exact digits of the forces of the last equilibrium, from the balance of loads and reactions, or of the
     largest force of the path where they have few; nan if unknown. rule: of a motion by a scheme, its time step [s],
@@ -33,6 +33,11 @@ class Statistics:
     warnings: tuple[str, ...] = ()
     digits: float = nan
     rule: tuple[float, ...] = ()
+
+    @property
+    def rejected(self) -> int:
+        """Number of times that steps were refused and redone with shorter ones; the same as `cuts`."""
+        return self.cuts
 
     @property
     def outcome(self) -> str:

@@ -35,11 +35,16 @@ def exchange(solution: Solution) -> tuple[np.ndarray, np.ndarray]:
     Forces of connectors that have no energy, or depend on time, do work; those with history record what they dissipate.
     """
     system = system_of(solution.model, static=False)
-    driving = Connectors(solution.model, False, tuple(item for item in system.connectors.items if _drives(item)))
+    driving = driving_connectors(solution, system)
     forces = forces_without_potential(solution, system, driving)
     work, lost, given = work_between(solution, forces, driving)
     stored = energies_of(driving, solution, solution.at).sum(axis=1)
     return _since(work + given + np.diff(stored)), _since(lost)
+
+
+def driving_connectors(solution: "Solution", system: System) -> Connectors:
+    """Return the connectors whose forces do work; others conserve energy or dissipate it."""
+    return Connectors(solution.model, False, tuple(item for item in system.connectors.items if _drives(item)))
 
 
 def _drives(item: Any) -> bool:

@@ -13,7 +13,7 @@ from beamfem.assembly.system import system_of
 from beamfem.assembly.viscosity import viscous_stiffness, viscous_tangent
 from beamfem.section import StiffnessSection
 from beamfem.section.law import ConstitutiveLaw
-from beamfem.solve.motion.time_marching import initial_acceleration
+from beamfem.solve.motion.start_acceleration import initial_acceleration
 
 TIME = 0.2
 SOFT = {"axial": 1e4, "shear": 4e3, "bending": 1.0, "mass": 1e-3, "rotary_inertia": 1e-8}

@@ -11,6 +11,7 @@ from beamfem.assembly.system import system_of
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.kernels.motion_steps import check_convergence
 from beamfem.solve.motion.compiled_steps import CompiledSteps
+from beamfem.solve.motion.energy_judgement import radius_at_infinity
 
 TOLERANCE = 1e-9
 
@@ -131,7 +132,7 @@ def test_a_step_that_fails_starts_anew_from_what_was_nearer(begins, order, steps
 
 
 @pytest.mark.parametrize(("begins", "order"), [(None, 0.0), (0.095, -1.0)], ids=["first", "tenth"])
-def test_a_step_that_fails_again_starts_from_the_other_guess(begins, order, steps_taken):
+def test_a_step_that_fails_again_starts_from_the_other_guess(begins, order, steps_taken, uncut_steps):
     """The moment winds the strip up so much in a step that neither guess leads to its end."""
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 6, bf.CRBF(2), bf.Rectangle(0.02, 0.01), bf.Material(1e7, 0.3, 1000.0))
     sudden = {} if begins is None else {"amplitude": lambda t: float(t > begins)}
@@ -139,3 +140,8 @@ def test_a_step_that_fails_again_starts_from_the_other_guess(begins, order, step
     with pytest.raises(bf.ConvergenceError, match="did not converge"):
         bf.simulate(bf.Model([beam], [bf.Clamp(beam.start)], loads), begins or 1e-2, 1e-2)
     assert steps_taken[-1]._space.solver.rule.order == order
+
+
+@pytest.mark.parametrize("rho_inf", [0.0, 0.3, 0.9, 1.0])
+def test_the_spectral_radius_at_infinite_frequency(rho_inf):
+    assert radius_at_infinity(bf.GeneralizedAlpha(rho_inf).rule(0.1)) == pytest.approx(rho_inf, abs=1e-6)

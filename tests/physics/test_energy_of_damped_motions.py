@@ -14,7 +14,7 @@ SOFT = {"axial": 1e4, "shear": 4e3, "bending": 1.0, "mass": 1e-3, "rotary_inerti
 LOSSY = bf.Material(1.0, 0.3, 1.0, retardation_time=0.2)
 
 
-def test_a_damped_motion_whose_energy_rises_is_warned_of():
+def test_a_damped_motion_whose_energy_rises_is_warned_of(uncut_steps):
     """A fast start against strong damping, which moves on for half a step with rho_inf below 1; not so with 1."""
     _, model = arm(StiffnessSection(**SOFT), material=LOSSY)
     thrown = {"duration": 0.3, "step": 0.01, "velocity": lambda x: (0.0, x[0] ** 2)}
@@ -28,7 +28,7 @@ def test_a_damped_motion_whose_energy_rises_is_warned_of():
 
 
 @pytest.mark.parametrize("steps", [50, 301, 1500])
-def test_a_rise_that_lasts_for_a_few_steps_of_many_is_warned_of(steps):
+def test_a_rise_that_lasts_for_a_few_steps_of_many_is_warned_of(uncut_steps, steps):
     """Eightfold within two steps, after which damping takes it all: one row in three or fifteen missed it."""
     material = bf.Material(2e11, 0.3, 7800.0, retardation_time=1e-3)
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(order=3), bf.Rectangle(0.01, 0.01), material)

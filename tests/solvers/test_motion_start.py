@@ -224,7 +224,7 @@ def test_an_ancf_beam_is_rolled_up_backwards():
 
 
 @pytest.mark.parametrize("rho_inf", [0.0, 0.3, 0.7, 0.9])
-def test_a_stiff_mode_decays_by_the_spectral_radius_in_a_step(rho_inf):
+def test_a_stiff_mode_decays_by_the_spectral_radius_in_a_step(rho_inf, uncut_steps):
     """Found by mutation: alpha_m may be wrong and the order still two."""
     one = straight(bf.CRBF(1), 1)
     hold = [bf.Clamp(one.start), bf.Prescribed(one.end, uy=0.0, rotation=0.0)]

@@ -53,6 +53,13 @@ class CompiledSteps:
         """Why a step has failed."""
         return not_converged(self._statistics, self._limits)
 
+    @property
+    def broken(self) -> bool:
+        """Whether an error or a Ctrl-C has ended the last call early."""
+        return self._error is not None or (
+            self._deferred is not None and (self._deferred.interrupted or self._deferred.lost is not None)
+        )
+
     def advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """March p, p', p'' and the auxiliary acceleration (4, n) in place; return how many steps were completed.
 

@@ -22,7 +22,8 @@ from beamfem.solve.motion.initial_velocity import put_onto_supports, require_on_
 from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, is_scheme, require_rule
 from beamfem.solve.motion.period_error import detuned
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
-from beamfem.solve.motion.time_marching import Last, Record, initial_acceleration, march
+from beamfem.solve.motion.start_acceleration import initial_acceleration
+from beamfem.solve.motion.time_marching import Last, Record, march
 from beamfem.solve.motion.time_steps import SIDE, stretches
 from beamfem.solve.start.functions_of_time import functions_of_time, name_unresolved
 from beamfem.solve.start.partial_results import kept
@@ -40,7 +41,10 @@ def simulate(
     velocity: RigidVelocity | Callable[[np.ndarray], np.ndarray] | None = None,
     save_every: int = 1,
 ) -> Solution:
-    """Integrate the equations of motion over time with a fixed step.
+    """Integrate the equations of motion over time with a fixed step, which is cut where it has to be.
+
+    Steps that do not converge, or that change the energy by more than work explains, are redone with a quarter of their
+    size, from up to 8 steps before; afterwards they have their size again. `statistics.rejected` counts how often.
 
     Parameters
     ----------
@@ -73,8 +77,8 @@ def simulate(
     InputError
         Before the solve, for invalid arguments, such as a support that would jump from the start.
     ConvergenceError
-        If a step does not converge; its `solution` has all states so far. Any other exception during the solve, such as
-        KeyboardInterrupt, carries the states so far as its `solution` too.
+        If a step does not converge, however short; its `solution` has all states so far. Any other exception during the
+        solve, such as KeyboardInterrupt, carries the states so far as its `solution` too.
 
     Warns
     -----
@@ -170,6 +174,7 @@ def _solution(
     for name in unresolved:
         ended += f"; the {name} varies within steps, which do not resolve it"
     status = Status.COMPLETED if done == len(times) - 1 else Status.STOPPED
-    summary = Statistics(record.statistics.iterations, done, 0, ended, status, rule=rule)
+    taken = done + record.further
+    summary = Statistics(record.statistics.iterations, taken, record.cuts, ended, status, rule=rule)
     p, v, a = states.swapaxes(0, 1)
     return Solution(system.model, False, times[stored_steps], p, v, a, summary, turned=rotations)

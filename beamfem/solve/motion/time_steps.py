@@ -1,6 +1,6 @@
 """Ends of the time steps of a motion: multiples of the step, and the kinks that its loads declare."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,7 @@ SIDE = 1e-9  # of a step: distance from a kink at which a load is evaluated on e
 _JUMP = 1e-6  # of the values of a load: a larger difference across a kink is a jump
 _STRAIGHT = 1e-4  # of the values of a load: accuracy with which divided steps follow it
 _MOST_PARTS = 128
+PARTS = 4  # into which a step is cut
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,20 @@ class Stretch:
     whole: bool
     loads_from: float
     loads_to: float
+
+    def cut(self, first: int, last: int) -> "Stretch":
+        """Return the steps from one to another of its times, each divided into `PARTS`."""
+        begin, end = float(self.times[first]), float(self.times[last])
+        times = np.interp(
+            np.arange(PARTS * (last - first) + 1) / PARTS, np.arange(last - first + 1), self.times[first : last + 1]
+        )
+        loads_from = self.loads_from if first == 0 else begin
+        loads_to = self.loads_to if last == len(self.times) - 1 else end
+        return Stretch(times, self.step / PARTS, False, False, False, loads_from, loads_to)
+
+    def after(self, first: int) -> "Stretch":
+        """Return the same steps from one of its times on."""
+        return replace(self, times=self.times[first:], loads_from=float(self.times[first])) if first else self
 
 
 def stretches(grid: np.ndarray, amplitudes: list[FunctionOfTime]) -> tuple[Stretch, ...]:

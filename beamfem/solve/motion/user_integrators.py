@@ -14,7 +14,8 @@ _SAME = 1e-6  # of a step: accuracy of the time of the state that it returns
 
 
 class OwnSteps:
-    """Marches through time with a user-defined integrator; why: the reason of a failure.
+    """Marches through time with a user-defined integrator; why: the reason of a failure; broken: errors are
+    raised where they occur.
 
     begin [s]: time of the first step; counted (1,): number of solutions of linear systems, the iterations.
     """
@@ -26,7 +27,7 @@ class OwnSteps:
         moved = any(callable(item.value) for item in system.prescribed)
         self._solved = System(system.model, static=False, released=True) if moved else system
         self._at_rest = np.isin(system.prescribed_dofs, self._solved.prescribed_dofs)
-        self.why = ""
+        self.why, self.broken = "", False
 
     def advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """March p, p', p'' and the auxiliary acceleration (4, n) in place; return how many steps were completed.

@@ -1,0 +1,149 @@
+"""Judgement of time steps by energy, which must change by the work that is done."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from beamfem.assembly.system import System
+from beamfem.results.energy_balance import Balance, balance, driven, masses, takes_amplitudes
+from beamfem.results.solution import Solution
+from beamfem.results.status import Statistics
+
+CHUNK = 8  # steps that are judged together
+_UNRESOLVED = 0.005  # (w h)^6 of vibrations times their share of the kinetic energy; below, energies are not evaluated
+_GROWN = 5.0  # times the largest kinetic energy so far, from a chunk to the next: it may not be by work
+_SMOOTH = 1e-6  # as _UNRESOLVED, of motions that grow smoothly from rest
+_SHARE = 0.01  # of the energy exchanged: what steps may change it by in all
+_SHARE_MOVED = 0.1  # the same where supports move, whose kinks excite vibrations at any step
+_COARSE = 0.1  # of that: what short steps may change it by, however little of it is left
+_MOST_DOUBT = 0.1  # of the energy exchanged: in work, which steps that fail do not resolve at all
+_ACCURACY = 1e-14  # of coordinates, that of the iterations
+_FASTER = 1.1  # times the largest speed so far: of a state at which exchanged energies are evaluated anew
+
+
+class EnergyJudge:
+    """Judges chunks of steps; rule: of the scheme; start (3, n): state of the motion at its beginning, a time [s].
+
+    A chunk is refused if it changes the energy less work by more than half of what is left of the share `_SHARE` of the
+    energy exchanged so far. Numerical damping may also remove up to 1 - rho^2 of the kinetic and strain energy in each
+    step, with the spectral radius rho at infinite frequency. Energies are evaluated only where third differences of
+    velocities, (w h)^3 times those of a vibration w, show that steps h do not resolve vibrations that matter.
+    """
+
+    def __init__(self, system: System, rule: np.ndarray, time: float, start: np.ndarray) -> None:
+        self._system, self._masses, self._radius = system, system.table(masses), radius_at_infinity(rule)
+        self._damps = self._radius < 1.0 - 1e-6
+        self._first = self._solution(np.array([time]), start[None].copy())
+        self._conservative = not (driven(self._first) or system.damped or system.history.laws)
+        self._able = takes_amplitudes(self._first)
+        moved = any(callable(item.value) for item in system.prescribed)
+        self._share = _SHARE_MOVED if moved else _SHARE
+        self._fastest, self._speed, self._speed_evaluated = self._first, 0.0, 0.0
+        self._drift = self._total = 0.0
+        self._parts = np.empty((3, 0))  # extreme kinetic, strain and potential energies so far
+
+    def accept(self, times: np.ndarray, states: np.ndarray, coarse: bool) -> int:
+        """Return how many steps between states (m + 1, 3, n) at times (m + 1,) [s] are good.
+
+        coarse: whether a tenth of the share is always left.
+        """
+        steps = len(times) - 1
+        if steps < 3 or not self._able:
+            return steps
+        bounds = np.append(np.arange(0, steps, CHUNK), steps)
+        ends = np.maximum(bounds[1:], 3)
+        now, *before = (states[ends - back, 1] for back in range(4))
+        thirds = now - 3.0 * (before[0] - before[1]) - before[2]
+        speeds, change = np.square(now) @ self._masses, np.square(thirds) @ self._masses
+        fastest = np.maximum.accumulate(np.append(self._speed, speeds))
+        grown = (speeds > _GROWN * fastest[:-1]) & (fastest[:-1] > 0.0) & (change > _SMOOTH * speeds)
+        doubtful = ~(change <= _UNRESOLVED * fastest[1:]) | grown
+        good = steps
+        if doubtful.any():
+            chunks = [chunk for chunk, judged in zip(pairwise(bounds.tolist()), doubtful, strict=True) if judged]
+            good = self._first_refused(times, states, chunks, coarse)
+        number = int(np.argmax(np.where(ends <= good, speeds, -1.0)))
+        if ends[number] <= good and speeds[number] > self._speed:
+            self._speed, row = float(speeds[number]), ends[number : number + 1]
+            self._fastest = self._solution(times[row], states[row])
+        return good
+
+    def _first_refused(self, times: np.ndarray, states: np.ndarray, chunks: list[tuple[int, int]], coarse: bool) -> int:
+        """Return where the first chunk of steps begins that is refused, or the number of steps."""
+        self._evaluate_exchanged()
+        for group in [chunks] if self._conservative else _adjacent(chunks):
+            rows = sorted({row for first, last in group for row in range(first, last + 1)})
+            found = balance(self._solution(times[rows], states[rows]), _ACCURACY)
+            place = {row: i for i, row in enumerate(rows)}
+            for first, last in group:
+                if not self._passes(found, place[first], place[last], coarse):
+                    return first
+        return len(times) - 1
+
+    def _passes(self, found: Balance, first: int, last: int, coarse: bool) -> bool:
+        """Judge the chunk of steps between two rows of a balance, and take it into account if it is good."""
+        energy, rows = found.energy, slice(first, last + 1)
+        parts = _extremes(self._parts, energy.kinetic[rows], energy.strain[rows], energy.potential[rows])
+        exchanged = max(float(np.ptp(parts, axis=1).max()), float(parts[0, 1]))
+        if self._conservative and not self._damps:
+            self._drift = float(energy.total[first]) - self._total
+        rises, losses = found.rise[rows] - found.rise[first], found.loss[rows] - found.loss[first]
+        share = self._share * exchanged
+        left = max(share - abs(self._drift), 0.0)
+        allowed = max(0.5 * left, _COARSE * share if coarse else 0.0)
+        doubt = float(found.doubt[last] - found.doubt[first])
+        doubt = min(doubt, _MOST_DOUBT * exchanged) if not coarse else doubt
+        doubt += float(found.unsure[last] - found.unsure[first] + found.unsure[0])
+        if self._damps:
+            stored = float(energy.kinetic[first] + energy.strain[first])
+            losses = losses - (1.0 - self._radius ** (2.0 * np.arange(last - first + 1))) * stored
+        change = float(rises[-1]) if rises[-1] > 0.0 else -max(float(np.nan_to_num(losses[-1])), 0.0)
+        within = float(np.nanmax([rises, losses])) <= abs(self._drift) + share + doubt
+        if not within or (abs(change) > allowed + doubt and abs(self._drift + change) > abs(self._drift)):
+            return False
+        self._drift += change
+        if self._damps:
+            self._drift = max(self._drift, 0.0)
+        self._parts = parts
+        return True
+
+    def _evaluate_exchanged(self) -> None:
+        """Take the energies of the first and of the fastest state so far into account."""
+        if self._parts.size and self._speed <= _FASTER * self._speed_evaluated:
+            return
+        for state in (self._first, self._fastest):
+            energy = state.energy()
+            self._parts = _extremes(self._parts, energy.kinetic, energy.strain, energy.potential)
+        self._total, self._speed_evaluated = float(self._first.energy().total[0]), self._speed
+
+    def _solution(self, times: np.ndarray, states: np.ndarray) -> Solution:
+        p, v, a = states.swapaxes(0, 1)
+        return Solution(self._system.model, False, times, p, v, a, Statistics(0, 0, 0, ""))
+
+
+def _extremes(known: np.ndarray, *parts: np.ndarray) -> np.ndarray:
+    """Return the smallest and largest values (parts, 2) of known ones (parts, k) and others."""
+    values = np.concatenate([known, parts], axis=1)
+    return np.array([values.min(axis=1), values.max(axis=1)]).T
+
+
+def _adjacent(chunks: list[tuple[int, int]]) -> list[list[tuple[int, int]]]:
+    """Return chunks of steps in groups without gaps."""
+    groups: list[list[tuple[int, int]]] = []
+    for chunk in chunks:
+        if groups and groups[-1][-1][1] == chunk[0]:
+            groups[-1].append(chunk)
+        else:
+            groups.append([chunk])
+    return groups
+
+
+def radius_at_infinity(rule: np.ndarray) -> float:
+    """Return the spectral radius of a scheme for x'' + w^2 x = 0 as w grows beyond all bounds.
+
+    There x = 0, so that beta r^2 + (1/2 - 2 beta + gamma) r + 1/2 + beta - gamma = 0 and, for p'' by its mean,
+    (1 - alpha_f) r + alpha_f = 0.
+    """
+    _, _, alpha_f, gamma, beta = (float(value) for value in rule)
+    roots = np.roots([beta, 0.5 - 2.0 * beta + gamma, 0.5 + beta - gamma])
+    return float(np.abs([alpha_f / (1.0 - alpha_f), *roots]).max())

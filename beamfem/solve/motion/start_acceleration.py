@@ -1,0 +1,70 @@
+"""Accelerations at the start of a motion, and of steps after a jump of loads or of the size of steps."""
+
+import numpy as np
+from scipy.sparse import csc_array
+
+from beamfem.assembly.connectors import Motion
+from beamfem.assembly.equations import INERTIA, linearise, residual
+from beamfem.assembly.system import System
+from beamfem.assembly.viscosity import viscous_tangent
+from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
+from beamfem.solve.motion.constraints import constrained_acceleration
+
+_NEGLIGIBLE = 0.1  # of the inertia forces at the start: those that depend on the velocity after a step
+
+
+def initial_acceleration(system: System, state: np.ndarray, time: float, step: float = 0.0) -> np.ndarray:
+    """Return p'' (n,) that satisfies the equations of motion at the start; state: p, p', p'' of prescribed coordinates.
+
+    Multipliers among p are set as well. With a step [s] it solves (M + step D) p'' = unbalanced forces, the mean over
+    a step. In a beam with strong damping D, p'' itself decays within an instant, and from it the generalized-alpha
+    method would move by step^2 (1 / 2 - beta / gamma) p''. To first order in the step both are the same.
+    """
+    motion = state[:3].copy()
+    p, v, a = motion
+    free = system.free_dofs
+    multipliers = system.connectors.multipliers
+    a[free] = p[multipliers] = v[multipliers] = 0.0
+    unbalanced, mass = residual(system, p, v, a, time), _mass(system, (p, v, a), time, step)
+    if len(multipliers):
+        a[free] = constrained_acceleration(system, (p, v, a), unbalanced, mass, time)
+        state[0, multipliers], state[1, multipliers], a[multipliers] = a[multipliers], 0.0, 0.0
+        return a
+    a[free] = mass.solve(-unbalanced[free], system.rotated)
+    return a
+
+
+def mean_acceleration(system: System, state: np.ndarray, time: float, step: float) -> np.ndarray:
+    """Return p'' (n,) at the start, or its mean over the first step [s] where p'' itself is not representative.
+
+    A sudden load accelerates vibrations that the steps do not resolve as if nothing held them back. That does no harm
+    in a linear system. But where inertia forces depend on velocities, those of the velocity gained in one step, which
+    is step p'', may be as large as M p'' itself (both in the norm of M^-1). Unless they are negligible, the result a
+    satisfies (M + step^2 / 4 K) a = M p'', as the mean of the trapezoidal rule does.
+    """
+    p, v, start = state[:3]
+    free, zeros = system.free_dofs, np.zeros(len(start))
+    if len(system.connectors.multipliers):
+        return start
+    slower, resting, faster = (residual(system, p, v + way * step * start, zeros, time) for way in (-1.0, 0.0, 1.0))
+    quadratic, inertia = (
+        (0.5 * (slower + faster) - resting)[free],
+        (residual(system, p, v, start, time) - resting)[free],
+    )
+    mass = linearise(system, p, v, zeros, time, INERTIA)[1]
+    if quadratic @ mass.solve(quadratic, system.rotated) <= _NEGLIGIBLE**2 * (inertia @ start[free]):
+        return start
+    stiff = linearise(system, p, v, zeros, time, (0.25 * step**2, 0.0, 1.0))[1]
+    mean = start.copy()
+    mean[free] = stiff.solve(inertia, system.rotated)
+    return mean
+
+
+def _mass(system: System, motion: Motion, time: float, step: float) -> Tangent:
+    """Return M + step D in p, p', p'' at a time, with the damping D of materials, connectors and laws with history."""
+    if not step > 0.0:
+        return linearise(system, *motion, time, INERTIA)[1]
+    p, v, zeros = *motion[:2], np.zeros(len(motion[0]))
+    mass = linearise(system, p, zeros, zeros, time, (0.0, step, 1.0))[1]
+    viscous = viscous_tangent(system, p, v, time, step)
+    return mass if viscous is None else SparseTangent(csc_array(mass.sparse(UNROTATED) + viscous))

@@ -1,0 +1,112 @@
+"""Motions end where the physics goes on: steps that fail, or change the energy, are redone with shorter ones."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from refused_steps import CASES, ELEMENTS, UNDAMPED, double_pendulum, largest_changes, strip
+
+import beamfem as bf
+
+QUICK = {
+    ("double pendulum, 5 ms", "ShearRigid"),
+    ("double pendulum, 2 ms", "CRBF2"),
+    ("strip, 5 ms", "CRBF1"),
+    ("strip, 5 ms", "ANCF"),
+    ("strip, 1 ms", "CRBF2"),
+    ("tapered rod", "CRBF3"),
+    ("four-bar linkage", "CRBF3"),
+    ("joint removed", "ShearRigid"),
+    ("joint made a hinge", "CRBF2"),
+    ("slider-crank", "ShearRigid"),
+    ("flying beam", "ANCF-CRBF"),
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        pytest.param(*case, marks=() if case in QUICK else pytest.mark.slow, id=f"{case[0]}, {case[1]}")
+        for case in product(CASES, ELEMENTS)
+    ],
+)
+def test_the_motion_goes_on_to_its_end(name, kind):
+    motion_of, step, integrator = CASES[name]
+    options = motion_of(ELEMENTS[kind])
+    motion = bf.simulate(step=step, integrator=integrator, **options)
+    assert motion.time == pytest.approx(step * np.arange(round(options["duration"] / step) + 1))
+    statistics = motion.statistics
+    assert statistics.rejected == statistics.cuts
+    assert statistics.steps >= len(motion) - 1 + 3 * statistics.cuts  # a cut divides one step at least
+    if name == "slider-crank":
+        return  # rows do not resolve the work of its drive
+    after_the_pulse = motion[2:] if name == "flying beam" else motion
+    rise, fall = largest_changes(after_the_pulse)
+    assert rise < 0.02
+    if integrator is UNDAMPED:
+        assert fall < (0.05 if name == "flying beam" else 0.02)
+
+
+def test_rows_of_cut_steps_do_not_depend_on_which_are_kept():
+    options = {"step": 5e-3, "integrator": UNDAMPED, **strip(bf.CRBF(1))}
+    every, some = bf.simulate(**options), bf.simulate(**options, save_every=7)
+    assert every.statistics.cuts > 0
+    assert np.array_equal(some.time, every.time[[*range(0, 201, 7), 200]])
+    assert np.array_equal(some.p, every.p[[*range(0, 201, 7), 200]])
+    assert np.array_equal(some.turned, every.turned[[*range(0, 201, 7), 200]])
+
+
+def test_short_steps_are_needed_only_where_steps_fail():
+    """Until its first step that fails, a double pendulum moves as with steps that are not cut."""
+    options = {"step": 5e-3, "integrator": UNDAMPED, **double_pendulum(bf.ShearRigid())}
+    motion = bf.simulate(**options)
+    short = bf.simulate(**(options | {"duration": 0.4}))
+    assert short.statistics.cuts == 0
+    assert np.array_equal(motion.p[:81], short.p)
+    assert motion.statistics.steps < 3 * (len(motion) - 1)
+
+
+def test_a_step_of_ones_own_that_fails_is_cut():
+    class Impatient:
+        """Backward Euler steps, but none longer than a hundredth of a second."""
+
+        def step(self, motion, begin, end):
+            h = end - begin.at
+            if h > 0.011:
+                raise bf.ConvergenceError("too long", None)
+            p, v = begin.p.copy(), begin.v.copy()
+            state = [p, v, np.zeros_like(v)]
+
+            def linearise():
+                return motion.residual(*state, end), [[motion.tangent(*state, end, (1.0, 1.0 / h, 1.0 / h**2))]]
+
+            def move(change):
+                state[0][motion.free] += change[0]
+                state[1][:] = (state[0] - begin.p) / h
+                state[2][:] = (state[1] - begin.v) / h
+                return change
+
+            state[1][:], state[2][:] = 0.0, -begin.v / h
+            motion.iterate(linearise, move)
+            return bf.State(*state, end, begin.model)
+
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Rectangle(0.01, 0.01), bf.Material(1e9, 0.3, 1000.0))
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.Gravity((0.0, -9.81))])
+    motion, fine = (bf.simulate(model, 0.16, step, Impatient()) for step in (0.04, 0.01))
+    assert motion.statistics.cuts == 4
+    assert motion.statistics.steps == 16
+    np.testing.assert_allclose(motion.p, fine.p[::4], atol=1e-12)
+
+
+def test_dampers_explain_no_rise_of_energy():
+    """A damper only takes energy, whatever its force at the rows is; its spring is part of the energy."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(2), bf.Rectangle(0.02, 0.002), bf.Material(2.1e11, 0.3, 7850.0))
+    other = bf.Beam(bf.Line((0, 0.1), (1, 0.1)), 4, bf.CRBF(2), beam.section, beam.material)
+    links = [bf.SpringDamper(beam.end, other.end, 50.0, 5.0)]
+    model = bf.Model([beam, other], [bf.Clamp(beam.start), bf.Clamp(other.start)], [bf.PointForce(beam.end, (0, -1.0))],
+                     connectors=links)  # fmt: skip
+    motion = bf.simulate(model, 0.5, 1e-3, UNDAMPED)
+    rise, loss = largest_changes(motion)
+    assert rise < 1e-2
+    assert loss < 1e-2
+    assert motion.energy().total[-1] < -0.01 * np.ptp(motion.energy().potential)

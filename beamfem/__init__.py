@@ -37,9 +37,9 @@ Contents; see help(bf.Beam), for example, for details.
     From files        read_mesh LineMesh Frame read_dxf load
     Solvers           solve_static trace_equilibrium solve_buckling solve_modes simulate
                       linearise frequency_response reduce
-    Solver settings   Newton GeneralizedAlpha Gauss Radau EnergyMomentum RigidVelocity
+    Solver settings   Newton GeneralizedAlpha Gauss Radau EnergyMomentum RigidVelocity Event
     Results           Solution State Path PathState Bifurcation Modes Buckling Status
-                      LinearModel FrequencyResponse
+                      LinearModel FrequencyResponse MotionState Occurrence
     Along beams       SectionForces BeamStress Fields FieldOnBasis field_on_basis
     Studies           sweep converge
     User-defined      PointLoad LineLoad BodyLoad ImposedStrain PointSupport LineSupport Joint

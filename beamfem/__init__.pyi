@@ -107,6 +107,8 @@ from .parts.temperature import Temperature as Temperature
 from .parts.torsion_spring import TorsionSpring as TorsionSpring
 from .physics.connections import Connection as Connection
 from .results.beam_stress import BeamStress as BeamStress
+from .results.motion_state import MotionState as MotionState
+from .results.motion_state import Occurrence as Occurrence
 from .results.path import Bifurcation as Bifurcation
 from .results.path import Path as Path
 from .results.path import PathState as PathState
@@ -144,6 +146,7 @@ from .solve.motion.dynamics import simulate as simulate
 from .solve.motion.energy_momentum import EnergyMomentum as EnergyMomentum
 from .solve.motion.equations_of_motion import EquationsOfMotion as EquationsOfMotion
 from .solve.motion.equations_of_motion import Integrator as Integrator
+from .solve.motion.events import Event as Event
 from .solve.motion.integrators import GeneralizedAlpha as GeneralizedAlpha
 from .solve.motion.integrators import Scheme as Scheme
 from .solve.newton.newton import Newton as Newton

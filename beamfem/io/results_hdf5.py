@@ -171,7 +171,7 @@ def _read(file: Any) -> Solution:
         ended = f"{statistics.ended}; the file holds {rows} of {all_rows} rows because its writing was cut off"
         statistics = replace(statistics, ended=ended, status=Status.STOPPED)
     _require_whole(file, rows, (at, p, v, a))
-    optional_arrays = {name: read_checked(file, name)[:rows] for name in _OPTIONAL if name in file}
+    optional_arrays: dict[str, Any] = {name: read_checked(file, name)[:rows] for name in _OPTIONAL if name in file}
     return load_path(file, Solution(model, static, at, p, v, a, statistics, **optional_arrays))
 
 

@@ -116,7 +116,7 @@ class Path(Solution):
 
     Parameters
     ----------
-    model, static, at, p, v, a, statistics, stability, turned, loaded
+    model, static, at, p, v, a, statistics, stability, turned, loaded, events
         See `Solution`.
     limit_points : tuple of PathState
         Points at which the load factor has an extremum.

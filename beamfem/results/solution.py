@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from beamfem.results.beam_stress import BeamStress, Part, Peak
     from beamfem.results.energies import Energy
     from beamfem.results.energy_balance import EnergyDrift
+    from beamfem.results.motion_state import Occurrence
     from beamfem.results.section_forces import SectionForces
 
 
@@ -105,6 +106,8 @@ class Solution:
         Rotations at the starts of beams, see `full_turns.start_rotations`, if the solver has counted them between rows.
     loaded : array, [-], (steps,), optional
         Load factor of the loads in a motion about an equilibrium.
+    events : tuple of Occurrence, optional
+        Events of a motion in the order of time, see `simulate`.
 
     Examples
     --------
@@ -123,6 +126,7 @@ class Solution:
     stability: np.ndarray | None = None
     turned: np.ndarray | None = None
     loaded: np.ndarray | None = None
+    events: tuple["Occurrence", ...] = ()
 
     def __post_init__(self) -> None:
         from beamfem.results.check_arrays import made_read_only, require_rows

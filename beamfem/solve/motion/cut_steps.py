@@ -70,7 +70,7 @@ class StepCutter:
     pairs (m, 2): see `full_turns.rotation_pairs`; end [s]: of the motion; size: of a call of compiled code, in steps,
     which grows up to `largest`; judge: of energies, if there is one; relaxed: whether a motion starts with mean
     accelerations, see `initial_acceleration`; cuts: how many times steps were redone; further: how many steps more
-    than without cuts there are; why: the reason of a failure.
+    than without cuts there are; why: the reason of a failure; stopped: whether the motion was stopped.
     """
 
     system: System
@@ -85,6 +85,7 @@ class StepCutter:
     cuts: int = 0
     further: int = 0
     why: str = ""
+    stopped: bool = False
 
     def take(
         self,
@@ -93,15 +94,16 @@ class StepCutter:
         state: np.ndarray,
         rotations: np.ndarray,
         table: Rows | None,
-        reached: Callable[[int, Rows], None] = lambda done, rows: None,
+        reached: Callable[[int, Rows], bool] = lambda done, rows: False,
         level: int = 0,
         jumps: bool = True,
     ) -> int:
         """March a state (4, n) and rotations (m,) through a stretch in place; return how many steps were completed.
 
         prescribed (steps, 3, nh): prescribed coordinates and their rates at the ends of the steps; table: rows for the
-        states, None if only `reached` needs them, which takes how many steps are done and the rows of the last ones;
-        level: how many times steps were cut; jumps: whether the acceleration may jump at the beginning.
+        states, None if only `reached` needs them, which takes how many steps are done and the rows of the last ones,
+        and returns whether to stop there; level: how many times steps were cut; jumps: whether the acceleration may
+        jump at the beginning.
         """
         done, steps = 0, len(part.times) - 1
         size = self.size if level == 0 else steps
@@ -116,8 +118,10 @@ class StepCutter:
                     rows = Rows.empty(count, state, rotations) if table is None else table.between(done, done + count)
                     good, window = self._advance(motion, part, prescribed, (begin, state, rotations), rows, done, level)
                     done += good
-                    reached(done, rows.between(0, good))
+                    self.stopped = reached(done, rows.between(0, good))
                     motion.raise_error()
+                    if self.stopped:
+                        return done
                     if good < count and window is None:
                         self.why = f"{motion.why}, also with steps of {part.step:.3g} {self.system.model.unit('s')}"
                         return done
@@ -125,8 +129,8 @@ class StepCutter:
             if window is not None:
                 good = self._redo(window, part, state, rotations, level, jumps)
                 done = window.first + good
-                reached(done, window.rows.between(0, good))
-                if done < window.last:
+                self.stopped = reached(done, window.rows.between(0, good))
+                if done < window.last or self.stopped:
                     return done
         if level == 0:
             self.size = max(size, self.size)
@@ -202,10 +206,10 @@ class StepCutter:
             jumps and not window.first,
         )
         state[:], rotations[:] = window.begin, window.rows.rotations[0]
-        self._change_size(part, state)
+        self.change_size(part, state)
         if jumps:
             state[2] = state[3] = initial_acceleration(self.system, state, part.loads_from)
-        rows, given = Rows.empty(PARTS * count, state, rotations), self._prescribed(shorter, part.step)
+        rows, given = Rows.empty(PARTS * count, state, rotations), self.prescribed(shorter, part.step)
         done = self.take(shorter, given, state, rotations, rows, level=level + 1, jumps=jumps)
         good, complete = done // PARTS, done == PARTS * count
         if complete or good > window.kept:
@@ -219,17 +223,17 @@ class StepCutter:
             state[:3], rotations[:] = window.rows.states[good], window.rows.rotations[good]
             return good
         self.further += (PARTS - 1) * count
-        self._change_size(shorter, state)
+        self.change_size(shorter, state)
         return good
 
-    def _change_size(self, part: Stretch, state: np.ndarray) -> None:
+    def change_size(self, part: Stretch, state: np.ndarray) -> None:
         """Prepare a state (4, n) after steps of a stretch for steps of another size."""
         if is_scheme(self.integrator):
             keep_momentum(self.integrator.rule(part.step), state)
         state[3] = state[2]
         self.statistics.begin_anew()
 
-    def _prescribed(self, part: Stretch, before: float) -> np.ndarray:
+    def prescribed(self, part: Stretch, before: float) -> np.ndarray:
         """Return prescribed coordinates (steps, 3, nh) at the ends of the steps between longer ones of a size [s]."""
         beside = before * np.arange(1.0, 3.0)
         earlier, later = part.times[0] - beside[::-1], part.times[-1] + beside

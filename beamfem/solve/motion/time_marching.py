@@ -11,6 +11,7 @@ from beamfem.solve.motion.cut_steps import Rows, StepCutter, keep_momentum
 from beamfem.solve.motion.energy_judgement import EnergyJudge
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.integrators import Scheme, is_scheme
+from beamfem.solve.motion.saved_rows import SavedRows
 from beamfem.solve.motion.start_acceleration import initial_acceleration
 from beamfem.solve.motion.time_steps import Stretch
 
@@ -67,14 +68,15 @@ def march(
     state: np.ndarray,
     record: Record,
     last: Last,
+    saved: SavedRows | None = None,
 ) -> Failure | None:
     """March from p, p', p'' and the auxiliary acceleration (4, n), in place, through stretches of steps.
 
-    prescribed (m + 1, 3, nh): see `prescribed_motion`, at the ends of all steps; last: updated after each step. Return
-    where and why it failed, or None.
+    prescribed (m + 1, 3, nh): see `prescribed_motion`, at the ends of all steps; last: updated after each step; saved:
+    takes all steps. Return where and why it failed, or None.
     """
     row, rotations = 0, record.rotations[0].copy()
-    cutter = _cutter(system, integrator, parts, state, record)
+    cutter = cutter_of(system, integrator, parts, state, record)
     with progress("time [s]", float(parts[-1].times[-1])) as report:
         for number, part in enumerate(parts):
             steps, first = len(part.times) - 1, last.step[0]
@@ -85,19 +87,25 @@ def march(
                 record.statistics.begin_anew()
             direct = part.whole and record.every == 1
 
-            def reached(done: int, rows: Rows, part: Stretch = part, first: int = first) -> None:
+            def reached(done: int, rows: Rows, part: Stretch = part, first: int = first) -> bool:
                 record.cuts, record.further = cutter.cuts, cutter.further
+                if saved is not None:
+                    saved.keep(part.times[done - len(rows.states) + 1 : done + 1], rows)
+                stop = saved is not None and saved.stopped
                 if not part.whole or len(rows.states) == 1:
-                    return
+                    return stop
                 _store(record, rows, first + done - len(rows.states) + 1)
                 last.reach(first + done, rows.states[-1], rows.rotations[-1])
                 report(float(part.times[done]))
+                return stop
 
             table = Rows(record.states, record.rotations).between(first, first + steps) if direct else None
             if not part.whole:
                 table = Rows.empty(steps, state, rotations)
             done = cutter.take(part, prescribed[row + 1 : row + steps + 1], state, rotations, table, reached)
             row += done
+            if cutter.stopped:
+                return None
             if done < steps:
                 return Failure(float(part.times[done]), float(part.times[done + 1]), cutter.why)
             if part.ends_whole and not part.whole:
@@ -118,9 +126,10 @@ def _store(record: Record, rows: Rows, first: int) -> None:
         record.states[stored], record.rotations[stored] = rows.states[inside], rows.rotations[inside]
 
 
-def _cutter(
+def cutter_of(
     system: System, integrator: Scheme | Integrator, parts: tuple[Stretch, ...], state: np.ndarray, record: Record
 ) -> StepCutter:
+    """Return what takes the steps of a motion from a state (4, n)."""
     damped = system.damped or bool(system.connectors.items)
     # see initial_acceleration; laws with history know rates by differences only
     relaxed = is_scheme(integrator) and (bool(system.history.laws) or (damped and not _keeps_rates(integrator)))

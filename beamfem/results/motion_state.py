@@ -1,0 +1,126 @@
+"""One state of a motion, with results without the axis of steps."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.cached_properties import cached_property
+from beamfem.model.beam import Point
+from beamfem.results.solution import Solution, State
+from beamfem.results.status import Statistics
+
+
+@dataclass(frozen=True, eq=False)
+class MotionState(State):
+    """One state of a motion, as the function of an `Event` gets it: results as those of a Solution in one row.
+
+    Parameters
+    ----------
+    p, v, a : array, (n,)
+        Coordinates and their rates, see `State`.
+    at : float, [s]
+        Time.
+    model : Model
+        The model.
+    turned : array, [rad], (m,), optional
+        See `State`.
+
+    Examples
+    --------
+    >>> event = bf.Event("tip is below", lambda state: state.position(beam.end)[1] + 0.01)
+    >>> bf.simulate(model, duration=0.02, step=0.001, events=[event]).events[0].row
+    7
+    """
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}(time {self.at:.6g} {self.model.unit('s')}, of {self.model!r})"
+
+    @cached_property
+    def _alone(self) -> Solution:
+        rows = (np.array([self.at]), self.p[None], self.v[None], self.a[None])
+        turned = None if self.turned is None else self.turned[None]
+        return Solution(self.model, False, *rows, Statistics(0, 0, 0, "one state of a motion"), turned=turned)
+
+    @property
+    def time(self) -> float:
+        """Time [s] of the state."""
+        return self.at
+
+    def position(self, point: Point) -> np.ndarray:
+        """Return the position of a point.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam.
+
+        Returns
+        -------
+        array, [m], (2,)
+            Position.
+        """
+        return np.asarray(self._alone.position(point)[0])
+
+    def displacement(self, point: Point) -> np.ndarray:
+        """Return the displacement of a point from the reference configuration.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam.
+
+        Returns
+        -------
+        array, [m], (2,)
+            Displacement.
+        """
+        return np.asarray(self._alone.displacement(point)[0])
+
+    def velocity(self, point: Point) -> np.ndarray:
+        """Return the velocity of a point.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam.
+
+        Returns
+        -------
+        array, [m/s], (2,)
+            Velocity.
+        """
+        return np.asarray(self._alone.velocity(point)[0])
+
+    def rotation(self, point: Point) -> float:
+        """Return the rotation of the section, counter-clockwise positive.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam.
+
+        Returns
+        -------
+        float, [rad]
+            Rotation from the reference.
+        """
+        return float(self._alone.rotation(point)[0])
+
+
+@dataclass(frozen=True)
+class Occurrence:
+    """An event that has occurred in a motion.
+
+    Parameters
+    ----------
+    name : str
+        Name of the event.
+    time : float, [s]
+        When.
+    row : int
+        The first row of the motion at or after that time.
+    """
+
+    name: str
+    time: float
+    row: int

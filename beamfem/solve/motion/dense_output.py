@@ -1,0 +1,41 @@
+"""States of a motion between the ends of its steps."""
+
+import numpy as np
+
+from beamfem.assembly.system import System
+
+
+def between(system: System, times: np.ndarray, states: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Return states (k, 3, n) at times (k,) [s] within steps from states (m + 1, 3, n) at their ends (m + 1,) [s].
+
+    Cubic polynomials have p and p', or p' and p'', of both ends; p'' is linear. Their errors are h^4 / 384 times the
+    fourth derivatives. Multipliers and history variables, which have no rates, are linear, and coordinates that
+    supports prescribe have their values.
+    """
+    step = np.clip(np.searchsorted(times, at, side="left") - 1, 0, len(times) - 2)
+    size = (times[step + 1] - times[step])[:, None]
+    share = (at[:, None] - times[step][:, None]) / size
+    p, v, a = (states[:, k] for k in range(3))
+    result = np.stack(
+        [
+            _hermite(p[step], v[step], p[step + 1], v[step + 1], size, share),
+            _hermite(v[step], a[step], v[step + 1], a[step + 1], size, share),
+            (1.0 - share) * a[step] + share * a[step + 1],
+        ],
+        axis=1,
+    )
+    linear = np.concatenate([system.connectors.multipliers, system.history.numbers]).astype(np.int64)
+    result[:, 0, linear] = ((1.0 - share) * p[step] + share * p[step + 1])[:, linear]
+    result[:, 1:, linear] = 0.0
+    if any(callable(item.value) for item in system.prescribed):
+        result[:, 0, system.prescribed_dofs] = [system.prescribed_values(time) for time in at.tolist()]
+    return result
+
+
+def _hermite(
+    x0: np.ndarray, v0: np.ndarray, x1: np.ndarray, v1: np.ndarray, size: np.ndarray, share: np.ndarray
+) -> np.ndarray:
+    """Return the cubic polynomial with values x and slopes v at both ends of an interval."""
+    s, change = share, x1 - x0
+    bend = s * (1.0 - s) * ((1.0 - s) * (size * v0 - change) - s * (size * v1 - change))
+    return np.asarray((1.0 - s) * x0 + s * x1 + bend)

@@ -1,0 +1,108 @@
+"""Steps whose size follows an estimate of their error."""
+
+import numpy as np
+
+from beamfem.progress import progress
+from beamfem.solve.motion.cut_steps import Rows, StepCutter
+from beamfem.solve.motion.energy_judgement import CHUNK
+from beamfem.solve.motion.saved_rows import SavedRows
+from beamfem.solve.motion.start_acceleration import initial_acceleration
+from beamfem.solve.motion.time_marching import Failure, Record
+from beamfem.solve.motion.time_steps import Stretch
+
+_SAFETY = 0.8  # of the step that would have the error allowed
+_SAME = 1.25  # times the step, up to which it is kept, with its tangent
+_LARGEST, _SMALLEST = 4.0, 0.2  # changes of the step at once
+_ROUND_OFF = 2e-14  # of the model: error of a step that may be round-off
+_MEAN = 16  # steps whose errors are added
+_CANCELLED = 4.0  # times the tolerance that the estimates add up to: errors turn with the motion, and partly cancel
+_LONGEST = 64  # steps of equal size, at the end of which the error is judged
+_SHORTEST = 1e-12  # of the motion: a step that fails however short it is
+
+
+def march_to_tolerance(
+    cutter: StepCutter,
+    parts: tuple[Stretch, ...],
+    state: np.ndarray,
+    rotations: np.ndarray,
+    tolerance: float,
+    saved: SavedRows,
+    record: Record,
+) -> Failure | None:
+    """March a state (4, n) and rotations (m,) through stretches of time, in place; return where it failed, or None.
+
+    The error of a step h is estimated by p - p0 - h p0' - h^2 (p0'' / 3 + p'' / 6), as accelerations that are linear in
+    it would have none (Zienkiewicz and Xie 1991). It may be the share of the tolerance that the step is of the motion,
+    so that errors add up to the tolerance at most.
+    """
+    duration, step = cutter.end, 0.0
+    with progress("time [s]", duration) as report:
+        for number, part in enumerate(parts):
+            time, end, jumps = float(part.times[0]), float(part.times[-1]), True
+            if number > 0:
+                state[2] = state[3] = initial_acceleration(cutter.system, state, part.loads_from)
+                step *= _SMALLEST
+            count = CHUNK
+            while time < end:
+                step = min(step or _first_step(cutter, state, tolerance), 0.25 * (end - part.times[0]))
+                steps = min(count, int(np.ceil((end - time) / step * (1.0 - 1e-9))))
+                size = (end - time) / steps if time + 1.001 * steps * step >= end else step
+                times = time + size * np.arange(steps + 1.0)
+                last = times[-1] > end - 0.5 * size
+                times[-1] = end if last else times[-1]
+                stretch = Stretch(
+                    times, size, False, False, False,
+                    part.loads_from if jumps else time, part.loads_to if last else float(times[-1]),
+                )  # fmt: skip
+                before, turned, rows = state.copy(), rotations.copy(), Rows.empty(steps, state, rotations)
+                counted = cutter.cuts, cutter.further
+                done = cutter.take(stretch, cutter.prescribed(stretch, size), state, rotations, rows, jumps=jumps)
+                if done < steps:
+                    saved.keep(times[: done + 1], rows.between(0, done))
+                    return Failure(float(times[done]), float(times[done + 1]), cutter.why)
+                allowed = max(_CANCELLED * tolerance * size / duration, _ROUND_OFF)
+                ratio = _error(cutter, rows.states, size) / allowed
+                best = _SAFETY * size / np.sqrt(max(ratio, 1e-4))
+                if ratio > 1.0 and size > _SHORTEST * duration:
+                    state[:], rotations[:] = before, turned
+                    cutter.cuts, cutter.further = counted[0] + 1, counted[1]
+                    record.cuts, step, count = cutter.cuts, max(best, _SMALLEST * size), CHUNK
+                    continue
+                cutter.further += steps
+                cutter.change_size(stretch, state)
+                record.cuts, record.further = cutter.cuts, cutter.further
+                time, jumps = float(times[-1]), False
+                saved.keep(times, rows)
+                report(time)
+                if saved.stopped:
+                    return None
+                count = min(2 * count, _LONGEST) if best < _SAME * step else CHUNK
+                if best > _SAME * step or best < step:
+                    step = min(best, _LARGEST * size)
+    return None
+
+
+def _first_step(cutter: StepCutter, state: np.ndarray, tolerance: float) -> float:
+    """Return a step [s] in which accelerations, and velocities, move the model by little."""
+    scale, unknown = cutter.system.scale, cutter.system.free_dofs
+    moved, pushed = (float(np.max(np.abs(row / scale)[unknown], initial=0.0)) for row in state[1:3])
+    bounds = [0.01 * cutter.end]
+    bounds += [np.sqrt(np.sqrt(tolerance) / pushed)] if pushed > 0.0 else []
+    bounds += [np.sqrt(tolerance) / moved] if moved > 0.0 else []
+    return float(min(bounds))
+
+
+def _error(cutter: StepCutter, states: np.ndarray, size: float) -> float:
+    """Return the largest mean of the estimated errors of `_MEAN` steps between states (m + 1, 3, n), per scale.
+
+    Errors of vibrations of a few steps a period cancel in it.
+    """
+    system = cutter.system
+    p, v, a = states.swapaxes(0, 1)
+    linear = size * v[:-1] + size**2 * (a[:-1] / 3.0 + a[1:] / 6.0)
+    error = (np.diff(p, axis=0) - linear) / system.scale
+    error[:, system.connectors.multipliers] = error[:, system.history.numbers] = 0.0
+    error, steps = error[:, system.free_dofs], len(error)
+    firsts = np.arange(0, max(steps - _MEAN // 2, 1), _MEAN)
+    counts = np.diff(np.append(firsts, steps))
+    return float(np.max(np.abs(np.add.reduceat(error, firsts, axis=0)) / counts[:, None], initial=0.0))

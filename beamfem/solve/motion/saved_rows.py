@@ -1,0 +1,65 @@
+"""Rows of a motion that are kept: all steps, or states at given times, between the ends of steps as well."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from beamfem.assembly.system import System
+from beamfem.kernels.motion_steps import count_rotations
+from beamfem.solve.motion.cut_steps import Rows
+from beamfem.solve.motion.dense_output import between
+from beamfem.solve.motion.events import Watch
+
+
+@dataclass
+class SavedRows:
+    """Times, states (3, n) and rotations (m,) [rad] of the rows so far, and events.
+
+    at (k,) [s]: times of rows, ascending, None for a row at the end of every step; stopped: whether
+    an event has stopped the motion.
+    """
+
+    system: System
+    pairs: np.ndarray
+    at: np.ndarray | None
+    watch: Watch
+    times: list[float] = field(default_factory=list)
+    states: list[np.ndarray] = field(default_factory=list)
+    rotations: list[np.ndarray] = field(default_factory=list)
+    stopped: bool = field(default=False, init=False)
+
+    def begin(self, state: np.ndarray, rotations: np.ndarray) -> None:
+        """Take the beginning (3, n) of the motion."""
+        self.watch.begin(0.0, state)
+        if self.at is None or self.at[0] == 0.0:
+            self.times, self.states, self.rotations = [0.0], [state.copy()], [rotations.copy()]
+
+    def keep(self, times: np.ndarray, rows: Rows) -> None:
+        """Take steps that end at times (m + 1,) [s], with the rows at these; the first row is known already."""
+        if len(times) < 2:
+            return
+        end = self.watch.look(times, rows.states)
+        self.stopped = end is not None
+        if end is not None:
+            self._keep_at(times, rows, self._wanted(times, end), end)
+        elif self.at is None:
+            self.times += times[1:].tolist()
+            self.states += list(rows.states[1:].copy())
+            self.rotations += list(rows.rotations[1:].copy())
+        else:
+            self._keep_at(times, rows, self.at[(self.at > times[0]) & (self.at <= times[-1])])
+
+    def _wanted(self, times: np.ndarray, end: float) -> np.ndarray:
+        own = times[1:] if self.at is None else self.at
+        return np.append(own[(own > times[0]) & (own < end)], end)
+
+    def _keep_at(self, times: np.ndarray, rows: Rows, at: np.ndarray, end: float | None = None) -> None:
+        if not len(at):
+            return
+        for time, state in zip(at.tolist(), between(self.system, times, rows.states, at), strict=True):
+            before = max(int(np.searchsorted(times, time, side="left")) - 1, 0)
+            turned = rows.rotations[before].copy()
+            count_rotations(len(self.pairs), self.pairs, rows.states[before], state, turned)
+            self.times.append(time)
+            self.states.append(state)
+            self.rotations.append(turned)

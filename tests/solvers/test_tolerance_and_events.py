@@ -1,0 +1,133 @@
+"""Steps that follow a tolerance, rows at given times, and events between the ends of steps."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import beamfem as bf
+
+RUBBER, SECTION = bf.Material(0.7e6, 0.3, 5540.0), bf.Section(1.6e-3, 8.533e-6)
+
+
+@pytest.fixture(scope="module")
+def pendulum():
+    beam = bf.Beam(bf.Line((0, 0), (1.2, 0)), 4, bf.CRBF(2), SECTION, RUBBER)
+    return beam, bf.Model([beam], [bf.Pin(beam.start)], [bf.Gravity((0.0, -9.81))])
+
+
+def driven_arm():
+    """A plastic arm whose hub swings."""
+    plastic = bf.Material(2.5e9, 0.35, 1150.0)
+    arm = bf.Beam(bf.Line((0, 0), (0.5, 0)), 2, bf.CRBF(3), bf.Rectangle(0.02, 0.02), plastic)
+    hub = bf.Prescribed(arm.start, ux=0.0, uy=0.0, rotation=lambda t: 0.5 * np.sin(5.0 * t) ** 2)
+    return arm, bf.Model([arm], [hub])
+
+
+def slow_links():
+    """Two bars with a hinge between them, as conditions."""
+    bars = [bf.Beam(bf.Line((x, 0), (x + 0.5, 0)), 2, bf.CRBF(2), SECTION, RUBBER) for x in (0.0, 0.6)]
+    link = bf.Link(bars[0].end, bars[1].start)
+    return bars[1], bf.Model(bars, [bf.Pin(bars[0].start)], [bf.Gravity((0.0, -9.81))], connectors=[link])
+
+
+@pytest.mark.parametrize("motion_of", [None, driven_arm, slow_links], ids=["pendulum", "driven arm", "link"])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4, pytest.param(1e-5, marks=pytest.mark.slow)])
+def test_the_error_is_that_of_the_tolerance(pendulum, motion_of, tolerance):
+    """Against steps that are far shorter."""
+    beam, model = pendulum if motion_of is None else motion_of()
+    at = np.linspace(0.0, 0.4, 9)
+    fine = bf.simulate(model, 0.4, 2e-5, bf.GeneralizedAlpha(1.0), save_every=2500)
+    motion = bf.simulate(model, 0.4, tolerance=tolerance, save_at=at)
+    assert np.array_equal(motion.time, at)
+    size = max(np.ptp(np.array([mesh.position for mesh in model.meshes]).reshape(-1, 2), axis=0).max(), 0.5)
+    error = np.abs(motion.position(beam.end) - fine.position(beam.end)).max() / size
+    assert error < 5.0 * tolerance
+    assert motion.status is bf.Status.COMPLETED
+
+
+def test_a_tighter_tolerance_takes_shorter_steps(pendulum):
+    model = pendulum[1]
+    motions = [bf.simulate(model, 0.5, tolerance=tolerance) for tolerance in (1e-3, 1e-4, 1e-5)]
+    numbers = [motion.statistics.steps for motion in motions]
+    assert [len(motion) - 1 for motion in motions] == numbers  # each step is a row
+    assert all(2.0 < tight / loose < 8.0 for loose, tight in pairwise(numbers))
+    for motion in motions:
+        assert motion.time[-1] == pytest.approx(0.5, rel=1e-12)
+
+
+def test_steps_end_at_the_kinks_of_loads():
+    """A pulse of 1 ms in a motion of 1 s: its impulse is found, and steps are short beside it."""
+    steel = bf.Material(2e11, 0.3, 7800.0)
+    rod = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Circle(0.02), steel)
+    pulse = bf.Piecewise(lambda t: float(0.3004 < t < 0.3014), (0.3004, 0.3014))
+    model = bf.Model([rod], loads=[bf.PointForce(rod.at(0.5), (0.0, 100.0), amplitude=pulse)])
+    motion = bf.simulate(model, 1.0, tolerance=1e-4)
+    assert motion.linear_momentum()[-1, 1] == pytest.approx(0.1, rel=1e-6)
+    assert np.abs(motion.time[:, None] - [0.3004, 0.3014]).min(axis=0).max() < 1e-9
+
+
+def test_rows_between_steps_are_as_accurate_as_the_steps(pendulum):
+    model = pendulum[1]
+    at = [0.0, 0.01234, 0.1, 0.2718, 0.31415]
+    rows = bf.simulate(model, 0.4, 2e-3, save_at=at)
+    whole, fine = (bf.simulate(model, 0.4, step) for step in (2e-3, 1e-5))
+    nearest = np.rint(np.array(at) / 1e-5).astype(int)
+    error = np.abs(whole.p[::2] - fine.p[::400]).max()
+    assert np.abs(rows.p - fine.p[nearest]).max() < 2.0 * error
+    assert np.abs(rows.v - fine.v[nearest]).max() < 2.0 * np.abs(whole.v[::2] - fine.v[::400]).max()
+    np.testing.assert_allclose(rows.p[2], whole.p[50], atol=1e-14)
+    assert rows.statistics.steps == 200
+
+
+def test_prescribed_coordinates_have_their_values_between_steps():
+    arm, model = driven_arm()
+    at = np.linspace(0.0, 0.4, 37)
+    motion = bf.simulate(model, 0.4, 0.01, save_at=at)
+    np.testing.assert_allclose(motion.rotation(arm.start), 0.5 * np.sin(5.0 * at) ** 2, atol=1e-14)
+
+
+@pytest.mark.parametrize("how", [{"step": 1e-3}, {"step": 1e-3, "save_every": 40}, {"tolerance": 1e-5}])
+def test_events_are_located_between_steps(pendulum, how):
+    beam, model = pendulum
+    turns = bf.Event("turns", lambda state: state.velocity(beam.end)[1])
+    motion = bf.simulate(model, 2.0, events=[turns], **how)
+    fine = bf.simulate(model, 2.0, 1e-4)
+    speed = fine.velocity(beam.end)[:, 1]
+    crossed = np.flatnonzero(speed[1:-1] * speed[2:] < 0.0) + 1
+    at = fine.time[crossed] + 1e-4 * speed[crossed] / (speed[crossed] - speed[crossed + 1])
+    np.testing.assert_allclose([event.time for event in motion.events], at, atol=3e-4)
+    for event in motion.events:
+        assert event.name == "turns"
+        assert motion.time[event.row - 1] < event.time <= motion.time[event.row]
+    rising = bf.Event("turns", turns.function, rising=True)
+    upwards = bf.simulate(model, 2.0, events=[rising], **how).events
+    assert [event.time for event in upwards] == [event.time for event in motion.events[::2]]
+
+
+@pytest.mark.parametrize("how", [{"step": 1e-3}, {"step": 1e-3, "save_every": 7}, {"tolerance": 1e-4}])
+def test_an_event_may_end_the_motion(pendulum, how):
+    beam, model = pendulum
+    stop = bf.Event("below", lambda state: state.position(beam.end)[1] + 1.0, stop=True)
+    motion = bf.simulate(model, 2.0, events=[stop], **how)
+    assert motion.position(beam.end)[-1, 1] == pytest.approx(-1.0, abs=1e-9)
+    assert motion.events[0].time == motion.time[-1]
+    assert motion.events[0].row == len(motion) - 1
+    assert motion.status is bf.Status.COMPLETED
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({}, "needs a step"),
+        ({"tolerance": -1.0}, "tolerance must be greater than zero"),
+        ({"step": 0.1, "save_at": [0.2, 0.1]}, "ascending"),
+        ({"step": 0.1, "save_at": [0.0, 3.0]}, "within the motion"),
+        ({"step": 0.1, "save_at": [0.1], "save_every": 2}, "exclude each other"),
+        ({"tolerance": 1e-3, "save_every": 2}, "save_every counts fixed steps"),
+        ({"step": 0.1, "events": [3]}, "must be Events"),
+    ],
+)
+def test_what_does_not_fit_is_refused(pendulum, options, message):
+    with pytest.raises(bf.InputError, match=message):
+        bf.simulate(pendulum[1], 1.0, **options)

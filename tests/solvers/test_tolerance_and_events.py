@@ -131,3 +131,28 @@ def test_an_event_may_end_the_motion(pendulum, how):
 def test_what_does_not_fit_is_refused(pendulum, options, message):
     with pytest.raises(bf.InputError, match=message):
         bf.simulate(pendulum[1], 1.0, **options)
+
+
+@pytest.mark.parametrize("integrator", [bf.Radau(3), bf.Gauss(2)], ids=["Radau", "Gauss"])
+@pytest.mark.parametrize("motion_of", [None, slow_links], ids=["pendulum", "link"])
+def test_collocation_follows_a_tolerance(pendulum, motion_of, integrator):
+    """Rows between its long steps are of degree 5."""
+    beam, model = pendulum if motion_of is None else motion_of()
+    at = np.linspace(0.0, 0.4, 9)
+    fine = bf.simulate(model, 0.4, 2e-3, bf.Gauss(4), save_every=25).position(beam.end)
+    errors = []
+    for tolerance in (1e-4, 1e-6):
+        motion = bf.simulate(model, 0.4, tolerance=tolerance, integrator=integrator, save_at=at)
+        assert np.array_equal(motion.time, at)
+        errors.append(np.abs(motion.position(beam.end) - fine).max())
+        assert errors[-1] < 5.0 * tolerance
+    assert motion.statistics.steps < 400
+
+
+def test_an_integrator_without_an_order_has_no_estimate(pendulum):
+    class Plain:
+        def step(self, motion, begin, end):
+            raise AssertionError
+
+    with pytest.raises(bf.InputError, match="needs an attribute order"):
+        bf.simulate(pendulum[1], 1.0, tolerance=1e-3, integrator=Plain())

@@ -90,6 +90,11 @@ class Gauss:
     def __post_init__(self) -> None:
         object.__setattr__(self, "stages", number_below("stages of Gauss", self.stages, 7, 1))
 
+    @property
+    def order(self) -> int:
+        """Order of positions, 2 s."""
+        return 2 * self.stages
+
     def run(self) -> "CollocationRun":
         """Return the integrator of one motion, which keeps its factors from step to step."""
         return CollocationRun(_rule(gauss(self.stages)[0]))
@@ -126,6 +131,11 @@ class Radau:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "stages", number_below("stages of Radau", self.stages, 6, 1))
+
+    @property
+    def order(self) -> int:
+        """Order of positions, 2 s - 1."""
+        return 2 * self.stages - 1
 
     def run(self) -> "CollocationRun":
         """Return the integrator of one motion, which keeps its factors from step to step."""

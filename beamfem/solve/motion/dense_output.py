@@ -5,12 +5,12 @@ import numpy as np
 from beamfem.assembly.system import System
 
 
-def between(system: System, times: np.ndarray, states: np.ndarray, at: np.ndarray) -> np.ndarray:
+def between(system: System, times: np.ndarray, states: np.ndarray, at: np.ndarray, smooth: bool = False) -> np.ndarray:
     """Return states (k, 3, n) at times (k,) [s] within steps from states (m + 1, 3, n) at their ends (m + 1,) [s].
 
     Cubic polynomials have p and p', or p' and p'', of both ends; p'' is linear. Their errors are h^4 / 384 times the
     fourth derivatives. Multipliers and history variables, which have no rates, are linear, and coordinates that
-    supports prescribe have their values.
+    supports prescribe have their values. smooth: whether p is of degree 5, with p'' of both ends too.
     """
     step = np.clip(np.searchsorted(times, at, side="left") - 1, 0, len(times) - 2)
     size = (times[step + 1] - times[step])[:, None]
@@ -24,6 +24,11 @@ def between(system: System, times: np.ndarray, states: np.ndarray, at: np.ndarra
         ],
         axis=1,
     )
+    if smooth:  # p'' of the cubic polynomial is added where it differs
+        change, share_left = (p[step + 1] - p[step]) / size**2, 1.0 - share
+        first = a[step] - 6.0 * change + (4.0 * v[step] + 2.0 * v[step + 1]) / size
+        last = a[step + 1] + 6.0 * change - (2.0 * v[step] + 4.0 * v[step + 1]) / size
+        result[:, 0] += 0.5 * size**2 * (share * share_left) ** 2 * (share_left * first + share * last)
     linear = np.concatenate([system.connectors.multipliers, system.history.numbers]).astype(np.int64)
     result[:, 0, linear] = ((1.0 - share) * p[step] + share * p[step + 1])[:, linear]
     result[:, 1:, linear] = 0.0

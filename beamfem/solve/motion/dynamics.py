@@ -78,7 +78,8 @@ def simulate(
         Keep every n-th state and the last one.
     tolerance : float, [-], optional
         Error of positions that estimates of all steps add up to at most, relative to the size of the model. The steps
-        are as long as it allows; each is a row, unless `step` or `save_at` is given. Not for an `Integrator`.
+        are as long as it allows; each is a row, unless `step` or `save_at` is given. A user-defined `Integrator` needs
+        the attribute `order` for it.
     save_at : array, [s], (rows,), optional
         Times of the rows, ascending, between the ends of steps as well.
     events : sequence of Event, optional
@@ -127,9 +128,9 @@ def simulate(
     events = tuple(events)
     if not all(isinstance(event, Event) for event in events):
         raise InputError(f"events must be Events, got {shown(events)}")
-    if user_defined and tolerance is not None:
+    if user_defined and tolerance is not None and not isinstance(getattr(integrator, "order", None), int):
         raise InputError(
-            "an Integrator with steps of its own has no estimate of their error; give a step, no tolerance"
+            f"{type(integrator).__name__} needs an attribute order, of its error, to follow a tolerance; give a step"
         )
     system = system_of(model, static=False)
     refuse_frame(system, "simulate")
@@ -168,7 +169,7 @@ def simulate(
     record.states[0], record.rotations[0] = state[:3], first_turns(model, state[0], near)
     further = len(ends) - len(times)
     last = Last((0, state[:3].copy(), record.rotations[0].copy()))
-    saved = SavedRows(system, pairs, wanted, Watch(system, events)) if collects else None
+    saved = SavedRows(system, pairs, wanted, Watch(system, events), user_defined) if collects else None
     if saved is not None:
         saved.begin(state[:3], record.rotations[0])
 

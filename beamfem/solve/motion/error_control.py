@@ -1,10 +1,13 @@
 """Steps whose size follows an estimate of their error."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from beamfem.progress import progress
 from beamfem.solve.motion.cut_steps import Rows, StepCutter
 from beamfem.solve.motion.energy_judgement import CHUNK
+from beamfem.solve.motion.integrators import is_scheme
 from beamfem.solve.motion.saved_rows import SavedRows
 from beamfem.solve.motion.start_acceleration import initial_acceleration
 from beamfem.solve.motion.time_marching import Failure, Record
@@ -33,19 +36,21 @@ def march_to_tolerance(
 
     The error of a step h is estimated by p - p0 - h p0' - h^2 (p0'' / 3 + p'' / 6), as accelerations that are linear in
     it would have none (Zienkiewicz and Xie 1991). It may be the share of the tolerance that the step is of the motion,
-    so that errors add up to the tolerance at most.
+    so that errors add up to the tolerance at most. That of an integrator with steps of its own is the difference of two
+    steps and one of double size, over 2^k - 1 with its order k.
     """
-    duration, step = cutter.end, 0.0
+    duration, step, order = cutter.end, 0.0, getattr(cutter.integrator, "order", 2)
+    rule = is_scheme(cutter.integrator)
     with progress("time [s]", duration) as report:
         for number, part in enumerate(parts):
             time, end, jumps = float(part.times[0]), float(part.times[-1]), True
             if number > 0:
                 state[2] = state[3] = initial_acceleration(cutter.system, state, part.loads_from)
                 step *= _SMALLEST
-            count = CHUNK
+            count = CHUNK if rule else 2
             while time < end:
                 step = min(step or _first_step(cutter, state, tolerance), 0.25 * (end - part.times[0]))
-                steps = min(count, int(np.ceil((end - time) / step * (1.0 - 1e-9))))
+                steps = min(count, int(np.ceil((end - time) / step * (1.0 - 1e-9)))) if rule else 2
                 size = (end - time) / steps if time + 1.001 * steps * step >= end else step
                 times = time + size * np.arange(steps + 1.0)
                 last = times[-1] > end - 0.5 * size
@@ -61,12 +66,16 @@ def march_to_tolerance(
                     saved.keep(times[: done + 1], rows.between(0, done))
                     return Failure(float(times[done]), float(times[done + 1]), cutter.why)
                 allowed = max(_CANCELLED * tolerance * size / duration, _ROUND_OFF)
-                ratio = _error(cutter, rows.states, size) / allowed
-                best = _SAFETY * size / np.sqrt(max(ratio, 1e-4))
+                if rule:
+                    ratio = _error(cutter, rows.states, size) / allowed
+                else:
+                    ratio = _difference(cutter, stretch, before, turned, rows) / (2.0**order - 1.0) / allowed
+                best = _SAFETY * size / max(ratio, 1e-4) ** (1.0 / order)
                 if ratio > 1.0 and size > _SHORTEST * duration:
                     state[:], rotations[:] = before, turned
                     cutter.cuts, cutter.further = counted[0] + 1, counted[1]
-                    record.cuts, step, count = cutter.cuts, max(best, _SMALLEST * size), CHUNK
+                    record.cuts, step = cutter.cuts, max(best, _SMALLEST * size)
+                    count = CHUNK if rule else 2
                     continue
                 cutter.further += steps
                 cutter.change_size(stretch, state)
@@ -76,7 +85,8 @@ def march_to_tolerance(
                 report(time)
                 if saved.stopped:
                     return None
-                count = min(2 * count, _LONGEST) if best < _SAME * step else CHUNK
+                if rule:
+                    count = min(2 * count, _LONGEST) if best < _SAME * step else CHUNK
                 if best > _SAME * step or best < step:
                     step = min(best, _LARGEST * size)
     return None
@@ -90,6 +100,21 @@ def _first_step(cutter: StepCutter, state: np.ndarray, tolerance: float) -> floa
     bounds += [np.sqrt(np.sqrt(tolerance) / pushed)] if pushed > 0.0 else []
     bounds += [np.sqrt(tolerance) / moved] if moved > 0.0 else []
     return float(min(bounds))
+
+
+def _difference(cutter: StepCutter, part: Stretch, state: np.ndarray, rotations: np.ndarray, rows: Rows) -> float:
+    """Return the largest difference between two steps, to the last of rows, and one from a state (4, n), per scale."""
+    begin, end = float(part.times[0]), float(part.times[-1])
+    whole = replace(part, times=np.array([begin, end]), step=end - begin)
+    state, turned, counted = state.copy(), rotations.copy(), (cutter.cuts, cutter.further)
+    one, given = Rows.empty(1, state, turned), cutter.prescribed(whole, end - begin)
+    done = cutter.take(whole, given, state, turned, one)
+    cutter.cuts, cutter.further = counted
+    if done == 0:
+        return float(np.inf)
+    error = (one.states[1, 0] - rows.states[-1, 0]) / cutter.system.scale
+    error[cutter.system.connectors.multipliers] = error[cutter.system.history.numbers] = 0.0
+    return float(np.max(np.abs(error[cutter.system.free_dofs]), initial=0.0)) / 2.0
 
 
 def _error(cutter: StepCutter, states: np.ndarray, size: float) -> float:

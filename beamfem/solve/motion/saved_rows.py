@@ -15,7 +15,8 @@ from beamfem.solve.motion.events import Watch
 class SavedRows:
     """Times, states (3, n) and rotations (m,) [rad] of the rows so far, and events.
 
-    at (k,) [s]: times of rows, ascending, None for a row at the end of every step; stopped: whether
+    at (k,) [s]: times of rows, ascending, None for a row at the end of every step; smooth: see
+    `between`; stopped: whether
     an event has stopped the motion.
     """
 
@@ -23,6 +24,7 @@ class SavedRows:
     pairs: np.ndarray
     at: np.ndarray | None
     watch: Watch
+    smooth: bool = False
     times: list[float] = field(default_factory=list)
     states: list[np.ndarray] = field(default_factory=list)
     rotations: list[np.ndarray] = field(default_factory=list)
@@ -56,7 +58,7 @@ class SavedRows:
     def _keep_at(self, times: np.ndarray, rows: Rows, at: np.ndarray, end: float | None = None) -> None:
         if not len(at):
             return
-        for time, state in zip(at.tolist(), between(self.system, times, rows.states, at), strict=True):
+        for time, state in zip(at.tolist(), between(self.system, times, rows.states, at, self.smooth), strict=True):
             before = max(int(np.searchsorted(times, time, side="left")) - 1, 0)
             turned = rows.rotations[before].copy()
             count_rotations(len(self.pairs), self.pairs, rows.states[before], state, turned)

@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 from beamfem.assembly.system import System
+from beamfem.cached_properties import cached_property
 from beamfem.results.energy_balance import Balance, balance, driven, masses, takes_amplitudes
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics
@@ -34,13 +35,19 @@ class EnergyJudge:
         self._system, self._masses, self._radius = system, system.table(masses), radius_at_infinity(rule)
         self._damps = self._radius < 1.0 - 1e-6
         self._first = self._solution(np.array([time]), start[None].copy())
-        self._conservative = not (driven(self._first) or system.damped or system.history.laws)
-        self._able = takes_amplitudes(self._first)
         moved = any(callable(item.value) for item in system.prescribed)
         self._share = _SHARE_MOVED if moved else _SHARE
         self._fastest, self._speed, self._speed_evaluated = self._first, 0.0, 0.0
         self._drift = self._total = 0.0
         self._parts = np.empty((3, 0))  # extreme kinetic, strain and potential energies so far
+
+    @cached_property
+    def _able(self) -> bool:
+        return takes_amplitudes(self._first)
+
+    @cached_property
+    def _conservative(self) -> bool:
+        return not (driven(self._first) or self._system.damped or self._system.history.laws)
 
     def accept(self, times: np.ndarray, states: np.ndarray, coarse: bool) -> int:
         """Return how many steps between states (m + 1, 3, n) at times (m + 1,) [s] are good.
@@ -48,7 +55,7 @@ class EnergyJudge:
         coarse: whether a tenth of the share is always left.
         """
         steps = len(times) - 1
-        if steps < 3 or not self._able:
+        if steps < 3:
             return steps
         bounds = np.append(np.arange(0, steps, CHUNK), steps)
         ends = np.maximum(bounds[1:], 3)
@@ -59,7 +66,7 @@ class EnergyJudge:
         grown = (speeds > _GROWN * fastest[:-1]) & (fastest[:-1] > 0.0) & (change > _SMOOTH * speeds)
         doubtful = ~(change <= _UNRESOLVED * fastest[1:]) | grown
         good = steps
-        if doubtful.any():
+        if doubtful.any() and self._able:
             chunks = [chunk for chunk, judged in zip(pairwise(bounds.tolist()), doubtful, strict=True) if judged]
             good = self._first_refused(times, states, chunks, coarse)
         number = int(np.argmax(np.where(ends <= good, speeds, -1.0)))

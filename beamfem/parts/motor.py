@@ -122,6 +122,11 @@ class Motor(CompositeLoad):
         """A torque that is a function."""
         return self.torque if callable(self.torque) else None
 
+    @property
+    def conservative(self) -> bool:
+        """Whether its torque is constant; one that changes does work, the torque times the change of the angle."""
+        return not callable(self.torque)
+
     @cached_property
     def parts(self) -> tuple[Any, ...]:
         """What prescribes its angle, or the moments of its torque."""

@@ -12,6 +12,7 @@ from beamfem.assembly.equations import INERTIA, ROUND_OFF, linearise, sizes
 from beamfem.assembly.system import System, system_of
 from beamfem.kernels.motion_record import MotionLimits
 from beamfem.linalg.tangent import UNROTATED
+from beamfem.model.load_base import CompositeLoad
 from beamfem.model.time_functions import kinks_of
 from beamfem.results.full_turns import start_rotations
 from beamfem.results.reactions import energies_of
@@ -216,7 +217,8 @@ def energy_warnings(solution: "Solution") -> tuple[str, ...]:
 def takes_amplitudes(solution: "Solution") -> bool:
     """Return whether the loads without a potential, whose work is a difference, are dataclasses with an amplitude."""
     loads = [load for load in solution.model.loads if not load.conservative]
-    return all("amplitude" in getattr(type(load), "__dataclass_fields__", ()) for load in loads)
+    fields = (getattr(type(load), "__dataclass_fields__", ()) for load in loads if not isinstance(load, CompositeLoad))
+    return all("amplitude" in names for names in fields)
 
 
 def _some_rows(solution: "Solution") -> "Solution":

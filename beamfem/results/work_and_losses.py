@@ -8,6 +8,7 @@ import numpy as np
 from beamfem.assembly.connectors import Connectors, follows_time
 from beamfem.assembly.equations import residual
 from beamfem.assembly.system import System, system_of
+from beamfem.model.load_base import CompositeLoad, Load
 from beamfem.results.reactions import energies_of
 from beamfem.results.solution import Solution
 
@@ -125,8 +126,14 @@ def _energy_without(solution: Solution, connectors: Connectors, at: np.ndarray) 
 def _without_followers(solution: Solution) -> System:
     """Return the equations with loads that have no potential multiplied by zero, with the same coordinates."""
     model = solution.model
-    loads = [load if load.conservative else replace(cast("Any", load), amplitude=_zero) for load in model.loads]
+    loads = [load if load.conservative else _without_size(load) for load in model.loads]
     return system_of(model.with_loads(loads), static=False)
+
+
+def _without_size(load: Load) -> Load:
+    if isinstance(load, CompositeLoad):
+        return load.changed(lambda value: _zero)
+    return replace(cast("Any", load), amplitude=_zero)
 
 
 def _zero(time: float) -> float:

@@ -131,6 +131,8 @@ def test_work_of_a_motor_is_the_energy_gained(kind):
     work = np.append(0.0, np.cumsum(0.5 * (torque[1:] + torque[:-1]) * np.diff(turned)))
     gained = energy.kinetic - energy.kinetic[0] + energy.strain - energy.strain[0]
     assert gained == pytest.approx(work, abs=1e-5 * np.abs(work).max())
+    assert energy.work == pytest.approx(work, abs=1e-5 * np.abs(work).max())
+    assert energy.error == pytest.approx(0.0, abs=1e-5 * np.abs(work).max())
     assert not motion.warnings
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
 
 import beamfem as bf
 from beamfem.assembly.equations import INERTIA, STATICS, linearise, residual
@@ -142,6 +143,59 @@ def test_tangents_are_derivatives_of_the_residual(element, factor, rng):
         assert found == pytest.approx(expected, rel=1e-5, abs=1e-7 * np.abs(expected).max())
 
 
+def critical_speeds(radius, count):
+    """Return the speeds at which a cantilever of length 1 that points from a rim inwards buckles, by Ritz.
+
+    E I w'' w'' - rho A w^2 (n w' w' + w w) with the compression n = R (1 - s) - (1 - s^2) / 2; in sqrt(E I / rho A).
+    """
+    powers = np.arange(2, 10)
+    s, weight = np.polynomial.legendre.leggauss(40)
+    s, weight = 0.5 * (s[:, None] + 1.0), 0.5 * weight[:, None]
+    shapes, slopes = s**powers, powers * s ** (powers - 1)
+    bends = powers * (powers - 1) * s ** (powers - 2)
+    compression = radius * (1.0 - s) - 0.5 * (1.0 - s**2)
+    softening = slopes.T @ (weight * compression * slopes) + shapes.T @ (weight * shapes)
+    squares = eigh(softening, bends.T @ (weight * bends), eigvals_only=True)
+    return 1.0 / np.sqrt(squares[::-1][:count])
+
+
+@pytest.mark.parametrize("radius", [1.0, 2.0])
+def test_a_cantilever_that_points_inwards_buckles_at_a_critical_speed(radius):
+    """The load factor multiplies the square of the speed."""
+    beam = beam_of((radius, 0), (radius - 1.0, 0), 8)
+    unit = np.sqrt(THIN.rigidity(STEEL).bending / THIN.inertia(STEEL).mass)
+    model = bf.Model([beam], [bf.Clamp(beam.start)], frame=bf.RotatingFrame(8.0 * unit))
+    exact = critical_speeds(radius, 1)[0]
+    assert 8.0 * np.sqrt(bf.solve_buckling(model, 1).load_factors[0]) == pytest.approx(exact, rel=1e-5)
+    path = bf.trace_equilibrium(model, until=0.5)
+    assert 8.0 * np.sqrt(path.bifurcations[0].at) == pytest.approx(exact, rel=1e-5)
+    for speed, growing in ((0.99 * exact, False), (1.01 * exact, True)):
+        near = bf.Model([beam], [bf.Clamp(beam.start)], frame=bf.RotatingFrame(speed * unit))
+        straight = bf.solve_static(near.with_(supports=[*near.supports, bf.Roller(beam.end, normal=(0, 1))]))
+        assert (bf.solve_modes(near, 1, about=straight).growth[0] > 0.0) == growing
+
+
+def test_a_branch_of_buckled_states_is_followed():
+    beam = beam_of((2.0, 0), (1.0, 0), 8)
+    unit = np.sqrt(THIN.rigidity(STEEL).bending / THIN.inertia(STEEL).mass)
+    model = bf.Model([beam], [bf.Clamp(beam.start)], frame=bf.RotatingFrame(10.0 * unit))
+    path = bf.trace_equilibrium(model, until=0.2)
+    branch = bf.trace_equilibrium(model, start=path.bifurcations[0], until=0.2)
+    bent = bf.linearise(model, branch[-1]).modes(1)
+    assert branch.stable[-1]
+    assert bent.frequencies[0] > 1.0
+    # the root carries the centrifugal force of all mass, which is its mass times the place of its centre
+    middles = (np.arange(100) + 0.5) / 100
+    place = np.mean([branch.position(beam.at(fraction))[-1] for fraction in middles], axis=0)
+    force = branch.reaction(beam.start)[-1]
+    weight = THIN.area * 7850.0 * 0.2 * (10.0 * unit) ** 2
+    assert force[:2] == pytest.approx(-weight * place, rel=1e-4)
+    assert branch.section_forces(beam).moment[-1, 0] == pytest.approx(-force[2], rel=1e-6)
+    energy = branch.energy()
+    slope = np.gradient(energy.strain, branch.at) + np.gradient(energy.potential / branch.at, branch.at) * branch.at
+    assert np.abs(slope[3:-1]).max() < 0.05 * np.abs(np.gradient(energy.strain, branch.at)[3:-1]).max()
+
+
 def test_the_frame_is_kept_and_saved(tmp_path):
     rod = beam_of((0, 0), (1, 0))
     model = bf.Model([rod], [bf.Clamp(rod.start)], frame=bf.RotatingFrame(10.0, about=(0.0, 1.0)))
@@ -158,10 +212,11 @@ def test_bad_input_is_named():
     with pytest.raises(bf.InputError, match="frame of a Model must be a RotatingFrame"):
         bf.Model([rod], frame=10.0)
     model = bf.Model([rod], [bf.Clamp(rod.start)], [bf.PointForce(rod.end, (-1.0, 0.0))], frame=frame)
-    analyses = bf.trace_equilibrium, bf.solve_buckling, lambda own: bf.simulate(own, duration=1.0, step=0.1)
-    for solve in analyses:
-        with pytest.raises(bf.InputError, match="does not support models in a RotatingFrame"):
-            solve(model)
+    with pytest.raises(bf.InputError, match="simulate does not support models in a RotatingFrame"):
+        bf.simulate(model, duration=1.0, step=0.1)
+    motion = bf.simulate(bf.Model([rod], [bf.Clamp(rod.start)]), duration=0.1, step=0.1)
+    with pytest.raises(bf.InputError, match="about a moving state does not support"):
+        bf.linearise(model, motion)
     damped = model.with_(connectors=[bf.SpringDamper(rod.end, (1.0, 1.0), 0.0, 1.0)])
     with pytest.raises(bf.InputError, match="resists the rotation"):
         bf.solve_static(damped)

@@ -25,7 +25,7 @@ from beamfem.solve.newton.newton import Newton, require_newton
 from beamfem.solve.start.functions_of_time import SAME, Jump, functions_of_time, jumps_between, kinks_between
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.partial_results import kept
-from beamfem.solve.start.start_checks import refuse_frame, refuse_memory
+from beamfem.solve.start.start_checks import refuse_memory
 from beamfem.solve.statics.preload import first_equilibrium, nothing_acts
 from beamfem.validation import count, finite, function_of_one, optional, positive, shown
 
@@ -267,7 +267,6 @@ def trace_equilibrium(
     newton = require_newton(newton, Newton(iterations=_ITERATIONS))
     system = system_of(model, static=True)
     refuse_memory(system, "trace_equilibrium")
-    refuse_frame(system, "trace_equilibrium")
     if nothing_acts(system):
         require_support(system)
     if not len(system.free_dofs):
@@ -317,6 +316,8 @@ def trace_equilibrium(
 
 def _require_load(system: System) -> None:
     """Raise InputError if nothing changes with the load factor."""
+    if system.model.frame is not None and system.model.frame.speed != 0.0:
+        return
     kinks = [kink for function in functions_of_time(system) for kink in function.kinks]
     for at in (0.37, 1.0, *kinks):
         changes = [(system.prescribed_values(at), system.prescribed_values(0.0))]

@@ -21,7 +21,7 @@ from beamfem.solve.stability.loading_path import InvertedError, LoadingPath, Pat
 from beamfem.solve.stability.path_critical_points import LIMIT_POINT, Critical, critical_points
 from beamfem.solve.stability.stability import stable_start
 from beamfem.solve.start.mechanisms import require_support
-from beamfem.solve.start.start_checks import refuse_frame, refuse_memory
+from beamfem.solve.start.start_checks import refuse_memory
 from beamfem.tables import as_pandas
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
@@ -183,7 +183,6 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     whole_number("count", count)
     system = system_of(model, static=True)
     refuse_memory(system, "solve_buckling")
-    refuse_frame(system, "solve_buckling")
     require_support(system)
     unknown = len(system.free_dofs)
     if count > unknown:

@@ -18,7 +18,7 @@ class Status(Enum):
 
 @dataclass(frozen=True)
 class Statistics:
-    """How a solve went: Newton iterations, completed steps, cuts of steps (of a motion, of groups of steps), why it ended.
+    """How a solve went: iterations, completed steps, cuts of steps (of a motion, of groups of them), and why it ended.
 
     digits: exact digits of the forces of the last equilibrium, from the balance of loads and reactions, or of the
     largest force of the path where they have few; nan if unknown. rule: of a motion by a scheme, its time step [s],

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, is_dataclass, replace
+from importlib import import_module
 from itertools import product
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -70,6 +71,7 @@ def touching(one: Beam, other: Beam) -> str:
 
 def _named(kinds: Sequence[type]) -> str:
     """Return the names of the package's classes of some kinds, as a list in words."""
+    import_module("beamfem.parts.listed_parts")  # a message needs their names, a model does not need them
     derived: list[Sequence[type]] = [kind.__subclasses__() or [kind] for kind in kinds if kind is not Contribution] or [
         kinds
     ]

@@ -13,7 +13,7 @@ from beamfem.assembly.system import Proven, System
 from beamfem.cached_properties import cached_property
 from beamfem.errors import ConvergenceError
 from beamfem.linalg.eigenpairs import Pairs, largest_pairs, nothing_known
-from beamfem.linalg.lapack import LinAlgError, eigh
+from beamfem.linalg.lapack import LinAlgError, cholesky, eigh, solve_triangular
 from beamfem.linalg.tangent import UNROTATED, Factorised, Stresses, Tangent
 from beamfem.precision.roundoff import LAST_DIGITS, LOSES, lost_digits
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
@@ -179,16 +179,16 @@ class Complete:
 def complete(pencil: Pencil, squares: np.ndarray, count: int, rigid: int) -> Complete:
     """Return whether at least the first `count` of ascending eigenvalues (m,), m > count, are the lowest ones.
 
-    rigid: number of zero eigenvalues besides. The eigenvalues below the largest gap after the last one are counted. If
-    there is no gap, or some are missing, the last one may belong to a cluster with more members than were asked for:
+    rigid: number of zero eigenvalues besides. The eigenvalues below the largest gap after the last one are counted, or
+    below the first gap if some of those between were missed. If there is no gap, or some are missing, the last one may belong to a cluster with more members than were asked for:
     it then does not matter which of them are found, so those below the cluster are counted.
     """
     joined = np.diff(squares) <= _CLUSTER * np.abs(squares[1:])
-    above = count + int(np.argmax(np.diff(squares[count - 1 :])))
-    if not joined[above - 1]:
-        cut = 0.5 * (squares[above - 1] + squares[above])
-        if _below(pencil, squares, cut, rigid) == above:
-            return Complete(above, 0, cut)
+    for above in (count + int(np.argmax(np.diff(squares[count - 1 :]))), count):
+        if not joined[above - 1]:
+            cut = 0.5 * (squares[above - 1] + squares[above])
+            if _below(pencil, squares, cut, rigid) == above:
+                return Complete(above, 0, cut)
     gaps = np.flatnonzero(~joined) + 1
     first, end = gaps[gaps < count].max(initial=0), gaps[gaps >= count].min(initial=len(squares))
     cut = squares[first] - _CLUSTER * abs(squares[first])
@@ -267,11 +267,16 @@ def _sharpened(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray, start: 
 
 
 def _solved(pencil: Pencil, tangent: Tangent, known: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-    """Return vectors (n, m) after inverse iterations, without their components along known ones (n, k)."""
+    """Return vectors (n, m) after inverse iterations, without their components along known ones (n, k).
+
+    They are M-orthonormal: otherwise all of them would come near the one whose eigenvalue is nearest to the shift.
+    """
     factors, result = tangent.factorised(pencil.system.rotated), _besides(pencil, known, vectors)
     for _ in range(_SOLVES):
         result = np.column_stack([factors.solve(column) for column in (pencil.mass @ result).T])
         result = _besides(pencil, known, result)
+        lower = cholesky(result.T @ (pencil.mass @ result), lower=True)
+        result = solve_triangular(lower, result.T, lower=True).T
     return result
 
 

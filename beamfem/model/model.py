@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, is_dataclass, replace
-from importlib import import_module
 from itertools import product
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -50,7 +49,7 @@ def refused(name: str, item: object, kinds: Kinds) -> str:
     lacking = [member for member in members(Contribution) if not hasattr(item, member)]
     if Contribution in kinds[name] and 0 < len(lacking) < len(members(Contribution)):
         return f"{said}, which has no {' and no '.join(lacking)}, but a Contribution"
-    return f"{said}, but {_named(kinds[name])}"
+    return f"{said}, but {_NAMES[name]}"
 
 
 def resembles_beam(beams: Sequence[Beam], beam: Beam) -> str:
@@ -69,16 +68,6 @@ def touching(one: Beam, other: Beam) -> str:
     return ""
 
 
-def _named(kinds: Sequence[type]) -> str:
-    """Return the names of the package's classes of some kinds, as a list in words."""
-    import_module("beamfem.parts.listed_parts")  # a message needs their names, a model does not need them
-    derived: list[Sequence[type]] = [kind.__subclasses__() or [kind] for kind in kinds if kind is not Contribution] or [
-        kinds
-    ]
-    names = [each.__name__ for some in derived for each in some if each.__module__.startswith("beamfem.")]
-    return " or ".join(", ".join(dict.fromkeys(names)).rsplit(", ", 1))  # slots make a class twice
-
-
 _UNNAMED = "N, m, s"
 _KINDS: dict[str, tuple[type, ...]] = {
     "beams": (Beam,),
@@ -87,6 +76,14 @@ _KINDS: dict[str, tuple[type, ...]] = {
     "joints": (Joint, Contribution),
     "connectors": (Contribution,),
     "masses": (Contribution,),
+}
+_NAMES = {  # as parts are above models
+    "beams": "Beam",
+    "supports": "Clamp, Pin, Roller, Prescribed, Spring or Foundation",
+    "loads": "Gravity, DistributedLoad, Pressure, PointForce, PointMoment, MovingForce, Motor, Actuation or Temperature",
+    "joints": "Rigid or Hinge",
+    "connectors": "a Contribution, such as SpringDamper",
+    "masses": "PointMass, RigidBody or another Contribution",
 }
 _ONE = {"masses": "mass"}  # the names of one, where it is not the plural without its last letter
 

@@ -12,7 +12,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.cli.part_kinds import ACTING
-from beamfem.parts.parts_registry import listed_parts
+from beamfem.parts.parts_registry import listed_parts, parts_in
 
 FILE = str(Path(__file__).parents[1] / "trial_parts.py")
 PARTS = ("SnowLoad", "Slide", "Weld", "Buffer")
@@ -181,3 +181,11 @@ def test_kinds_are_those_of_model_files():
 
 def test_listed_parts_are_public():
     assert {kind.__name__ for kind in listed_parts()} <= set(bf.__all__)
+
+
+@pytest.mark.parametrize("name", ["supports", "loads", "joints", "masses"])
+def test_a_model_names_all_parts_that_its_lists_hold(name):
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 1, bf.CRBF(2), bf.Rectangle(0.1, 0.1), bf.Material(1e9, 0.3, 1e3))
+    with pytest.raises(bf.InputError) as caught:
+        bf.Model([beam], **{name: [1]})
+    assert all(kind.__name__ in str(caught.value) for kind in parts_in(name))

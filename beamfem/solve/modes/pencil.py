@@ -180,8 +180,9 @@ def complete(pencil: Pencil, squares: np.ndarray, count: int, rigid: int) -> Com
     """Return whether at least the first `count` of ascending eigenvalues (m,), m > count, are the lowest ones.
 
     rigid: number of zero eigenvalues besides. The eigenvalues below the largest gap after the last one are counted, or
-    below the first gap if some of those between were missed. If there is no gap, or some are missing, the last one may belong to a cluster with more members than were asked for:
-    it then does not matter which of them are found, so those below the cluster are counted.
+    below the first gap if some of those between were missed. If there is no gap, or some are missing, the last one may
+    belong to a cluster with more members than were asked for: it then does not matter which of them are found, so those
+    below the cluster are counted.
     """
     joined = np.diff(squares) <= _CLUSTER * np.abs(squares[1:])
     for above in (count + int(np.argmax(np.diff(squares[count - 1 :]))), count):

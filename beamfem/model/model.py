@@ -80,7 +80,8 @@ _KINDS: dict[str, tuple[type, ...]] = {
 _NAMES = {  # as parts are above models
     "beams": "Beam",
     "supports": "Clamp, Pin, Roller, Prescribed, Spring or Foundation",
-    "loads": "Gravity, DistributedLoad, Pressure, PointForce, PointMoment, MovingForce, Motor, Actuation or Temperature",
+    "loads": "Gravity, DistributedLoad, Pressure, PointForce, PointMoment, MovingForce, Motor, Temperature or "
+    "Actuation",
     "joints": "Rigid or Hinge",
     "connectors": "a Contribution, such as SpringDamper",
     "masses": "PointMass, RigidBody or another Contribution",

@@ -118,7 +118,7 @@ def test_a_smooth_motion_takes_few_corrections_and_is_the_same():
 
 @pytest.mark.parametrize("size", [0.99, 1.0, 1.0001, 1.01])
 @pytest.mark.parametrize("frame", [False, True])
-def test_a_sudden_moment_on_a_pin_turns_it_no_further_in_long_steps(size, frame):
+def test_a_sudden_moment_on_a_pin_turns_it_no_further_in_long_steps(size, frame, uncut_steps):
     """The section at the pin has next to no inertia: its acceleration of before, 1 rad in a step, says nothing of it.
 
     Steps that began there took 18 iterations each, found another equilibrium now and then (the end turned by 3.5 rad
@@ -147,7 +147,7 @@ def test_a_sudden_moment_on_a_pin_turns_it_no_further_in_long_steps(size, frame)
         assert np.abs(turned - fine).max() < 0.25 * np.abs(fine).max(), step
 
 
-def test_a_motion_that_gains_energy_says_so():
+def test_a_motion_that_gains_energy_says_so(uncut_steps):
     """Three soft elements curl under a sudden moment, 10 steps in half a period: 19 times its energy from nowhere."""
     section, material = bf.Rectangle(0.002, 0.002), bf.Material(2.6e6, 0.3, 1000.0)
     beam = bf.Beam(bf.Line((0.0, 0.0), (1.0, 0.0)), 3, bf.CRBF(1), section, material)
@@ -165,7 +165,7 @@ def test_a_motion_that_gains_energy_says_so():
 
 @pytest.mark.parametrize("sparse", [False, True])
 @pytest.mark.parametrize("element", [bf.CRBF(2), bf.BilinearCRBF(), bf.ANCF()], ids=lambda element: element.name)
-def test_long_steps_of_a_beam_that_damps_much_converge(element, sparse, widest_band):
+def test_long_steps_of_a_beam_that_damps_much_converge(element, sparse, widest_band, uncut_steps):
     """Predicted resultants had no viscous part, which is most of them where a step is as long as the retardation."""
     if sparse:
         widest_band(-1)

@@ -136,12 +136,12 @@ def simulate(
     refuse_frame(system, "simulate")
     rows_at = duration / _PARTS if step is None else step
     rule = require_rule(integrator, rows_at) if is_scheme(integrator) else ()
+    require_memory(model.size, duration, rows_at, save_every)
     announce_compilation()
     times = rows_at * np.arange(int(np.ceil(duration / rows_at - 1e-9)) + 1)
     wanted = _wanted(save_at, step, times, save_every, tolerance)
     collects = save_at is not None or tolerance is not None or len(events) > 0
     every = len(times) if collects else save_every
-    require_memory(model.size, duration, rows_at, save_every)
     acting, second = functions_of_time(system), system.model.unit("s")
     parts = stretches(times, [function for function in acting if function.amplitude])
     ends = np.concatenate([times[:1], *(part.times[1:] for part in parts)])

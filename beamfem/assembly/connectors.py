@@ -526,7 +526,8 @@ def _with_nodes(given: Contribution, model: Model) -> list[tuple[Contribution, l
     if not isinstance(given, PartAlongBeam):
         places = [(model.mesh_of(point), point.fraction) for point in given.points]
         return [(given, [(mesh, mesh.node_at(fraction)) for mesh, fraction in places])]
-    mesh, element = model.mesh_of(given.beam.start), given.beam.element
+    mesh = model.mesh_of(given.beam.start)
+    element = mesh.beam.element
     if given.rotations and any("theta" not in mesh.coordinates_of(node) for node in range(mesh.nodes)):
         raise InputError(
             f"{type(given).__name__} acts on rotations along a beam, and the nodes of {element.name} have none; take "

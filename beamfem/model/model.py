@@ -383,8 +383,8 @@ class Model:
     def imposed_on(self) -> dict[Beam, list[tuple[int, ImposedStrain]]]:
         """The loads that impose strains on each beam, with their numbers in `imposing`."""
         result: dict[Beam, list[tuple[int, ImposedStrain]]] = {}
-        for number, (_, load) in enumerate(self.imposing):
-            result.setdefault(load.beam, []).append((number, load))
+        for number, (beam, load) in enumerate(self.imposing):
+            result.setdefault(self.beams[beam], []).append((number, load))
         return result
 
     @cached_property

@@ -253,6 +253,47 @@ class Solution:
         result = postprocess.fields(mesh, self.p, element, xi, forces, eigenstress, turned_of(self, mesh))
         return postprocess.part_of(result, (slice(None), 0))
 
+    def error(self, quantity: "Callable[[Solution], Any] | Point | None" = None, row: int = -1) -> Any:
+        """Return an estimate of the discretisation error of a result: its change with a much finer mesh.
+
+        The equilibrium next to that of a row is found on an enriched space: elements of order k + 1 instead of k = 1
+        or 2, and halves of other ones. Newton's method starts from the state itself, so this is less work than a solve.
+        An element of order k is off by about L (turn of an element / n)^2k at its nodes, so that nearly all of the
+        error disappears there; where the mesh is so coarse that it does not, the estimate is too small. Section laws
+        and connectors with history are led through the rows before, with one load step each.
+
+        Parameters
+        ----------
+        quantity : callable or Point, optional
+            A function of a solution of one row that returns a number, or an array of the same shape on every mesh, and
+            finds points, beams, supports and connectors by those of this model; or a point, for its displacement [m].
+            By default the largest displacement [m].
+        row : int, default -1
+            Row of the solution.
+
+        Returns
+        -------
+        float or array
+            Value on the enriched space less the value of the row, to be added to it; by default the largest change of
+            a node's position [m].
+
+        Raises
+        ------
+        InputError
+            For a motion, or a quantity that is not a number.
+        ConvergenceError
+            If there is no equilibrium nearby on finer elements: the mesh is too coarse, or the state is a limit point.
+
+        Examples
+        --------
+        >>> moment = solution.error(lambda s: s.reaction(beam.start)[-1, 2])
+        >>> abs(moment) < 1e-3 * solution.reaction(beam.start)[-1, 2].item()
+        True
+        """
+        from beamfem.solve.accuracy.error_estimate import error
+
+        return error(self, quantity, row)
+
     def position(self, point: Point) -> np.ndarray:
         """Return the position (x, y) of a point (steps, 2) [m]."""
         return postprocess.position(self.model.mesh_of(point), self.p, point.fraction)

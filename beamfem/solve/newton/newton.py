@@ -376,17 +376,26 @@ class BandProblem:
 
 
 class PivotedProblem(SingleCorrections):
-    """The equilibrium at a load factor, from the state `start` (n,)."""
+    """The equilibrium at a load factor, from the state `start` (n,).
+
+    stresses: resultants of each block for the geometric part of the first tangent, by default those of the state.
+    """
 
     counts_digits = False
 
     def __init__(
-        self, system: System, start: np.ndarray, load_factor: float, newton: Newton, step: PrescribedStep
+        self,
+        system: System,
+        start: np.ndarray,
+        load_factor: float,
+        newton: Newton,
+        step: PrescribedStep,
+        stresses: Stresses | None = None,
     ) -> None:
         super().__init__()
         self.system, self.start, self.load_factor, self.newton, self.step = system, start, load_factor, newton, step
         self.state = self.linear = start
-        self.stresses: Stresses | None = None
+        self.stresses = stresses
 
     def take(self) -> tuple[float, int]:
         system, p, zeros, free = self.system, self.state, np.zeros(len(self.state)), self.system.free_dofs

@@ -1,0 +1,114 @@
+"""Estimate of the discretisation error of a static result, by the equilibrium on an enriched space."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.assembly.system import System, system_of
+from beamfem.errors import ConvergenceError, InputError
+from beamfem.model.beam import Point
+from beamfem.results.full_turns import first_turns
+from beamfem.results.postprocess import position
+from beamfem.results.solution import Solution, State
+from beamfem.results.status import Statistics
+from beamfem.solve.accuracy.carried_state import carried_coordinates, carried_stresses
+from beamfem.solve.accuracy.enriched_model import enriched
+from beamfem.solve.newton.iteration import Newton, NewtonResult
+from beamfem.solve.newton.newton import PivotedProblem, PrescribedStep, find_equilibrium
+from beamfem.validation import number_below, shown
+
+Quantity = Callable[[Solution], Any] | Point | None
+
+
+def error(solution: Solution, quantity: Quantity, row: int) -> Any:
+    """Return the estimated change of a quantity with an infinitely fine mesh, see `Solution.error`."""
+    if not solution.static:
+        raise InputError("errors are estimated for static solutions only; this one is a motion")
+    if not (quantity is None or isinstance(quantity, Point) or callable(quantity)):
+        raise InputError(
+            "quantity is a function of a solution, such as lambda s: s.rotation(beam.end)[-1], or a point, got "
+            f"{shown(quantity)}"
+        )
+    number = number_below("row", row, len(solution), -len(solution)) % len(solution)
+    finer = solution.computed(_Enriched).row(number)
+    if quantity is None:
+        return largest_displacement_error(solution[number], finer)
+    evaluate = (lambda s: s.displacement(quantity)[-1]) if isinstance(quantity, Point) else quantity
+    before, after = evaluate(solution[number : number + 1]), evaluate(finer)
+    try:
+        change = np.asarray(after, dtype=float) - np.asarray(before, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"quantity must return a number, or numbers of which there are as many on every mesh, got {shown(before)} "
+            f"and {shown(after)}"
+        ) from None
+    return float(change) if change.ndim == 0 else change
+
+
+class _Enriched:
+    """Rows of a solution on the enriched space, each found once."""
+
+    def __init__(self, solution: Solution) -> None:
+        self._solution, self._rows = solution, dict[int, Solution]()
+
+    def row(self, number: int) -> Solution:
+        if number not in self._rows:
+            self._rows[number] = enriched_row(self._solution, number)
+        return self._rows[number]
+
+
+def enriched_row(solution: Solution, number: int) -> Solution:
+    """Return the equilibrium next to a row of a solution on the enriched space, as a solution of one row.
+
+    What remembers is led through the rows before, with a load step each. Raises ConvergenceError if the tangent is
+    singular or there is no equilibrium nearby.
+    """
+    model = enriched(solution.model)
+    system = system_of(model, static=True)
+    memory, iterations = system.history.numbers, 0
+    state, p, past = solution[number], system.reference, system.history.start
+    for row in range(number + 1) if len(memory) else (number,):
+        state = solution[row]
+        p = carried_coordinates(state, model)
+        p[memory] = past
+        result = _equilibrium(system, p, state)
+        p = system.history.in_equilibrium(result.state, state.at, system.imposing(state.at))
+        past, iterations = p[memory], iterations + result.iterations
+    turned = None if state.turned is None else first_turns(model, p, state.turned)[None]
+    none = np.zeros((1, model.size))
+    statistics = Statistics(iterations, 1, 0, "an equilibrium on the enriched space")
+    return Solution(model, True, np.array([state.at]), p[None], none, none.copy(), statistics, turned=turned)
+
+
+def _equilibrium(system: System, p: np.ndarray, state: State) -> NewtonResult:
+    """Return the equilibrium next to a state carried over to p (n,), with its stress resultants as independent ones.
+
+    The first iteration is the linear estimate. Raises ConvergenceError.
+    """
+    step, newton = PrescribedStep(system, p, state.at), Newton()
+    problem = PivotedProblem(system, p, state.at, newton, step, carried_stresses(state, system.model))
+    try:
+        result = find_equilibrium(problem, newton)
+    except LinAlgError as reason:
+        raise _without_estimate(str(reason)) from reason
+    if not result.ended.good:
+        raise _without_estimate(result.ended.value)
+    return result
+
+
+def _without_estimate(reason: str) -> ConvergenceError:
+    return ConvergenceError(
+        f"the error cannot be estimated: on finer elements there is no equilibrium near this one, {reason}",
+        remedy="The mesh is too coarse, or the state is close to a limit point; solve on a finer mesh",
+    )
+
+
+def largest_displacement_error(state: State, finer: Solution) -> float:
+    """Return the largest change [m] of the position of a node of the state's model."""
+    changes = []
+    for old, new in zip(state.model.meshes, finer.model.meshes, strict=True):
+        for fraction, place in zip((old.arc / old.vertices[-1]).tolist(), old.kinematics.dof[:, :2], strict=True):
+            changes.append(np.linalg.norm(position(new, finer.p, min(fraction, 1.0))[0] - state.p[place]))
+    return float(max(changes))

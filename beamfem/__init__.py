@@ -49,7 +49,7 @@ Contents; see help(bf.Beam), for example, for details.
     Errors            BeamfemError InputError UnknownPointError FreeMotionError ConvergenceError
                       LimitPointError FileError MissingPackageError
     Warnings          UnstableWarning RoundOffWarning LockingWarning LargeStrainWarning CuspWarning EnergyWarning
-                      TimeStepWarning
+                      TimeStepWarning CoarseMeshWarning
                       UnitsWarning SeveralTurnsWarning UnknownStressWarning
                       NotJoinedWarning NotReadWarning NotStoredWarning ChangedCodeWarning
 """

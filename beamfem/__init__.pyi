@@ -30,6 +30,7 @@ from .element.presets import BilinearCRBF as BilinearCRBF
 from .element.presets import ShearRigid as ShearRigid
 from .errors import BeamfemError as BeamfemError
 from .errors import ChangedCodeWarning as ChangedCodeWarning
+from .errors import CoarseMeshWarning as CoarseMeshWarning
 from .errors import ConvergenceError as ConvergenceError
 from .errors import CuspWarning as CuspWarning
 from .errors import EnergyWarning as EnergyWarning

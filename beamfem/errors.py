@@ -104,6 +104,10 @@ class LockingWarning(UserWarning):
     """Elements lock: displacements are likely wrong by 1 % or more."""
 
 
+class CoarseMeshWarning(UserWarning):
+    """The mesh is too coarse: displacements are likely off by 2 % or more."""
+
+
 class UnitsWarning(UserWarning):
     """Values that no material, section or load has in the units that the model names."""
 

@@ -1,6 +1,6 @@
 """Models as plain data, which can be built in many ways that mean the same: turned, mirrored, split, in other units."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,6 +28,15 @@ KINDS = {
     "shear-rigid": bf.ShearRigid(),
     "shear-rigid 3": bf.ShearRigid(stretchable=False),
 }
+
+# more of them, which `random_models` does not draw: those of high order, and with fewer elements the same limits
+HIGH = {f"CRBF({order})": bf.CRBF(order) for order in (5, 6, 7, 8)}
+FINE = {
+    f"fine {name}": replace(element, field=bf.Lagrange(6), label=None)
+    for name, element in (KINDS | HIGH).items()
+    if isinstance(element.field, bf.Lagrange) and element.integration == "reduced"
+}
+ALL_KINDS = KINDS | HIGH | FINE
 
 Pair = tuple[float, float]
 Place = tuple[int, float]  # which bar, and the fraction of its length
@@ -121,7 +130,7 @@ class Axis:
 
 @dataclass(frozen=True)
 class Bar:
-    """A beam: its axis, its number of elements, its kind (a key of KINDS), width and height [m]."""
+    """A beam: its axis, its number of elements, its kind (a key of ALL_KINDS), width and height [m]."""
 
     axis: Axis
     elements: int
@@ -234,7 +243,7 @@ def _build(recipe: Recipe, view: View) -> Built:
                 bf.Beam(
                     bar.axis.curve(view, piece[::-1] if view.backwards else piece),
                     count // len(pieces),
-                    KINDS[bar.kind],
+                    ALL_KINDS[bar.kind],
                     section,
                     material,
                 )

@@ -28,6 +28,11 @@ LOBATTO = [element for element in ELEMENTS if element.integration == "lobatto"]
 each_default = pytest.mark.parametrize("element", DEFAULTS, ids=identify)
 
 
+def locks(solution):
+    """Whether a solution says that its elements lock; a coarse mesh is another matter."""
+    return any("elements lock" in sentence for sentence in solution.warnings)
+
+
 def cantilever(element, elements, slenderness, *loads):
     """Solution and beam of length 1, clamped at its start; loads(beam, E I)."""
     section = bf.Rectangle(1.0 / slenderness, 1.0 / slenderness)
@@ -274,7 +279,7 @@ def test_a_director_that_shortens_between_its_nodes_locks_and_says_so(element, e
 )
 def test_a_director_that_shortens_by_less_than_matters_says_nothing(element, elements, slenderness):
     """Fine meshes and high orders, and gradients, whose nodes make up for it by their length."""
-    assert cantilever(element, elements, slenderness, tip_force)[0].warnings == ()
+    assert not locks(cantilever(element, elements, slenderness, tip_force)[0])
 
 
 def test_the_beam_that_locks_most_is_named():
@@ -319,7 +324,7 @@ def test_a_layered_section_whose_neutral_axis_is_off_bends_right(element):
 def test_what_does_not_lock_says_nothing(order):
     for slenderness in (1e1, 1e5):
         solution, _ = cantilever(bf.CRBF(order), 4, slenderness, tip_force)
-        assert solution.warnings == ()
+        assert not locks(solution)
 
 
 def test_a_line_that_cannot_bend_within_its_element_says_so():

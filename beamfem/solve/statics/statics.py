@@ -14,6 +14,7 @@ from beamfem.model.model import Model
 from beamfem.results.full_turns import start_rotations
 from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import warned
+from beamfem.solve.accuracy.coarse_mesh import warned_of_coarse_mesh
 from beamfem.solve.newton.newton import Newton, require_newton
 from beamfem.solve.start.functions_of_time import SAME as NEAR
 from beamfem.solve.start.functions_of_time import (
@@ -91,6 +92,8 @@ def solve_static(
         If round-off leaves few digits of the forces.
     LockingWarning
         If locking changes displacements by 1 % or more.
+    CoarseMeshWarning
+        If displacements of the last row are likely off by 2 % or more.
     LargeStrainWarning
         If strains of a linear law exceed 0.2, or the utilisation of a strength exceeds 1.
 
@@ -102,10 +105,15 @@ def solve_static(
     """
     if at is None:
         equal = [k / steps for k in range(1, count("steps", steps))]
-        return warned(solve_through(model, equal, steps, newton, snap=snap, unstable=unstable, resolved=True))
+        return _judged(solve_through(model, equal, steps, newton, snap=snap, unstable=unstable, resolved=True))
     load_factors = _ascending(at)
     through = solve_through(model, load_factors, steps, newton, snap=snap, unstable=unstable, end=load_factors[-1])
-    return warned(_rows_at(through, load_factors))
+    return _judged(_rows_at(through, load_factors))
+
+
+def _judged(solution: Solution) -> Solution:
+    """Return a solution that has just been found, after warnings of what is wrong with it."""
+    return warned_of_coarse_mesh(warned(solution))
 
 
 def _ascending(at: Sequence[float] | np.ndarray) -> list[float]:

@@ -1,0 +1,201 @@
+"""Warning of a mesh that is too coarse for the displacements of a static solution."""
+
+from dataclasses import replace
+from math import comb
+
+import numpy as np
+
+from beamfem.assembly.system import System, system_of
+from beamfem.element.coordinates import Rotation
+from beamfem.element.element import Element
+from beamfem.element.fields import Lagrange
+from beamfem.errors import CoarseMeshWarning, ConvergenceError, InputError, LockingWarning
+from beamfem.kernels.bent_elements import WEIGHTS, coarseness
+from beamfem.kernels.pointers import address_of
+from beamfem.mesh.beam_grid import distances
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.model_meshes import required_nodes
+from beamfem.model.beam import beam_in_words
+from beamfem.model.model import Model
+from beamfem.results.finding import Finding
+from beamfem.results.locking import locking, pairs
+from beamfem.results.solution import Solution
+from beamfem.results.solution_checks import warn_of
+from beamfem.solve.accuracy.error_estimate import enriched_row, largest_displacement_error
+from beamfem.solve.accuracy.error_shares import error_shares
+
+_WARNED = 0.02  # of the largest displacement: error above which there is a warning
+_ENOUGH = 0.005  # of it: error that the advice leads to
+_CHIEF = 0.8  # of the error: what the elements that a warning names account for
+
+_SMALLEST = np.finfo(float).tiny  # bending stiffness [N m^2]
+_SAME = 1e-9  # of the length of a beam: tolerance between places
+
+# sum of the angles between the directors of an element of order k, with which a strip that is rolled up is off by 1 %
+_TURN = (0.19, 1.1, 2.4, 3.8, 5.3, 6.2, 7.5, 8.8)
+_CUBIC_TURN = 0.9  # the same for the cubic field
+_JUMP, _PART = 0.005, 2e-4  # of the energy: that of jumps of moments, and of parts of the highest degree
+
+
+class _Table:
+    """The data of `coarseness` of a model."""
+
+    def __init__(self, system: System) -> None:
+        model, neighbours = system.model, system.table(pairs)
+        joined = [_joined(*each) for each in zip(model.meshes, required_nodes(model), strict=True)]
+        bending = [_bending(mesh) for mesh in model.meshes]
+        block = np.repeat([mesh.block for mesh in model.meshes], [mesh.elements for mesh in model.meshes])
+        length = np.concatenate([mesh.lengths for mesh in model.meshes])
+        start, end = (np.concatenate([each[side] for each in bending]) for side in (0, 1))
+        inner = np.array([len(element.field.nodes) - 1 for element in model.groups])[block]
+        orders = np.array([_order(element) for element in model.groups])
+        whole = np.column_stack([inner, np.concatenate(joined), orders[block]]).astype(np.int64)
+        alone = np.repeat([mesh.elements == 1 for mesh in model.meshes], [mesh.elements for mesh in model.meshes])
+        weights, columns = np.zeros((len(length), WEIGHTS)), np.empty((len(neighbours.length), 5))
+        mean, first = np.maximum(0.5 * (start + end), _SMALLEST), np.cumsum(inner) - inner
+        for number, element in enumerate(model.groups):
+            own = np.flatnonzero(block == number)
+            order, h, xi = orders[number], length[own], np.asarray(element.field.nodes)
+            weights[own, 0] = 1.0 / (_TURN[order - 1] if isinstance(element.field, Lagrange) else _CUBIC_TURN)
+            weights[own, 1] = h / length.sum()
+            weights[own, 2] = h / (mean[own] * 8.0 * (2 * order + 1) * _JUMP)
+            if len(xi) > 3 or order < len(xi) - 1 > 1:
+                weights[own, 3] = h * mean[own] / ((2 * len(xi) - 3) * _PART)
+            elif order == 1:
+                weights[own, 4] = np.where(alone[own], h / (12.0 * mean[own] * _JUMP), 0.0)
+            slopes = _differences(xi)
+            scales = start[own] / h, end[own] / h, mean[own] / h, 1.0 / h
+            rows = first[own, None] + np.arange(len(xi) - 1)
+            for column, (scale, slope) in enumerate(zip(scales, slopes, strict=True)):
+                columns[rows, column] = scale[:, None] * slope
+        columns[:, 4] = np.concatenate([_turned(mesh) for mesh in model.meshes])
+        factors = np.hstack([np.ascontiguousarray(neighbours.at_rest[:, 1:]).view(float), columns])
+        self._arrays = whole, weights, np.ascontiguousarray(neighbours.numbers[:, 4:]), factors
+        self._table = np.array([len(whole), *map(address_of, self._arrays)], dtype=np.int64)
+        self.address = address_of(self._table)
+
+
+def _order(element: Element) -> int:
+    """Return the order with which an element converges; integrated fully, its bending has one degree less."""
+    exact = element.integration == "reduced" and isinstance(element.coordinates, Rotation)
+    return max(len(element.field.nodes) - 1 - (not exact), 1)
+
+
+def _joined(mesh: BeamMesh, parts: list[tuple[float, str]]) -> np.ndarray:
+    """Return whether each element (ne,) of a beam continues the one before, with no part that may let moments jump."""
+    result = np.ones(mesh.elements, dtype=bool)
+    result[0] = False
+    if len(mesh.node) > 1:
+        parted = np.array([at for at, name in parts if name != "PointForce"])
+        result[1:] = (mesh.node[1:, 0] == mesh.node[:-1, -1]) & (
+            distances(mesh.vertices[1:-1], parted * mesh.vertices[-1]) > _SAME * mesh.vertices[-1]
+        )
+    return result
+
+
+def _bending(mesh: BeamMesh) -> np.ndarray:
+    """Return the bending stiffness (2, ne) [N m^2] at the start and the end of the elements of a beam."""
+    beam = mesh.beam
+    if beam.prismatic:
+        return np.full((2, mesh.elements), beam.section_at(0.0).rigidity(beam.material).bending)
+    every = np.arange(mesh.elements)
+    ends = [mesh.section_arc_length(every, np.full(mesh.elements, xi)).tolist() for xi in (0.0, 1.0)]
+    return np.array([[beam.section_at(s).rigidity(beam.material).bending for s in side] for side in ends])
+
+
+def _turned(mesh: BeamMesh) -> np.ndarray:
+    """Return the angles (m,) between the sections of neighbouring nodes in the reference."""
+    if mesh.straight:
+        return np.zeros(mesh.node[:, 1:].size)
+    tangent = mesh.tangent[:, 0] + 1j * mesh.tangent[:, 1]
+    return np.angle(tangent[mesh.node[:, 1:]] / tangent[mesh.node[:, :-1]]).ravel()
+
+
+def _differences(xi: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return what the differences (m,) of a polynomial between its nodes xi (m + 1,) contribute to its slope.
+
+    They are the slope at xi = 0 and at 1, its weight in the energy, and the part of the highest degree at xi = 1.
+    """
+    order = len(xi) - 1
+    # a polynomial by its values at all nodes but the first, where it is zero
+    coefficients = np.linalg.inv(xi[1:, None] ** np.arange(1, order + 1)) @ np.tril(np.ones((order, order)))
+    # in the monomial of degree n, the Legendre polynomial of that degree has the factor 1 / binomial(2 n, n)
+    highest = order * coefficients[-1] / comb(2 * (order - 1), order - 1)
+    return coefficients[0], np.arange(1, order + 1) @ coefficients, 1.0 / np.diff(xi), highest
+
+
+def warned_of_coarse_mesh(solution: Solution) -> Solution:
+    """Return a static solution after a warning, which it then holds, if its displacements are off by 2 % or more.
+
+    Where the indicator of its last state exceeds 1, its error is estimated, unless there is a warning that its elements
+    lock, which finer ones would too.
+    """
+    system = system_of(solution.model, static=True)
+    if not len(solution):
+        return solution
+    table, state = system.table(_Table), np.ascontiguousarray(solution.p[-1])
+    if coarseness.compiled(table.address, address_of(state)) <= 1.0:
+        return solution
+    if any(finding.kind is LockingWarning for finding in solution.computed(locking)):
+        return solution
+    found = _found(solution)
+    if found is None:
+        return solution
+    warn_of([found])
+    statistics = replace(solution.statistics, warnings=(*solution.statistics.warnings, found.sentence))
+    return replace(solution, statistics=statistics)
+
+
+def _found(solution: Solution) -> Finding | None:
+    """Return a warning of the last row of a solution if its estimated error is large, or there is no estimate."""
+    model, last = solution.model, len(solution) - 1
+    try:
+        finer = enriched_row(solution, last)
+    except ConvergenceError as reason:
+        return Finding(f"the mesh may be too coarse: {reason.reason}. Use more elements", CoarseMeshWarning)
+    except InputError:  # a part of the user's own that takes no other mesh
+        return None
+    state = solution[last]
+    moved = _largest_displacement(model, state.p)
+    error = largest_displacement_error(state, finer) / moved if moved > 0.0 else 0.0
+    if error <= _WARNED:
+        return None
+    places, most = _chief_elements(model, error_shares(state, finer))
+    times = int(np.ceil((error / _ENOUGH) ** (1.0 / _rate(model.meshes[most]))))
+    size = f"by about {100.0 * error:.2g} % of the largest one" if error < 1.0 else "by more than the largest one"
+    return Finding(
+        f"the mesh is too coarse: displacements are off {size}, mostly because of {places}. Elements there of "
+        f"1/{times} of the length, or of a higher order, would be enough",
+        CoarseMeshWarning,
+    )
+
+
+def _largest_displacement(model: Model, p: np.ndarray) -> float:
+    return max(
+        float(np.linalg.norm(p[mesh.kinematics.dof[:, :2]] - mesh.position, axis=1).max()) for mesh in model.meshes
+    )
+
+
+def _rate(mesh: BeamMesh) -> int:
+    """Return the order of convergence of displacements at the nodes."""
+    field = mesh.beam.element.field
+    return 2 * field.order if isinstance(field, Lagrange) else 2
+
+
+def _chief_elements(model: Model, shares: list[np.ndarray]) -> tuple[str, int]:
+    """Return in words which elements of the beam with the largest share have most of it, and the beam's number."""
+    most = int(np.argmax([share.sum() for share in shares]))
+    own = shares[most]
+    order = np.argsort(own)[::-1]
+    enough = 1 + int(np.searchsorted(np.cumsum(own[order]), _CHIEF * own.sum()))
+    chief = np.sort(order[:enough])
+    first, last = int(chief[0]), int(chief[-1])
+    if len(own) == 1:
+        which = "the one element"
+    elif first == last:
+        which = f"element {first}"
+    elif last - first + 1 == len(own):
+        which = "the elements"
+    else:
+        which = f"elements {first} to {last}"
+    return f"{which} of {beam_in_words(model.beams, most)}", most

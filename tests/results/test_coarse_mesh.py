@@ -1,0 +1,141 @@
+"""Warnings of meshes that are too coarse for the displacements of a static solution."""
+
+import warnings
+
+import numpy as np
+import pytest
+from coarse_models import coarse_recipe, displacements, fine_recipe
+
+import beamfem as bf
+from beamfem.solve.accuracy.coarse_mesh import _differences
+
+pytestmark = pytest.mark.filterwarnings("error::beamfem.CoarseMeshWarning")
+STEEL = bf.Material(2e11, 0.3, 7800.0)
+SECTION = bf.Rectangle(0.02, 0.01)
+EI = 2e11 * SECTION.second_moment
+
+
+def cantilever(element, elements, loads, section=SECTION):
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), elements, element, section, STEEL)
+    return beam, bf.Model([beam], [bf.Clamp(beam.start)], loads(beam))
+
+
+def rolled_up(beam):
+    return [bf.PointMoment(beam.end, 2.0 * np.pi * EI)]
+
+
+def test_a_roll_up_in_one_element_warns_with_size_and_remedy():
+    """Its tip is 5.6 % of the length off the clamp, where it belongs."""
+    _, model = cantilever(bf.CRBF(5), 1, rolled_up)
+    with pytest.warns(bf.CoarseMeshWarning, match=r"off by about 5\.3 % .* of the one element of beam 0\. .* 1/2 of"):
+        solution = bf.solve_static(model)
+    assert "1 warning" in repr(solution)
+    assert len(solution.warnings) == 1
+    _, enough = cantilever(bf.CRBF(5), 2, rolled_up)
+    assert bf.solve_static(enough).warnings == ()
+
+
+@pytest.mark.parametrize("order", range(1, 9))
+def test_roll_ups_warn_if_the_tip_is_off_by_2_per_cent(order):
+    for elements in (1, 2, 3, 4, 6, 8, 16, 24, 32):
+        beam, model = cantilever(bf.CRBF(order), elements, rolled_up)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            off = np.linalg.norm(bf.solve_static(model).position(beam.end)[-1])
+        if not 0.015 < off < 0.025:
+            assert bool(caught) == (off > 0.02), f"{elements} elements: {off}"
+
+
+def test_one_bilinear_element_warns_under_any_small_force():
+    _, model = cantilever(bf.CRBF(1), 1, lambda beam: [bf.PointForce(beam.end, (0.0, 1e-6 * EI))])
+    with pytest.warns(bf.CoarseMeshWarning, match="off by about 33 %"):
+        bf.solve_static(model)
+
+
+def test_the_elements_are_named():
+    first = bf.Beam(bf.Line((0, 0), (1, 0)), 8, bf.CRBF(3), SECTION, STEEL, "fine")
+    second = bf.Beam(bf.Line((1, 0), (2, 0)), (0, 0.1, 0.2, 0.9, 1.0), bf.CRBF(1), SECTION, STEEL, "uneven")
+    loads = [bf.PointForce(second.end, (0.0, 0.5 * EI))]
+    model = bf.Model([first, second], [bf.Clamp(first.start)], loads, [bf.Rigid(first.end, second.start)])
+    bf.solve_static(model)
+    end = [bf.Clamp(first.start), bf.Pin(second.start)]
+    with pytest.warns(bf.CoarseMeshWarning, match=r"element 2 of beam 'uneven'\. Elements there of 1/\d of"):
+        bf.solve_static(model.with_(supports=end))
+
+
+def test_a_filter_silences_it_and_the_result_still_says_it():
+    _, model = cantilever(bf.CRBF(5), 1, rolled_up)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", bf.CoarseMeshWarning)
+        assert "too coarse" in bf.solve_static(model).warnings[0]
+
+
+def test_elements_that_lock_are_warned_of_as_such_only():
+    _, model = cantilever(bf.ANCF(), 4, lambda beam: [bf.PointForce(beam.end, (0.0, 5.0 * EI))])
+    with pytest.warns(bf.LockingWarning) as caught:
+        bf.solve_static(model)
+    assert len(caught) == 1
+
+
+def test_moments_and_jumps_of_the_section_at_nodes_are_no_sign_of_a_coarse_mesh():
+    def stepped(s):
+        return bf.Rectangle(0.02, 0.01 if s < 0.5 else 0.02)
+
+    def moments(beam):
+        return [bf.PointMoment(beam.at(0.25), EI), bf.PointForce(beam.end, (0.0, EI))]
+
+    _, model = cantilever(bf.CRBF(2), 8, moments, stepped)
+    assert bf.solve_static(model).warnings == ()
+
+
+@pytest.mark.parametrize("order", range(1, 9))
+def test_slopes_of_polynomials_from_their_differences(order):
+    xi = np.asarray(bf.Lagrange(order).nodes)
+    values = np.polynomial.Polynomial(np.random.default_rng(order).normal(size=order + 1))
+    slope = values.deriv()
+    start, end, _, highest = (weights @ np.diff(values(xi)) for weights in _differences(xi))
+    assert [start, end] == pytest.approx([slope(0.0), slope(1.0)])
+    legendre = np.polynomial.Legendre.fit(xi, slope(xi), order - 1, domain=[0.0, 1.0]) if order > 1 else slope
+    assert highest == pytest.approx(legendre.coef[-1])
+
+
+def judged(seed):
+    """Return the true error over the largest displacement, None if unknown, and whether the solve warns."""
+    recipe = coarse_recipe(seed)
+    try:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            built = recipe.build()
+            solution = bf.solve_static(built.model)
+        found = []
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            for elements in (24, 48):
+                fine = fine_recipe(recipe, elements).build()
+                found.append(displacements(fine, bf.solve_static(fine.model)))
+    except bf.BeamfemError:
+        return None, False
+    known = [warning.category for warning in caught]
+    warned = bf.CoarseMeshWarning in known or bf.LockingWarning in known
+    size = np.linalg.norm(found[1], axis=1).max()
+    error = np.linalg.norm(displacements(built, solution) - found[1], axis=1).max() / size
+    unknown = np.linalg.norm(found[1] - found[0], axis=1).max() > 0.2 * error * size and error > 1e-6
+    return (None if unknown else error), warned
+
+
+def require_right(seeds):
+    known = [(error, warned) for error, warned in map(judged, seeds) if error is not None]
+    poor, good = ([warned for error, warned in known if low < error < high] for low, high in ((0.05, 9e9), (-1, 0.005)))
+    assert len(known) > 0.6 * len(seeds)
+    assert sum(poor) >= 0.9 * len(poor)
+    assert sum(good) <= 0.02 * len(good)
+
+
+def test_random_meshes_warn_if_they_are_poor():
+    require_right(range(20))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(0, 1000, 100))
+def test_1000_random_meshes_warn_if_they_are_poor(first):
+    require_right(range(first, first + 100))

@@ -82,6 +82,20 @@ def enriched_row(solution: Solution, number: int) -> Solution:
     return Solution(model, True, np.array([state.at]), p[None], none, none.copy(), statistics, turned=turned)
 
 
+def enriched_state(state: State) -> State:
+    """Return the equilibrium next to a state on the enriched space; that of a state without stress is the reference.
+
+    Raises ConvergenceError.
+    """
+    if np.array_equal(state.p, system_of(state.model, static=True).reference):
+        model = enriched(state.model)
+        p, rest = system_of(model, static=True).reference, np.zeros(model.size)
+        return State(p, rest, rest.copy(), state.at, model)
+    rows = np.array([state.at]), state.p[None], state.v[None], state.a[None]
+    turned = None if state.turned is None else state.turned[None]
+    return enriched_row(Solution(state.model, True, *rows, Statistics(0, 0, 0, "one state"), turned=turned), 0)[0]
+
+
 def _equilibrium(system: System, p: np.ndarray, state: State) -> NewtonResult:
     """Return the equilibrium next to a state carried over to p (n,), with its stress resultants as independent ones.
 

@@ -19,6 +19,7 @@ from beamfem.results.locking import stiffness_locking
 from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import may_lock, warn_of
 from beamfem.results.status import Statistics, Status, counted
+from beamfem.solve.accuracy.error_estimate import enriched_state
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.modes.participation import participation
 from beamfem.solve.modes.pencil import WRONG, Pencil, lowest_pairs
@@ -171,6 +172,41 @@ class Modes:
         array([0.613, 0.189, 0.066])
         """
         return self.participation(direction) ** 2
+
+    def error(self, mode: int = 0) -> float:
+        """Return an estimate of the discretisation error of a frequency: its change [Hz] on an enriched space.
+
+        The equilibrium and its modes are found with elements of order k + 1 instead of k = 1 or 2, and halves of other
+        ones; modes are compared by their number.
+
+        Parameters
+        ----------
+        mode : int, default 0
+            Row of the mode.
+
+        Returns
+        -------
+        float, [Hz]
+            Frequency on the enriched space less that of the mode, to be added to it.
+
+        Raises
+        ------
+        InputError
+            If there is no such mode, and for damped modes of a `LinearModel`.
+        ConvergenceError
+            If there is no equilibrium nearby on finer elements.
+
+        Examples
+        --------
+        >>> abs(bf.solve_modes(model, count=2).error(0)) < 0.01
+        True
+        """
+        number = number_below("mode", mode, len(self), -len(self)) % len(self)
+        if np.any(self.growth < 0.0):
+            raise InputError("errors are estimated for undamped modes, as solve_modes finds them")
+        state = enriched_state(self.state)
+        finer = solve_modes(state.model, number + 1, about=state)
+        return float(finer.frequencies[number] - self.frequencies[number])
 
     def solution(self, mode: int = 0, amplitude: float | None = None, frames: int = 25) -> Solution:
         """Return one period of a mode as a Solution to draw or export.

@@ -14,6 +14,8 @@ from beamfem.model.model import Model
 from beamfem.results.locking import stiffness_locking
 from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import advice, may_lock, warn_of
+from beamfem.solve.accuracy.enriched_model import enriched
+from beamfem.solve.accuracy.error_estimate import enriched_state
 from beamfem.results.status import Finding, Statistics, Status
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.stability.linearised import linear_reach, linear_solution, linearised_loads
@@ -21,6 +23,7 @@ from beamfem.solve.stability.loading_path import InvertedError, LoadingPath, Pat
 from beamfem.solve.stability.path_critical_points import LIMIT_POINT, Critical, critical_points
 from beamfem.solve.stability.stability import stable_start
 from beamfem.solve.start.mechanisms import require_support
+from beamfem.solve.start.start_state import last_state
 from beamfem.solve.start.start_checks import refuse_memory
 from beamfem.tables import as_pandas
 from beamfem.validation import count as whole_number
@@ -63,6 +66,8 @@ class Buckling:
         limits of movement, load or length.
     warnings : tuple of str
         Warnings to heed before using the load factors, in sentences.
+    about : State, optional
+        The state that the search was told to start from.
 
     Examples
     --------
@@ -81,6 +86,7 @@ class Buckling:
     ended: str
     status: Status = Status.COMPLETED
     warnings: tuple[str, ...] = ()
+    about: State | None = None
 
     def __repr__(self) -> str:
         points = list(zip(self.kinds, self.load_factors, strict=True))
@@ -95,6 +101,46 @@ class Buckling:
 
     def __len__(self) -> int:
         return len(self.load_factors)
+
+    def error(self, mode: int = 0) -> float:
+        """Return an estimate of the discretisation error of a critical load factor: its change on an enriched space.
+
+        The path is followed with elements of order k + 1 instead of k = 1 or 2, and halves of other ones; critical
+        points are compared by their number.
+
+        Parameters
+        ----------
+        mode : int, default 0
+            Row of the critical point.
+
+        Returns
+        -------
+        float, [-]
+            Load factor on the enriched space less that of the critical point, to be added to it.
+
+        Raises
+        ------
+        InputError
+            If there is no such critical point.
+        ConvergenceError
+            If there are fewer critical points on finer elements.
+
+        Examples
+        --------
+        >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e3, 0.0))])
+        >>> abs(bf.solve_buckling(column).error()) < 0.01
+        True
+        """
+        number = number_below("mode", mode, len(self), -len(self)) % len(self)
+        about = None if self.about is None else enriched_state(self.about)
+        finer = solve_buckling(enriched(self.model), number + 1, about)
+        if len(finer) <= number:
+            raise ConvergenceError(
+                f"the error cannot be estimated: on finer elements there are {len(finer)} critical points, as "
+                f"{finer.ended}",
+                remedy="The mesh is too coarse for this one",
+            )
+        return float(finer.load_factors[number] - self.load_factors[number])
 
     def solution(self, mode: int = 0, amplitude: float | None = None) -> Solution:
         """Return the critical state and the same state with a mode added, as a Solution to draw or export.
@@ -223,6 +269,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         ended,
         status,
         tuple(finding.sentence for finding in found),
+        last_state(about, "about"),
     )
 
 

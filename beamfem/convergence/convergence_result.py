@@ -23,7 +23,8 @@ EXPLANATION = (
     "neighbours stay within 15 % of the finest one), with the 95 % confidence interval of the slope, which does not "
     "hold the uncertainty of the limit. GCI: grid convergence index of Roache with safety factor 1.25, an estimate of "
     "the relative error that needs no reference but takes the order of three values as it is. Estimated error: of the "
-    "finest value; it trusts an order only where four values agree on it, else it is the change between levels."
+    "finest value; it trusts an order only where four values agree on it, else it is the change between levels. "
+    "Effectivity: estimate of the error that the function returns, over the error."
 )
 
 
@@ -95,7 +96,8 @@ class Convergence:
     def points(self, rounded: bool = False) -> tuple[list[str], list[list[Any]]]:
         """Return header and rows of the table of points, without solutions, which `curves` holds.
 
-        Columns: parameters, refinement, value, error, order, GCI, other numbers and seconds [s]; rounded: values,
+        Columns: parameters, refinement, value, error, order, GCI, effectivity if the function returns estimates of the
+        error, other numbers and seconds [s]; rounded: values,
         errors and orders as short text instead of numbers. Raises InputError if it is not a bool.
         """
         names = list(dict.fromkeys(name for curve in self.curves for name in curve.texts))
@@ -103,12 +105,15 @@ class Convergence:
         whole = {name for name, column in values if any(isinstance(value, Solution) for value in column)}
         others = [name for name in dict.fromkeys(name for name, _ in values) if name not in whole]
         flag("rounded", rounded)
-        header = [*names, self.refine, self.quantity, self.error_name, "order", "GCI", *others, "seconds"]
+        given = ["effectivity"] if f"{self.quantity}_error" in others else []
+        header = [*names, self.refine, self.quantity, self.error_name, "order", "GCI", *given, *others, "seconds"]
         rows = []
         for curve in self.curves:
             for i, refinement in enumerate(curve.refinement):
                 numbers = [curve.error[i], curve.order[i], curve.gci[i]]
-                judged = [_short(x, form) for x, form in zip(numbers, (".2e", ".2f", ".2e"), strict=True)]
+                if given:
+                    numbers.append(self._effectivity(curve, i))
+                judged = [_short(x, form) for x, form in zip(numbers, (".2e", ".2f", ".2e", ".2f"), strict=False)]
                 rows.append(
                     [
                         *(curve.texts[name] for name in names),
@@ -120,6 +125,13 @@ class Convergence:
                     ]
                 )
         return header, rows
+
+    def _effectivity(self, curve: Curve, i: int) -> float:
+        """Return the estimate of the error that the function returned over the error; nan if that is not known."""
+        change = curve.limit - curve.value[i]
+        estimate = curve.others.get(f"{self.quantity}_error", {i: None})[i]
+        known = estimate is not None and change != 0.0 and not np.isnan(curve.error[i])
+        return float(estimate / change) if known else np.nan
 
     def summary(self) -> tuple[list[str], list[list[str]]]:
         """Return header and rows, as text, of the table of curves.

@@ -8,7 +8,7 @@ import numpy as np
 
 from beamfem import validation
 from beamfem.convergence.convergence_result import Convergence
-from beamfem.convergence.observed_order import highest_order
+from beamfem.convergence.observed_order import highest_order, scale_of
 from beamfem.convergence.refinement_curve import Curve, judge
 from beamfem.errors import InputError
 from beamfem.progress import progress
@@ -46,7 +46,9 @@ def converge(
     Parameters
     ----------
     function : callable
-        Returns a number or a mapping of named numbers.
+        Returns a number or a mapping of named numbers. One with the name of the quantity and `_error` behind, such as
+        "deflection_error", is an estimate of its error, to be added to it, as `Solution.error` returns it: the table
+        shows its effectivity, and it is the estimated error of a curve that has no other.
     quantity : str, optional
         Name of the number whose error is studied; the others become columns.
     refine : str
@@ -203,8 +205,16 @@ def _curve(line: _Line, quantity: str | None, counts: bool, reference: float | N
         reference=reference,
         highest=highest_order(line.parameters),
     )
+    estimate = curve.estimated_error
+    if (
+        np.isnan(estimate)
+        and quantity is not None
+        and (found := outcomes[-1].value.get(f"{quantity}_error")) is not None
+    ):
+        estimate = abs(float(found)) / scale_of(curve.limit, curve.value)
     return replace(
         curve,
+        estimated_error=estimate,
         label=line.label,
         parameters=line.parameters,
         texts=line.texts,

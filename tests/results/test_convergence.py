@@ -248,3 +248,28 @@ def test_elements_converge_with_their_order():
     assert [curve.fit.order for curve in study.curves] == pytest.approx([2, 4], abs=0.03)
     for curve in study.curves:
         assert abs(curve.limit - exact) < 0.05 * abs(curve.value[-1] - exact)
+
+
+def estimated_tip(elements, order=1):
+    """Deflection of a cantilever bent far, and the estimate of its error."""
+    section, steel = bf.Rectangle(0.1, 0.1), bf.Material(2e11, 0.3, 7800.0)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), elements, bf.CRBF(order), section, steel)
+    force = bf.PointForce(beam.end, (0.0, 5.0 * steel.youngs_modulus * section.second_moment))
+    solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [force]))
+    return {"tip": solution.displacement(beam.end)[-1, 1], "tip_error": float(solution.error(beam.end)[1])}
+
+
+def test_the_table_shows_the_effectivity_of_estimates():
+    study = bf.converge(estimated_tip, "tip", refine="elements", elements=[8, 16, 32, 64], order=[1, 2])
+    header, rows = study.points()
+    ratios = np.array([row[header.index("effectivity")] for row in rows])
+    assert np.all((ratios > 0.9) & (ratios < 1.1) | np.isnan(ratios))
+    assert np.isfinite(ratios).sum() >= 7
+    assert "effectivity" in str(study)
+
+
+def test_one_level_has_the_error_that_its_function_estimates():
+    study = bf.converge(estimated_tip, "tip", refine="elements", elements=[16])
+    fine = estimated_tip(8, 8)["tip"]
+    (curve,) = study.curves
+    assert curve.estimated_error == pytest.approx(abs(fine / curve.value[0] - 1.0), rel=0.1)

@@ -153,7 +153,10 @@ def describe(model: Model, at: np.ndarray) -> dict[str, Any]:
     """
     writer = _Writer(model, [float(value) for value in np.unique(at)])
     beams = [writer.members(_with_values(beam, mesh)) for beam, mesh in zip(model.beams, model.meshes, strict=True)]
-    described = writer.members(replace(model, loads=[_with_own_values(load, model) for load in model.loads]))
+    described = {"class": Model.__name__}
+    loads = [_with_own_values(load, model) for load in model.loads]
+    for field in fields(Model):
+        described[field.name] = writer.write(loads if field.name == "loads" else getattr(model, field.name))
     return {"beams": beams, "model": described, "at": writer.at, "functions": writer.values}
 
 
@@ -202,7 +205,9 @@ class _Writer:
     """Beams and functions are written once and referred to by number."""
 
     def __init__(self, model: Model, at: list[float]) -> None:
-        self.beams = {id(beam): number for number, beam in enumerate(model.beams)}
+        # parts of a model with another mesh are at points of its original
+        every = (*enumerate(model.beams), *enumerate(getattr(model, "original", ())))
+        self.beams = {id(beam): number for number, beam in every}
         self.at = at
         self.functions: dict[int, tuple[int, Callable[[float], float]]] = {}
         self.values: list[list[float]] = []

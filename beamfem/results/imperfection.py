@@ -79,6 +79,8 @@ def with_imperfection(model: Model, modes: Any, size: float, mode: int = 0) -> M
         for mesh, rates in zip(model.meshes, moved, strict=True)
     }
     beams = [crooked[id(beam)].beam for beam in model.beams]
+    for beam, same in zip(getattr(model, "original", ()), model.beams, strict=False):
+        crooked[id(beam)] = crooked[id(same)]
     parts = (model.supports, model.joints, model.connectors, model.masses)
     supports, joints, connectors, masses = ([_placed(item, crooked) for item in part] for part in parts)
     loads = [_placed_load(load, crooked) for load in model.loads]

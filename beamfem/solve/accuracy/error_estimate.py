@@ -10,10 +10,11 @@ from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.beam import Point
 from beamfem.results.full_turns import first_turns
+from beamfem.results.nodal import axis_at
 from beamfem.results.postprocess import position
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
-from beamfem.solve.accuracy.carried_state import carried_coordinates, carried_stresses
+from beamfem.solve.accuracy.carried_state import carried_coordinates, carried_stresses, places
 from beamfem.solve.accuracy.enriched_model import enriched
 from beamfem.solve.newton.iteration import Newton, NewtonResult
 from beamfem.solve.newton.newton import PivotedProblem, PrescribedStep, find_equilibrium
@@ -119,10 +120,17 @@ def _without_estimate(reason: str) -> ConvergenceError:
     )
 
 
-def largest_displacement_error(state: State, finer: Solution) -> float:
-    """Return the largest change [m] of the position of a node of the state's model."""
-    changes = []
+def largest_displacement_error(state: State, finer: Solution, between_nodes: bool = False) -> float:
+    """Return the largest change [m] of the position of a node of the state's model, or of a node of the finer one."""
+    largest = 0.0
     for old, new in zip(state.model.meshes, finer.model.meshes, strict=True):
-        for fraction, place in zip((old.arc / old.vertices[-1]).tolist(), old.kinematics.dof[:, :2], strict=True):
-            changes.append(np.linalg.norm(position(new, finer.p, min(fraction, 1.0))[0] - state.p[place]))
-    return float(max(changes))
+        if between_nodes:
+            element, xi = (each.ravel() for each in places(old, new, new.beam.element.field.nodes))
+            before = axis_at(old, state.p[None], element, xi).r[0]
+            after = finer.p[0][new.kinematics.dof[new.node.ravel(), :2]]
+        else:
+            before = state.p[old.kinematics.dof[:, :2]]
+            fractions = np.minimum(old.arc / old.vertices[-1], 1.0).tolist()
+            after = np.array([position(new, finer.p, fraction)[0] for fraction in fractions])
+        largest = max(largest, float(np.linalg.norm(after - before, axis=1).max()))
+    return largest

@@ -14,7 +14,9 @@ from beamfem.model.model import Model
 from beamfem.results.full_turns import start_rotations
 from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import warned
+from beamfem.solve.accuracy.adapted_mesh import solved_to_accuracy
 from beamfem.solve.accuracy.coarse_mesh import warned_of_coarse_mesh
+from beamfem.solve.accuracy.error_estimate import Quantity
 from beamfem.solve.newton.newton import Newton, require_newton
 from beamfem.solve.start.functions_of_time import SAME as NEAR
 from beamfem.solve.start.functions_of_time import (
@@ -30,7 +32,7 @@ from beamfem.solve.statics.load_jumps import cross_jump
 from beamfem.solve.statics.load_steps import SAME, Snap, Unstable, reach
 from beamfem.solve.statics.preload import first_equilibrium, nothing_acts
 from beamfem.solve.statics.static_record import StaticRecord, is_unstable
-from beamfem.validation import count, finite, items, one_of, shown
+from beamfem.validation import count, finite, items, one_of, positive, shown
 
 _NEWTON = Newton()
 _SIDE = 1e-9  # of the load factor: distance from a row at which a function with declared kinks is evaluated
@@ -44,6 +46,8 @@ def solve_static(
     at: Sequence[float] | np.ndarray | None = None,
     snap: Snap = "error",
     unstable: Unstable = "keep",
+    accuracy: float | None = None,
+    quantity: Quantity = None,
 ) -> Solution:
     """Find the static equilibria from load factor 0 to 1, along the path that starts at 0.
 
@@ -71,18 +75,25 @@ def solve_static(
         What to do where the path loses its stability: keep to it, or leave it for the stable branch as a slow, damped
         structure does, at limit points by a jump. There is a row at the critical point. At a symmetric bifurcation
         either side is taken; `statistics.ended` names it, and a small imperfection chooses it.
+    accuracy : float, [-], optional
+        Refine the mesh until the estimated error of the last row, see `Solution.error`, is at most this number times
+        the size of the model, or times the quantity: by higher orders, and shorter elements where most of it
+        arises. The model of the result has the finer beams and takes the points and beams of this one.
+    quantity : callable or Point, optional
+        What is to be accurate, as for `Solution.error`; by default all displacements.
 
     Raises
     ------
     InputError
-        Before the solve, for invalid arguments, and for unstable="leave" and laws or connectors with history.
+        Before the solve, for invalid arguments, and for unstable="leave" and laws or connectors with history; for an
+        accuracy and elements that lock.
     FreeMotionError
         If the model can move without resistance, and loads with scale=False do not stiffen it.
     LimitPointError
         At a limit point; it has the load factor and the states found.
     ConvergenceError
-        If no step converges; its `solution` has the states found. Any other exception during the solve, such as
-        KeyboardInterrupt, carries them as its `solution` too.
+        If no step converges, or no mesh reaches the accuracy; its `solution` has the states found. Any other exception
+        during the solve, such as KeyboardInterrupt, carries them as its `solution` too.
 
     Warns
     -----
@@ -103,12 +114,18 @@ def solve_static(
     >>> halves.displacement(beam.end)[:, 1].round(4)
     array([ 0.    , -0.0153, -0.0305])
     """
-    if at is None:
-        equal = [k / steps for k in range(1, count("steps", steps))]
-        return _judged(solve_through(model, equal, steps, newton, snap=snap, unstable=unstable, resolved=True))
-    load_factors = _ascending(at)
-    through = solve_through(model, load_factors, steps, newton, snap=snap, unstable=unstable, end=load_factors[-1])
-    return _judged(_rows_at(through, load_factors))
+    load_factors = None if at is None else _ascending(at)
+
+    def solve(model: Model) -> Solution:
+        if load_factors is None:
+            equal = [k / steps for k in range(1, count("steps", steps))]
+            return solve_through(model, equal, steps, newton, snap=snap, unstable=unstable, resolved=True)
+        through = solve_through(model, load_factors, steps, newton, snap=snap, unstable=unstable, end=load_factors[-1])
+        return _rows_at(through, load_factors)
+
+    if accuracy is None:
+        return _judged(solve(model))
+    return _judged(solved_to_accuracy(model, positive("accuracy", accuracy), quantity, solve))
 
 
 def _judged(solution: Solution) -> Solution:

@@ -4,6 +4,7 @@ import warnings
 
 import numpy as np
 import pytest
+from coarse_models import coarse_recipe, displacements, fine_recipe
 from history_laws import YIELDING
 
 import beamfem as bf
@@ -201,3 +202,41 @@ def test_estimates_warn_of_nothing():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         solution.error(beam.end)
+
+
+def effectivities(seeds):
+    """Return the effectivity of the displacements of random coarse models that are off by less than 5 %."""
+    found = []
+    for seed in seeds:
+        recipe = coarse_recipe(seed)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            try:
+                built, meshes = recipe.build(), [fine_recipe(recipe, elements).build() for elements in (24, 72)]
+                solution = bf.solve_static(built.model)
+                estimate = solution.error(lambda s, built=built: displacements(built, s))
+                coarser, exact = (displacements(mesh, bf.solve_static(mesh.model)) for mesh in meshes)
+            except bf.BeamfemError:  # limit points, mostly
+                continue
+        off = np.linalg.norm(exact - displacements(built, solution), axis=1)
+        known = np.linalg.norm(exact - coarser, axis=1).max() < 0.2 * off.max()
+        if known and 1e-8 < off.max() / np.linalg.norm(exact, axis=1).max() < 0.05:
+            found.append(np.linalg.norm(estimate, axis=1).max() / off.max())
+    return np.array(found)
+
+
+def require_effective(seeds):
+    ratios = effectivities(seeds)
+    assert len(ratios) > 0.25 * len(seeds)
+    assert np.mean((ratios > 0.5) & (ratios < 2.0)) >= 0.95
+    assert np.mean((ratios > 0.2) & (ratios < 5.0)) >= 0.99
+
+
+def test_random_models_carry_the_errors_of_their_displacements():
+    require_effective(range(24))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(0, 300, 100))
+def test_300_random_models_carry_the_errors_of_their_displacements(first):
+    require_effective(range(first, first + 100))

@@ -17,10 +17,10 @@ from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.model_meshes import required_nodes
 from beamfem.model.beam import beam_in_words
 from beamfem.model.model import Model
-from beamfem.results.finding import Finding
 from beamfem.results.locking import locking, pairs
 from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import warn_of
+from beamfem.results.status import Finding
 from beamfem.solve.accuracy.error_estimate import enriched_row, largest_displacement_error
 from beamfem.solve.accuracy.error_shares import error_shares
 

@@ -16,8 +16,7 @@ from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
 from beamfem.solve.accuracy.carried_state import carried_coordinates, carried_stresses, places
 from beamfem.solve.accuracy.enriched_model import enriched
-from beamfem.solve.newton.iteration import Newton, NewtonResult
-from beamfem.solve.newton.newton import PivotedProblem, PrescribedStep, find_equilibrium
+from beamfem.solve.newton.newton import Newton, NewtonResult, PivotedProblem, PrescribedStep, find_equilibrium
 from beamfem.validation import number_below, shown
 
 Quantity = Callable[[Solution], Any] | Point | None

@@ -14,17 +14,17 @@ from beamfem.model.model import Model
 from beamfem.results.locking import stiffness_locking
 from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import advice, may_lock, warn_of
+from beamfem.results.status import Finding, Statistics, Status
 from beamfem.solve.accuracy.enriched_model import enriched
 from beamfem.solve.accuracy.error_estimate import enriched_state
-from beamfem.results.status import Finding, Statistics, Status
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.stability.linearised import linear_reach, linear_solution, linearised_loads
 from beamfem.solve.stability.loading_path import InvertedError, LoadingPath, PathLostError
 from beamfem.solve.stability.path_critical_points import LIMIT_POINT, Critical, critical_points
 from beamfem.solve.stability.stability import stable_start
 from beamfem.solve.start.mechanisms import require_support
-from beamfem.solve.start.start_state import last_state
 from beamfem.solve.start.start_checks import refuse_memory
+from beamfem.solve.start.start_state import last_state
 from beamfem.tables import as_pandas
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared

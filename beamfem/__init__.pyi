@@ -134,11 +134,11 @@ from .section import RememberingLaw as RememberingLaw
 from .section import Section as Section
 from .section import SectionLaw as SectionLaw
 from .section import Tube as Tube
+from .solve.linear.craig_bampton import reduce as reduce
 from .solve.linear.frequency_response import FrequencyResponse as FrequencyResponse
 from .solve.linear.frequency_response import frequency_response as frequency_response
 from .solve.linear.linear_model import LinearModel as LinearModel
 from .solve.linear.linearise import linearise as linearise
-from .solve.linear.reduction import reduce as reduce
 from .solve.modes.modes import Modes as Modes
 from .solve.modes.modes import solve_modes as solve_modes
 from .solve.motion.collocation import Gauss as Gauss

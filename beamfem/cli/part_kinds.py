@@ -16,29 +16,12 @@ from beamfem.element.presets import ANCF, ANCFCRBF, CRBF, BilinearANCF, Bilinear
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point, graded
-from beamfem.model.time_functions import Interpolated, kinks_of
+from beamfem.model.time_functions import Interpolated, kinks_of, sine, smooth_ramp
 from beamfem.parts.hinge import Hinge
 from beamfem.parts.parts_registry import parts_in
 from beamfem.section import Circle, Layered, Rectangle, Section, Tube
 from beamfem.section.protocol import CrossSection
-from beamfem.validation import nearest, positive
-
-
-def _sine(frequency: float, size: float = 1.0, phase: float = 0.0, mean: float = 0.0) -> Callable[[float], float]:
-    """Return size sin(2 pi frequency t + phase) + mean; frequency [Hz], phase [rad]."""
-    positive("frequency", frequency)
-    return lambda t: float(mean + size * np.sin(2.0 * np.pi * frequency * t + phase))
-
-
-def _smooth_ramp(duration: float, size: float = 1.0, start: float = 0.0) -> Callable[[float], float]:
-    """Return size (10 s^3 - 15 s^4 + 6 s^5) with s = (t - start) / duration within [0, 1]."""
-    positive("duration", duration)
-
-    def ramp(t: float) -> float:
-        s = min(max((t - start) / duration, 0.0), 1.0)
-        return size * s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
-
-    return ramp
+from beamfem.validation import nearest
 
 
 def _along(make: Callable[..., Any]) -> Callable[..., Any]:
@@ -82,7 +65,7 @@ SECTIONS: Kinds = {
 }
 MATERIALS: Kinds = {"material": Material}
 DAMPING: Kinds = {"rayleigh": Rayleigh, "ratios": Rayleigh.from_ratios, "kelvin-voigt": KelvinVoigt}
-FUNCTIONS: Kinds = {"table": Interpolated, "sine": _sine, "smooth-ramp": _smooth_ramp}
+FUNCTIONS: Kinds = {"table": Interpolated, "sine": sine, "smooth-ramp": smooth_ramp}
 ELEMENTS: Kinds = {preset.__name__: preset for preset in (ANCF, ANCFCRBF, BilinearANCF, BilinearCRBF, CRBF, ShearRigid)}
 
 

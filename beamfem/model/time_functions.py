@@ -11,7 +11,7 @@ from beamfem.cached_properties import cached_property
 from beamfem.curves.curve import numbers, points
 from beamfem.errors import InputError
 from beamfem.reprs import brief
-from beamfem.validation import function_of_one
+from beamfem.validation import function_of_one, positive
 
 
 @dataclass(frozen=True)
@@ -123,3 +123,20 @@ def kinks_of(function: Any) -> tuple[float, ...]:
     if any(later <= earlier for earlier, later in pairwise(kinks)):
         raise InputError(f"kinks must be increasing times, got {kinks}")
     return kinks
+
+
+def sine(frequency: float, size: float = 1.0, phase: float = 0.0, mean: float = 0.0) -> Callable[[float], float]:
+    """Return size sin(2 pi frequency t + phase) + mean; frequency [Hz], phase [rad]."""
+    positive("frequency", frequency)
+    return lambda t: float(mean + size * np.sin(2.0 * np.pi * frequency * t + phase))
+
+
+def smooth_ramp(duration: float, size: float = 1.0, start: float = 0.0) -> Callable[[float], float]:
+    """Return size (10 s^3 - 15 s^4 + 6 s^5) with s = (t - start) / duration within [0, 1]."""
+    positive("duration", duration)
+
+    def ramp(t: float) -> float:
+        s = min(max((t - start) / duration, 0.0), 1.0)
+        return size * s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
+
+    return ramp

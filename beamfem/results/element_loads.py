@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from beamfem.assembly.rotating_frame import seen_from_rest
+from beamfem.assembly.frame_inertia import seen_from_rest
 from beamfem.assembly.system import System
 from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import across
@@ -21,7 +21,7 @@ from beamfem.results.solution_system import loading
 class Rows:
     """Rows of a solution and the forces that act in them.
 
-    p, v, a (steps, n): seen from rest, see `assembly.rotating_frame`; body (steps, beams, 4): see `System.body`;
+    p, v, a (steps, n): seen from rest, see `assembly.frame_inertia`; body (steps, beams, 4): see `System.body`;
     values: for each block (steps, nl, 3), see `Actions`; imposing (steps, k): factors of the loads that impose strains.
     """
 

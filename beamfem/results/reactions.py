@@ -6,8 +6,8 @@ import numpy as np
 
 from beamfem.assembly.connectors import Connector, Connectors, Motion
 from beamfem.assembly.equations import residual
+from beamfem.assembly.frame_inertia import seen_from_rest
 from beamfem.assembly.model_coordinates import COORDINATES, coordinate_of
-from beamfem.assembly.rotating_frame import seen_from_rest
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.model.beam import Point

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamfem.solve.linear.outputs import QUANTITIES
+from beamfem.solve.linear.linear_outputs import QUANTITIES
 from beamfem.view.labels import place
 from beamfem.view.plots import COLOURS, empty_figure, quiet, save_figure
 

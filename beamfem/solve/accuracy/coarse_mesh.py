@@ -26,6 +26,7 @@ from beamfem.solve.accuracy.error_shares import error_shares
 
 _WARNED = 0.02  # of the largest displacement: error above which there is a warning
 _ENOUGH = 0.005  # of it: error that the advice leads to
+_MARGIN = 1.05  # of an indicator whose error is small: larger ones for which it is not estimated again
 _CHIEF = 0.8  # of the error: what the elements that a warning names account for
 
 _SMALLEST = np.finfo(float).tiny  # bending stiffness [N m^2]
@@ -38,9 +39,10 @@ _JUMP, _PART = 0.005, 2e-4  # of the energy: that of jumps of moments, and of pa
 
 
 class _Table:
-    """The data of `coarseness` of a model."""
+    """The data of `coarseness` of a model; fine: the largest indicator for which its error was found to be small."""
 
     def __init__(self, system: System) -> None:
+        self.fine = 1.0
         model, neighbours = system.model, system.table(pairs)
         joined = [_joined(*each) for each in zip(model.meshes, required_nodes(model), strict=True)]
         bending = [_bending(mesh) for mesh in model.meshes]
@@ -128,18 +130,20 @@ def warned_of_coarse_mesh(solution: Solution) -> Solution:
     """Return a static solution after a warning, which it then holds, if its displacements are off by 2 % or more.
 
     Where the indicator of its last state exceeds 1, its error is estimated, unless there is a warning that its elements
-    lock, which finer ones would too.
+    lock, which finer ones would too. It is not estimated again for the same mesh with an indicator that is no larger.
     """
     system = system_of(solution.model, static=True)
     if not len(solution):
         return solution
     table, state = system.table(_Table), np.ascontiguousarray(solution.p[-1])
-    if coarseness.compiled(table.address, address_of(state)) <= 1.0:
+    indicator = coarseness.compiled(table.address, address_of(state))
+    if indicator <= table.fine:
         return solution
     if any(finding.kind is LockingWarning for finding in solution.computed(locking)):
         return solution
     found = _found(solution)
     if found is None:
+        table.fine = _MARGIN * indicator
         return solution
     warn_of([found])
     statistics = replace(solution.statistics, warnings=(*solution.statistics.warnings, found.sentence))

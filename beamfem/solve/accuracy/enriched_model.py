@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import chain
+from typing import cast
 
 import numpy as np
 
@@ -36,8 +37,14 @@ class EnrichedModel(Model):
 
 
 def enriched(model: Model) -> EnrichedModel:
-    """Return a model whose elements are of order k + 1 instead of k = 1 or 2, and halves of other ones."""
-    return remeshed(model, [_enriched(mesh) for mesh in model.meshes])
+    """Return a model whose elements are of order k + 1 instead of k = 1 or 2, and halves of other ones.
+
+    Those of models that `Model.with_loads` has made share their meshes and tables as these do.
+    """
+    known: EnrichedModel | None = model.tables.get("enriched")
+    if known is None:
+        known = model.tables["enriched"] = remeshed(model, [_enriched(mesh) for mesh in model.meshes])
+    return known if known.loads == model.loads else cast(EnrichedModel, known.with_loads(model.loads))
 
 
 def remeshed(model: Model, beams: Sequence[Beam]) -> EnrichedModel:

@@ -14,7 +14,7 @@ from beamfem.model.load_base import Load
 from beamfem.model.model import Model
 from beamfem.results.solution import State
 from beamfem.solve.linear.damped_modes import damped_modes
-from beamfem.solve.linear.outputs import Quantity, output_row
+from beamfem.solve.linear.linear_outputs import Quantity, output_row
 from beamfem.solve.modes.modes import Modes
 from beamfem.validation import items
 

@@ -37,7 +37,7 @@ class Sweep:
         What the function returned, None if it failed.
     failures : tuple of Failure
         The calls that failed.
-    seconds : array, [s], (points,)
+    seconds : array, [s], (n,)
         Duration of each call, without compilation; nan for points without a call.
     shape : tuple of int
         Number of values of each varied parameter; `sweep[name].reshape(sweep.shape)` is the grid.

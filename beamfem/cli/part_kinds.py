@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from skfem import MeshLine1
 
+from beamfem import section
 from beamfem.cli.schema import Keyed, Kinds, Names, in_braces, keys_of, named, part, reader, shown
 from beamfem.curves import Arc, BSpline, Chain, Curve, Line, Polyline, elliptic_arc, spline_through_hermite
 from beamfem.damping import KelvinVoigt, Rayleigh
@@ -19,7 +20,6 @@ from beamfem.model.beam import Beam, Point, graded
 from beamfem.model.time_functions import Interpolated, kinks_of, sine, smooth_ramp
 from beamfem.parts.hinge import Hinge
 from beamfem.parts.parts_registry import parts_in
-from beamfem.section import Circle, Layered, Rectangle, Section, Tube
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import nearest
 
@@ -58,12 +58,14 @@ CURVES: Kinds = {
     "chain": Chain,
 }
 SECTIONS: Kinds = {
-    **{_kind_of(make): _along(make) for make in (Rectangle, Circle, Tube)},
-    "moments": _along(Section),
-    "stiffness": _along(Section.from_stiffness),
-    "layered": Layered,
+    **{_kind_of(make): _along(make) for make in (section.Rectangle, section.Circle, section.Tube)},
+    "moments": _along(section.Section),
+    "stiffness": _along(section.Section.from_stiffness),
+    "layered": section.Layered,
+    "fibres": section.Fibres,
 }
 MATERIALS: Kinds = {"material": Material}
+LAWS: Kinds = {_kind_of(make): make for make in (section.ElasticPlastic, section.RambergOsgood, section.Maxwell)}
 DAMPING: Kinds = {"rayleigh": Rayleigh, "ratios": Rayleigh.from_ratios, "kelvin-voigt": KelvinVoigt}
 FUNCTIONS: Kinds = {"table": Interpolated, "sine": sine, "smooth-ramp": smooth_ramp}
 ELEMENTS: Kinds = {preset.__name__: preset for preset in (ANCF, ANCFCRBF, BilinearANCF, BilinearCRBF, CRBF, ShearRigid)}
@@ -113,7 +115,8 @@ TYPES: dict[Any, Any] = {
     MeshLine1: reader(lambda ends, names: part({"graded": graded}, ends, names) if isinstance(ends, dict) else ends),
     Material: reader(named("materials", MATERIALS)),
     Rayleigh: reader(lambda value, names: part(DAMPING, value, names)),
-    CrossSection: reader(named("sections", SECTIONS)),
+    **dict.fromkeys((CrossSection, section.ShapedSection), reader(named("sections", SECTIONS))),
+    section.FibreLaw: reader(lambda value, names: part(LAWS, value, names)),
     Element: reader(named("elements", ELEMENTS)),
     Curve: reader(_curve),
     **dict.fromkeys(FORCES.values(), reader(named("forces", FORCES))),

@@ -269,6 +269,35 @@ def test_a_tapered_cantilever_bends_as_the_integrals_of_bending_and_shear(tmp_pa
     assert read_model_file(tmp_path / "model.toml").model.beams[0].section.kinks == (0.0, 1.0)
 
 
+LAWS = {
+    'kind = "elastic-plastic", yield_stress = 2.5e8, hardening = 1e9': bf.ElasticPlastic(2e11, 2.5e8, 0.3, 7800.0, 1e9),
+    'kind = "ramberg-osgood", proof_stress = 2e8, exponent = 7': bf.RambergOsgood(2e11, 2e8, 7.0, 0.3, 7800.0),
+    'kind = "maxwell", branches = [[0.3, 0.01], [0.2, 1]]': bf.Maxwell(2e11, [(0.3, 0.01), (0.2, 1.0)], 0.3, 7800.0),
+}
+
+
+@pytest.mark.parametrize(("keys", "law"), LAWS.items(), ids=lambda item: type(item).__name__)
+def test_sections_of_fibres_are_those_of_python(keys, law, tmp_path):
+    text = f"""
+    [beams.bar]
+    curve = {{ kind = "line", start = [0, 0], end = [1, 0] }}
+    elements = 2
+    element = {{ kind = "CRBF", order = 3 }}
+    section.kind = "fibres"
+    section.shape = {{ kind = "tube", diameter = 0.02, thickness = 0.002 }}
+    section.law = {{ {keys}, youngs_modulus = 2e11, poisson_ratio = 0.3, density = 7800 }}
+    section.points = 12
+    [[supports]]
+    kind = "clamp"
+    points = ["bar.start"]
+    [analysis]
+    kind = "static"
+    """
+    (tmp_path / "a.toml").write_text(text)
+    (beam,) = read_model_file(tmp_path / "a.toml").model.beams
+    assert beam.section == bf.Fibres(bf.Tube(0.02, 0.002), law, 12)
+
+
 def test_parts_by_name_and_in_place_are_those_of_python(tmp_path):
     text = """
     [materials.steel]

@@ -47,63 +47,19 @@ class MotionState(State):
         return self.at
 
     def position(self, point: Point) -> np.ndarray:
-        """Return the position of a point.
-
-        Parameters
-        ----------
-        point : Point
-            A point of a beam.
-
-        Returns
-        -------
-        array, [m], (2,)
-            Position.
-        """
+        """Return the position of a point (2,) [m]."""
         return np.asarray(self._alone.position(point)[0])
 
     def displacement(self, point: Point) -> np.ndarray:
-        """Return the displacement of a point from the reference configuration.
-
-        Parameters
-        ----------
-        point : Point
-            A point of a beam.
-
-        Returns
-        -------
-        array, [m], (2,)
-            Displacement.
-        """
+        """Return the displacement of a point from the reference configuration (2,) [m]."""
         return np.asarray(self._alone.displacement(point)[0])
 
     def velocity(self, point: Point) -> np.ndarray:
-        """Return the velocity of a point.
-
-        Parameters
-        ----------
-        point : Point
-            A point of a beam.
-
-        Returns
-        -------
-        array, [m/s], (2,)
-            Velocity.
-        """
+        """Return the velocity of a point (2,) [m/s]."""
         return np.asarray(self._alone.velocity(point)[0])
 
     def rotation(self, point: Point) -> float:
-        """Return the rotation of the section, counter-clockwise positive.
-
-        Parameters
-        ----------
-        point : Point
-            A point of a beam.
-
-        Returns
-        -------
-        float, [rad]
-            Rotation from the reference.
-        """
+        """Return the rotation of the section at a point from the reference [rad], counter-clockwise positive."""
         return float(self._alone.rotation(point)[0])
 
 

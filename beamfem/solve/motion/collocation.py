@@ -25,7 +25,6 @@ _NOISE = 1e-9  # of the model: smaller corrections that no longer decrease are r
 _ITERATIONS = 15
 _KEPT = 0.1  # convergence factor up to which factors are kept for the next step
 _TOGETHER = 10  # steps after a failure of simplified iterations in which they are not tried
-_MOST_HALVES = 8
 _SLOW = 0.8  # convergence factor above which an iteration begins anew with other factors
 
 _RATES = (0.0, 1.0, 0.0)
@@ -173,23 +172,7 @@ class CollocationRun:
         self._together = 0
 
     def step(self, motion: EquationsOfMotion, begin: State, end: float) -> State:
-        """Return the state after a step. Raises ConvergenceError."""
-        return self._halved(
-            motion, begin, end, _MOST_HALVES if self._rule.ends_with_a_stage else 0
-        )  # others do not damp
-
-    def _halved(self, motion: EquationsOfMotion, begin: State, end: float, times: int) -> State:
-        """Return the state after a step, which is halved up to some `times` if it does not converge."""
-        try:
-            return self._whole(motion, begin, end)
-        except (ConvergenceError, LinAlgError):
-            if times == 0:
-                raise
-        self._last, middle = None, 0.5 * (begin.at + end)
-        return self._halved(motion, self._halved(motion, begin, middle, times - 1), end, times - 1)
-
-    def _whole(self, motion: EquationsOfMotion, begin: State, end: float) -> State:
-        """Return the state after a step that is not halved. Raises ConvergenceError or LinAlgError."""
+        """Return the state after a step. Raises ConvergenceError or LinAlgError."""
         h, rule = end - begin.at, self._rule
         a = self._accelerations(motion, begin, h)
         self._last = _Last(end, h, a)
@@ -235,9 +218,8 @@ class CollocationRun:
     def _stages(self, begin: State, h: float, a: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return p and p' (s, n) of the stages."""
         rule = self._rule
-        return begin.p + np.outer(h * rule.nodes, begin.v) + h * h * (self._squared @ a), begin.v + h * (
-            rule.coefficients @ a
-        )
+        p = begin.p + np.outer(h * rule.nodes, begin.v) + h * h * (self._squared @ a)
+        return p, begin.v + h * (rule.coefficients @ a)
 
     def _iterated(self, motion: EquationsOfMotion, begin: State, h: float, start: np.ndarray) -> np.ndarray | None:
         """Return the accelerations (s, n) of the stages, None if simplified iterations do not converge."""

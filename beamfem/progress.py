@@ -1,10 +1,13 @@
-"""Progress of long work: a bar on a terminal or in a notebook, silence in a pipe or an import."""
+"""Long work: a bar on a terminal or in a notebook, silence in a pipe, and the results so far if it ends early."""
 
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
 from importlib.util import find_spec
+from typing import Any
+
+from beamfem.errors import ConvergenceError
 
 _held: ContextVar[bool] = ContextVar("_held", default=False)
 
@@ -53,3 +56,16 @@ def _bar(label: str, total: float) -> Iterator[Callable[[float], None]]:
     with no_progress(), Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(label, total=total)
         yield lambda done: bar.update(task, completed=done)
+
+
+@contextmanager
+def kept(found: Callable[[], Any]) -> Iterator[None]:
+    """Attach the results so far as `solution` to any exception inside, KeyboardInterrupt included."""
+    try:
+        yield
+    except BaseException as error:
+        if getattr(error, "solution", None) is None and (solution := found()) is not None:
+            error.solution = solution  # type: ignore[attr-defined]
+            if not isinstance(error, ConvergenceError):
+                error.add_note("What was found before is the `solution` of this exception.")
+        raise

@@ -10,9 +10,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from beamfem.element.axis import Axis, section_frame
 from beamfem.element.body_strain import strain_of_measures
 from beamfem.element.coordinates import Coordinates, Gradients
+from beamfem.element.fields import Axis, section_frame
 from beamfem.kernels.block import ELASTIC_LINE, GREEN_LAGRANGE, STRUCTURAL
 from beamfem.material import Material
 from beamfem.physics.measures import elastic_line, evaluate, green_lagrange, structural

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from beamfem.cached_properties import cached_property
-from beamfem.element.axis import cross
 from beamfem.element.coordinates import labels
 from beamfem.element.element import Element
+from beamfem.element.fields import cross
 from beamfem.errors import InputError
 from beamfem.installed_memory import USABLE_FRACTION, in_gib, installed_memory
 from beamfem.kernels.block import NO_HISTORY

@@ -4,10 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.element.axis import Axis, cross, dot, section_frame
 from beamfem.element.coordinates import across
 from beamfem.element.element import Element
-from beamfem.element.fields import d_slots, length_rule, r_slots, slots
+from beamfem.element.fields import Axis, cross, d_slots, dot, length_rule, r_slots, section_frame, slots
 from beamfem.errors import InputError
 from beamfem.mesh.beam_grid import Grid
 from beamfem.model.beam import Beam

@@ -7,9 +7,8 @@ import numpy as np
 
 from beamfem.assembly.frame_inertia import seen_from_rest
 from beamfem.assembly.system import System
-from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import across
-from beamfem.element.fields import d_slots, r_slots
+from beamfem.element.fields import cross, d_slots, dot, r_slots
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import inertia_points, length_points, scales
 from beamfem.quadrature import gauss

@@ -12,7 +12,7 @@ from scipy.sparse import coo_array, csr_array
 
 from beamfem.assembly.blocks import classes_of
 from beamfem.assembly.stress_resultants import elastic_forces
-from beamfem.element.axis import cross, dot
+from beamfem.element.fields import cross, dot
 from beamfem.kernels.block import Block
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import interpolate

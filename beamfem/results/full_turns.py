@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.cached_properties import cached_property
-from beamfem.element.axis import Axis
+from beamfem.element.fields import Axis
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.beam import Point
 from beamfem.model.model import Model

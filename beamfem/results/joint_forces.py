@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 
-from beamfem.element.axis import cross
+from beamfem.element.fields import cross
 from beamfem.errors import InputError
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.beam import Point

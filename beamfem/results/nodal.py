@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from beamfem.element import coordinates
-from beamfem.element.axis import Axis
+from beamfem.element.fields import Axis
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import interpolate
 

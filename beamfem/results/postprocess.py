@@ -7,7 +7,7 @@ import numpy as np
 
 from beamfem.element import body_strain as body
 from beamfem.element import coordinates
-from beamfem.element.axis import Axis, cross, dot, section_frame
+from beamfem.element.fields import Axis, cross, dot, section_frame
 from beamfem.element.thickness_law import THICKNESS, ThicknessLaw
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import (

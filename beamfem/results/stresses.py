@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beamfem.element.axis import Axis
+from beamfem.element.fields import Axis
 from beamfem.errors import InputError, UnknownStressWarning, warn
 from beamfem.mesh.beam_grid import Grid
 from beamfem.mesh.beam_mesh import BeamMesh

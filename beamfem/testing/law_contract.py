@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from beamfem.material import Material
-from beamfem.model.check_beam import require_shapes
+from beamfem.model.beam import require_shapes
 from beamfem.section.law import COMPLEX_STEP, ConstitutiveLaw, law_of
 from beamfem.section.protocol import CrossSection, Rigidity
 

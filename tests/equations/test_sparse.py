@@ -12,7 +12,7 @@ import beamfem as bf
 from beamfem.assembly.equation_numbering import Unknowns
 from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import System
-from beamfem.element.axis import cross
+from beamfem.element.fields import cross
 from beamfem.linalg.lapack import LinAlgError, superlu
 from beamfem.mesh.reference import energy_points
 from beamfem.results.postprocess import axis, nodal_vectors

@@ -7,7 +7,7 @@ from test_vtk import collection, point_data, read
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import beamfem as bf
-from beamfem.element.axis import Axis
+from beamfem.element.fields import Axis
 from beamfem.mesh.reference import length_points
 from beamfem.results.stresses import second_piola_kirchhoff
 from tests.connectors import SpringDamper

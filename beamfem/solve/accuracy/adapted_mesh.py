@@ -15,8 +15,13 @@ from beamfem.model.model import Model
 from beamfem.results.locking import locking
 from beamfem.results.solution import Solution
 from beamfem.solve.accuracy.enriched_model import of_order, remeshed
-from beamfem.solve.accuracy.error_estimate import Quantity, enriched_row, error, largest_displacement_error
-from beamfem.solve.accuracy.error_shares import error_shares
+from beamfem.solve.accuracy.error_estimate import (
+    Quantity,
+    enriched_row,
+    error,
+    error_shares,
+    largest_displacement_error,
+)
 
 _MOST_MESHES = 16
 # orders below are raised first, by so much at a time, and up to the highest one where most elements would be divided

@@ -21,8 +21,7 @@ from beamfem.results.locking import locking, pairs
 from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import warn_of
 from beamfem.results.status import Finding
-from beamfem.solve.accuracy.error_estimate import enriched_row, largest_displacement_error
-from beamfem.solve.accuracy.error_shares import error_shares
+from beamfem.solve.accuracy.error_estimate import enriched_row, error_shares, largest_displacement_error
 
 _WARNED = 0.02  # of the largest displacement: error above which there is a warning
 _ENOUGH = 0.005  # of it: error that the advice leads to

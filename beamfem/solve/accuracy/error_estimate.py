@@ -1,4 +1,4 @@
-"""Estimate of the discretisation error of a static result, by the equilibrium on an enriched space."""
+"""Discretisation error of a static result, estimated by the equilibrium on an enriched space; shares of elements."""
 
 from collections.abc import Callable
 from typing import Any
@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from scipy.linalg import LinAlgError
 
+from beamfem.assembly.equations import predicted_stresses
 from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.beam import Point
@@ -14,8 +15,7 @@ from beamfem.results.nodal import axis_at
 from beamfem.results.postprocess import position
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
-from beamfem.solve.accuracy.carried_state import carried_coordinates, carried_stresses, places
-from beamfem.solve.accuracy.enriched_model import enriched
+from beamfem.solve.accuracy.enriched_model import carried_coordinates, carried_stresses, enriched, places
 from beamfem.solve.newton.newton import Newton, NewtonResult, PivotedProblem, PrescribedStep, find_equilibrium
 from beamfem.validation import number_below, shown
 
@@ -133,3 +133,26 @@ def largest_displacement_error(state: State, finer: Solution, between_nodes: boo
             after = np.array([position(new, finer.p, fraction)[0] for fraction in fractions])
         largest = max(largest, float(np.linalg.norm(after - before, axis=1).max()))
     return largest
+
+
+def error_shares(state: State, finer: Solution) -> list[np.ndarray]:
+    """Return the share (ne,) [-] of each element of each beam in the error of a state; their sum is 1, or 0.
+
+    finer: the equilibrium on the enriched space. The error is measured by the complementary energy of the stress
+    resultants in which the two differ, 1/2 int dS C^-1 dS ds, with the diagonal of the section stiffness C.
+    """
+    system = system_of(finer.model, static=True)
+    now = predicted_stresses(system, finer.p[0], np.zeros(finer.model.size), state.at)
+    energies = []
+    for block, before, after in zip(system.blocks, carried_stresses(state, finer.model), now, strict=True):
+        stiffness = np.einsum("cqii->cqi", block.stiffness)
+        flexibility = np.divide(1.0, stiffness, out=np.zeros_like(stiffness), where=stiffness > 0.0)
+        change = (after - before) ** 2 * flexibility[block.kind]
+        energies.append((change.sum(axis=-1) * block.weight[block.kind]).sum(axis=-1))
+    shares = []
+    for old, new in zip(state.model.meshes, finer.model.meshes, strict=True):
+        own = energies[new.block][new.first_element : new.first_element + new.elements]
+        parent = places(old, new, np.array([0.5]))[0][:, 0]
+        shares.append(np.bincount(parent, own, minlength=old.elements))
+    total = sum(float(share.sum()) for share in shares)
+    return [share / total if total > 0.0 else share for share in shares]

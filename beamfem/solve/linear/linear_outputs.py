@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csr_array
 
-from beamfem.element.axis import cross, dot
+from beamfem.element.fields import cross, dot
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
 from beamfem.model.model import Model

@@ -6,7 +6,7 @@ from scipy.sparse import coo_array, csr_array
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.linalg.lapack import qr, solve_triangular
-from beamfem.solve.start.start_checks import dependent
+from beamfem.solve.start.mechanisms import dependent
 
 _DEPENDENT = 1e-10  # of a condition of unit size: its part that is independent of all others
 _ROUND_OFF = 1e-14  # of the largest entry of a basis

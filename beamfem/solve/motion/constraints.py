@@ -10,7 +10,7 @@ from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.precision.saddle import SaddleTangent
-from beamfem.solve.start.start_checks import dependent
+from beamfem.solve.start.mechanisms import dependent
 
 _MET = 1e-8  # of the model, or of the largest velocity
 _SHORT = 1e-4  # of the model: step of a difference along the motion

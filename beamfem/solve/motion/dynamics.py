@@ -11,6 +11,7 @@ from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, EnergyWarning, InputError, warn
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.model.model import Model
+from beamfem.progress import kept
 from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.full_turns import first_turns
 from beamfem.results.motion_state import Occurrence
@@ -30,7 +31,6 @@ from beamfem.solve.motion.start_acceleration import initial_acceleration
 from beamfem.solve.motion.time_marching import Last, Record, cutter_of, march
 from beamfem.solve.motion.time_steps import SIDE, stretches
 from beamfem.solve.start.functions_of_time import functions_of_time, name_unresolved
-from beamfem.solve.start.partial_results import kept
 from beamfem.solve.start.start_checks import refuse_frame, require_memory
 from beamfem.solve.start.start_state import last_state, start_state, transferred_turns
 from beamfem.validation import count, positive, shown

@@ -13,7 +13,7 @@ from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
 from beamfem.precision.roundoff import FEW_DIGITS, remainder
-from beamfem.progress import progress
+from beamfem.progress import kept, progress
 from beamfem.results.full_turns import first_turns
 from beamfem.results.path import Bifurcation, Path, PathState
 from beamfem.results.solution_checks import advice, warned
@@ -24,9 +24,8 @@ from beamfem.solve.continuation.steps import Refused, Step, longest_step, take_s
 from beamfem.solve.newton.newton import Newton, require_newton
 from beamfem.solve.start.functions_of_time import SAME, Jump, functions_of_time, jumps_between, kinks_between
 from beamfem.solve.start.mechanisms import require_support
-from beamfem.solve.start.partial_results import kept
 from beamfem.solve.start.start_checks import refuse_memory
-from beamfem.solve.statics.preload import first_equilibrium, nothing_acts
+from beamfem.solve.statics.statics import first_equilibrium, nothing_acts
 from beamfem.validation import count, finite, function_of_one, optional, positive, shown
 
 _SAME_POINT = 1e-5  # lengths of the model, radians: bifurcations are located to about 1e-8

@@ -12,7 +12,7 @@ from beamfem.solve.modes.modes import solve_modes
 from beamfem.solve.newton.newton import Newton, solve_equilibrium
 from beamfem.solve.start.start_checks import left_over
 from beamfem.solve.start.start_state import resting_state
-from beamfem.solve.statics.preload import first_equilibrium
+from beamfem.solve.statics.statics import first_equilibrium
 
 _MODES = 12  # lowest modes that are checked for flutter under follower loads
 

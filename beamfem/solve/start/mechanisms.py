@@ -1,4 +1,4 @@
-"""Reject models that are mechanisms if every beam is taken as rigid."""
+"""Reject models with too few conditions, mechanisms if every beam is taken as rigid, or with redundant ones."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -8,9 +8,11 @@ from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import ArpackError, eigsh
 
+from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.rigid_velocity import RigidVelocity, set_rigid_rates
 from beamfem.assembly.system import System
-from beamfem.errors import ConvergenceError, FreeMotionError
+from beamfem.errors import ConvergenceError, FreeMotionError, InputError
+from beamfem.linalg.lapack import qr
 from beamfem.model.beam import Point, beam_in_words
 from beamfem.model.missing_joints import Pair, in_words, unjoined_ends
 from beamfem.model.model import Model
@@ -224,3 +226,30 @@ def describe(translation: np.ndarray, turn: float, origin: np.ndarray, reach: fl
     centre = origin + np.array([-translation[1], translation[0]]) / turn
     x, y = np.where(np.abs(centre) < 1e-6 * reach, 0.0, centre)
     return f"turns about ({x:.6g}, {y:.6g})"
+
+
+_DEPENDENT = 1e-10  # of a condition of unit size: its part that is independent of all others
+
+
+def require_independent(system: System, p: np.ndarray) -> None:
+    """Raise InputError if conditions of connectors, supports and joints are redundant in a state p (n,)."""
+    multipliers = len(system.connectors.multipliers)
+    if multipliers == 0:
+        return
+    zeros = np.zeros(len(p))
+    tangent = linearise(system, p, zeros, zeros, 0.0, STATICS)[1].sparse(system.rotated)
+    scale = system.scale[system.free_dofs][:-multipliers]
+    rows = (tangent[-multipliers:, :-multipliers].toarray() * scale).T
+    sizes = np.linalg.norm(rows, axis=0)
+    diagonal = np.abs(np.diagonal(qr(rows / np.where(sizes > 0.0, sizes, 1.0), mode="r", pivoting=True)[0]))
+    if len(diagonal) < multipliers or np.any(diagonal <= _DEPENDENT):
+        raise InputError(dependent(system))
+
+
+def dependent(system: System) -> str:
+    """Return the message that conditions of connectors are linearly dependent."""
+    names = ", ".join(sorted({item.name for item in system.connectors.items if len(item.own)}))
+    return (
+        f"conditions of connectors ({names}) are redundant, among themselves or with supports and joints: their "
+        "multipliers are not unique; leave out those that are not needed"
+    )

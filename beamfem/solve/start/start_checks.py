@@ -1,4 +1,4 @@
-"""Checks at the start of a solve: multipliers, equilibrium, memory."""
+"""Checks at the start of a solve: what an analysis supports, equilibrium, memory."""
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -8,10 +8,7 @@ from beamfem.assembly.equations import STATICS, linearise, residual
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.installed_memory import USABLE_FRACTION, in_gib, installed_memory
-from beamfem.linalg.lapack import qr
 from beamfem.precision.roundoff import digits_of, load_size, remainder, row_floors
-
-_DEPENDENT = 1e-10  # of a condition of unit size: its part that is independent of all others
 
 
 def refuse_memory(system: System, analysis: str) -> None:
@@ -38,30 +35,6 @@ def refuse_dampers(system: System) -> None:
                 f"solve_modes finds undamped vibrations, but the force of {item.name} depends on velocities; leave it "
                 "out, or find damped ones by linearise(model, about).modes(count)"
             )
-
-
-def require_independent(system: System, p: np.ndarray) -> None:
-    """Raise InputError if conditions of connectors, supports and joints are redundant in a state p (n,)."""
-    multipliers = len(system.connectors.multipliers)
-    if multipliers == 0:
-        return
-    zeros = np.zeros(len(p))
-    tangent = linearise(system, p, zeros, zeros, 0.0, STATICS)[1].sparse(system.rotated)
-    scale = system.scale[system.free_dofs][:-multipliers]
-    rows = (tangent[-multipliers:, :-multipliers].toarray() * scale).T
-    sizes = np.linalg.norm(rows, axis=0)
-    diagonal = np.abs(np.diagonal(qr(rows / np.where(sizes > 0.0, sizes, 1.0), mode="r", pivoting=True)[0]))
-    if len(diagonal) < multipliers or np.any(diagonal <= _DEPENDENT):
-        raise InputError(dependent(system))
-
-
-def dependent(system: System) -> str:
-    """Return the message that conditions of connectors are linearly dependent."""
-    names = ", ".join(sorted({item.name for item in system.connectors.items if len(item.own)}))
-    return (
-        f"conditions of connectors ({names}) are redundant, among themselves or with supports and joints: their "
-        "multipliers are not unique; leave out those that are not needed"
-    )
 
 
 _TOLERANCE = 1e-6  # of the largest force: largest residual of an equilibrium

@@ -1,8 +1,7 @@
 """Follow the equilibrium path to the next row of a static solve if a load step alone would leave it."""
 
-from collections import deque
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -54,22 +53,22 @@ class TurnsBackError(BeamfemError):
         self.beyond = beyond
 
 
+@dataclass(eq=False)
 class PathFollower:
-    """The path of a system from the last row of a record, followed by arc length; step lengths carry over.
+    """The path of a system from the state p (n,) at a load factor, followed by arc length; step lengths carry over.
 
     done: counts the iterations and the rejected steps; leaves: whether the path ends at the bifurcation at which it
-    loses its stability.
+    loses its stability; left (n + 1,): limit point of the last jump.
     """
 
-    def __init__(self, system: System, newton: Newton, done: StaticRecord, leaves: bool = False) -> None:
-        self.system = system
-        self.newton = newton
-        self.done = done
-        self.start = done.state, done.reached
-        self.leaves = leaves
-        self.size = _FIRST_STEP
-        self.left: np.ndarray | None = None  # limit point (n + 1,) of the last jump
-        self.passed: deque[float] = deque(maxlen=_PACE)
+    system: System
+    newton: Newton
+    done: StaticRecord
+    start: tuple[np.ndarray, float]
+    leaves: bool
+    size: float = _FIRST_STEP
+    left: np.ndarray | None = None
+    passed: list[float] = field(default_factory=list)
 
     @cached_property
     def line(self) -> Continuation:
@@ -119,9 +118,10 @@ class PathFollower:
 
     def _require_pace(self, load_factor: float) -> None:
         """Raise PathLostError if far too many further steps would be needed, intermediate load steps included."""
-        if len(self.passed) == _PACE:
+        if len(self.passed) >= _PACE:
             half = _PACE // 2
-            before, gained = self.passed[half] - self.passed[0], load_factor - self.passed[half]
+            start, middle = self.passed[-_PACE], self.passed[-half]
+            before, gained = middle - start, load_factor - middle
             if _SLOWER * before <= gained <= _FASTER * before and half * (1.0 - load_factor) > _MOST_STEPS * gained:
                 raise OutOfReachError(
                     f"its last steps gained {gained / half:.1e} of the load factor each; at that pace load factor 1 is "

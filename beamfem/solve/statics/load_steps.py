@@ -194,7 +194,7 @@ def reach(
     # with history, the result depends on the steps, so the end of each requested step is a stop, even if it is cut
     requested = [*stops, *(step * np.arange(1, round(1.0 / step))).tolist()] if remembers else stops
     ahead = sorted({stop for stop in requested if SAME < stop < end - SAME} | {end})
-    follower = PathFollower(system, newton, done, leaves=snap == "jump")
+    follower = PathFollower(system, newton, done, (done.state, done.reached), leaves=snap == "jump")
     cuts, refused = 0, done.reached
     longest = step if remembers else 1.0
     with progress("load factor", end) as report:

@@ -11,9 +11,8 @@ from beamfem import section
 from beamfem.cli.schema import Keyed, Kinds, Names, in_braces, keys_of, named, part, reader, shown
 from beamfem.curves import Arc, BSpline, Chain, Curve, Line, Polyline, elliptic_arc, spline_through_hermite
 from beamfem.damping import KelvinVoigt, Rayleigh
-from beamfem.element.element import Element
+from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, Element, ShearRigid
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
-from beamfem.element.presets import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, ShearRigid
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point, graded

@@ -12,11 +12,21 @@ from beamfem.element.coordinates import Gradients, labels
 from beamfem.element.element import Element
 from beamfem.kernels.block import ELASTIC_LINE
 from beamfem.mesh.beam_grid import Grid
-from beamfem.mesh.numbering import Nodes
 from beamfem.mesh.reference import energy_points, energy_stiffness_at, inertia_at, jacobians, length_points, scales
 from beamfem.value_keys import by_value
 
 _ALIKE = 1e-9  # of the longest element: elements whose lengths differ by less are in one class
+
+
+class Nodes(NamedTuple):
+    """Nodes of a beam: kind (nodes,), coordinates (nodes, npn), -1 where there is none, and frame (nodes, 3).
+
+    frame: cosine and sine of the reference angle, and |r_x|; see `kernels.block.Block`.
+    """
+
+    node_kind: np.ndarray
+    dof: np.ndarray
+    frame: np.ndarray
 
 
 class Classes(NamedTuple):

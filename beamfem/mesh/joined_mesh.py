@@ -7,8 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from beamfem.cached_properties import cached_property
-from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.mesh.numbering import Nodes
+from beamfem.mesh.beam_mesh import BeamMesh, Nodes
 
 _NONE = np.empty(0)
 

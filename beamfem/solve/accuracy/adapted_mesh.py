@@ -14,13 +14,14 @@ from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 from beamfem.results.locking import locking
 from beamfem.results.solution import Solution
-from beamfem.solve.accuracy.enriched_model import of_order, remeshed
 from beamfem.solve.accuracy.error_estimate import (
     Quantity,
     enriched_row,
     error,
     error_shares,
     largest_displacement_error,
+    of_order,
+    remeshed,
 )
 
 _MOST_MESHES = 16

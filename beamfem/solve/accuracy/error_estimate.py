@@ -1,23 +1,203 @@
 """Discretisation error of a static result, estimated by the equilibrium on an enriched space; shares of elements."""
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from itertools import chain
+from typing import Any, cast
 
 import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.assembly.equations import predicted_stresses
+from beamfem.assembly.model_coordinates import coordinate_columns
 from beamfem.assembly.system import System, system_of
+from beamfem.cached_properties import cached_property
+from beamfem.element.element import Element
+from beamfem.element.fields import Lagrange
 from beamfem.errors import ConvergenceError, InputError
-from beamfem.model.beam import Point
+from beamfem.kernels.block import ROTATED_GRADIENTS
+from beamfem.linalg.tangent import Stresses
+from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.reference import reference_axis, reference_position
+from beamfem.model.beam import Beam, Point
+from beamfem.model.model import Model
+from beamfem.results import postprocess
 from beamfem.results.full_turns import first_turns
 from beamfem.results.nodal import axis_at
 from beamfem.results.postprocess import position
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
-from beamfem.solve.accuracy.enriched_model import carried_coordinates, carried_stresses, enriched, places
 from beamfem.solve.newton.newton import Newton, NewtonResult, PivotedProblem, PrescribedStep, find_equilibrium
 from beamfem.validation import number_below, shown
+
+# halved elements of order k have an error of about 2^-2k of the others, for the same cost as those of order k + 1
+_RAISED = 2  # orders up to this one are raised
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class EnrichedModel(Model):
+    """A model with other meshes than its original, which takes points and beams of either of them.
+
+    Parameters
+    ----------
+    original : tuple of Beam
+        The beam that each of `beams` stands for; supports, loads, joints and connectors are on these.
+    """
+
+    original: tuple[Beam, ...] = ()
+
+    @cached_property
+    def _numbers(self) -> dict[int, int]:
+        numbered = chain(enumerate(self.beams), enumerate(self.original))
+        return {id(beam): number for number, beam in numbered}
+
+
+def enriched(model: Model) -> EnrichedModel:
+    """Return a model whose elements are of order k + 1 instead of k = 1 or 2, and halves of other ones.
+
+    Those of models that `Model.with_loads` has made share their meshes and tables as these do.
+    """
+    known: EnrichedModel | None = model.tables.get("enriched")
+    if known is None:
+        known = model.tables["enriched"] = remeshed(model, [_enriched(mesh) for mesh in model.meshes])
+    return known if known.loads == model.loads else cast(EnrichedModel, known.with_loads(model.loads))
+
+
+def remeshed(model: Model, beams: Sequence[Beam]) -> EnrichedModel:
+    """Return a model with other elements on the same curves.
+
+    The parts at points and along beams are those of the model itself, so that results are found by them.
+    """
+    original = getattr(model, "original", ()) or tuple(model.beams)
+    parts = {field.name: getattr(model, field.name) for field in fields(Model) if field.name not in ("beams", "units")}
+    result = EnrichedModel(beams, **parts, original=original)
+    vars(result)["units"] = model.units  # of which the model has warned
+    return result
+
+
+def _enriched(mesh: BeamMesh) -> Beam:
+    beam = mesh.beam
+    field = beam.element.field
+    if type(field) is Lagrange and field.order <= _RAISED:
+        return replace(beam, element=of_order(beam.element, field.order + 1))
+    along = mesh.arc_length(np.arange(mesh.elements), np.full(mesh.elements, 0.5))
+    ends = np.sort(np.concatenate([mesh.vertices, along])) / mesh.vertices[-1]
+    return replace(beam, elements=tuple(ends.tolist()))
+
+
+def of_order(element: Element, order: int) -> Element:
+    """Return an element with a Lagrange field of another order, and the name of a `CRBF` of this order if it is one."""
+    named = element.label == f"CRBF-{element.field.degree}"
+    return replace(element, field=Lagrange(order), label=f"CRBF-{order}" if named else None)
+
+
+def carried_coordinates(state: State, target: Model) -> np.ndarray:
+    """Return the coordinates (n,) of a state in a model whose elements lie within those of the state's model.
+
+    Where both interpolate the reference differently, the offset between them turns with the section. History variables
+    are those of the reference.
+    """
+    source, system = state.model, system_of(target, static=True)
+    p = system.reference.copy()
+    for old, new in zip(source.meshes, target.meshes, strict=True):
+        values = _values_at_nodes(old, new, state)
+        for label, nodes, dofs in coordinate_columns(new):
+            # a rotated vector belongs to the first of the joined nodes
+            mask = new.kinematics.node_kind[nodes] != ROTATED_GRADIENTS if label.startswith("r_y") else slice(None)
+            p[dofs[mask]] = values[label][nodes[mask]]
+    found_items = {id(item.item): item for item in system_of(source, static=True).connectors.items}
+    for item in system.connectors.items:
+        if id(item.item) in found_items:
+            same = found_items[id(item.item)]
+            p[item.own] = state.p[same.own]
+    return p
+
+
+def carried_stresses(state: State, target: Model) -> Stresses:
+    """Return the stress resultants (ne, nq, ns) of each block of a model: polynomials through those of a state.
+
+    The carried coordinates alone strain the finer elements between the points where the old ones had no strain, which
+    would spoil the first tangent.
+    """
+    source = state.model
+    acting = predicted_stresses(system_of(source, static=True), state.p, np.zeros(len(state.p)), state.at)
+    system = system_of(target, static=True)
+    zeros = np.zeros(target.size)
+    result = tuple(np.zeros_like(each) for each in predicted_stresses(system, system.reference, zeros, state.at))
+    for old, new in zip(source.meshes, target.meshes, strict=True):
+        known, own = (each[mesh.block][_elements(mesh)] for each, mesh in ((acting, old), (result, new)))
+        counted, wanted = (_counted(mesh) for mesh in (old, new))
+        at, to = (mesh.beam.element.energy_points()[0] for mesh in (old, new))
+        for measure in range(own.shape[2]):
+            some, others = counted[:, measure], wanted[:, measure]
+            if some.any() and others.any():
+                own[:, others, measure] = _interpolated(old, new, at[some], to[others], known[:, some, measure, None])[
+                    ..., 0
+                ]
+    return result
+
+
+def _elements(mesh: BeamMesh) -> slice:
+    """Return the elements of a beam in its block."""
+    return slice(mesh.first_element, mesh.first_element + mesh.elements)
+
+
+def _counted(mesh: BeamMesh) -> np.ndarray:
+    """Return whether each strain measure (nq, ns) enters the energy at the points of an element."""
+    return np.einsum("qii->qi", mesh.beam.element.coupled_fractions) != 0.0
+
+
+def _interpolated(old: BeamMesh, new: BeamMesh, at: np.ndarray, wanted: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return polynomials (new elements, m, k) at xi `wanted` (m,), through values (elements, l, k) at xi `at` (l,)."""
+    element, xi = places(old, new, wanted)
+    every = np.arange(len(at))
+    factors = (xi[..., None, None] - at) / (at[:, None] - at + np.eye(len(at)))
+    factors[..., every, every] = 1.0
+    return np.einsum("epi,eik->epk", factors.prod(axis=-1), values[element[:, 0]])
+
+
+def places(old: BeamMesh, new: BeamMesh, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return element and xi (new elements, m) in the old mesh of points xi (m,) of every new element."""
+    every = np.repeat(np.arange(new.elements), len(xi))
+    along, ends = new.arc_length(every, np.tile(xi, new.elements)).reshape(new.elements, -1), old.vertices
+    middle = 0.5 * (new.vertices[1:] + new.vertices[:-1])
+    element = np.clip(np.searchsorted(ends, middle, side="right") - 1, 0, old.elements - 1)
+    if old.beam.elements == "knots":
+        curve: Any = old.beam.curve
+        along, ends = curve.parameter(along.ravel()).reshape(along.shape), old.parameter
+    start, end = ends[element][:, None], ends[element + 1][:, None]
+    return np.repeat(element[:, None], len(xi), axis=1), np.clip((along - start) / (end - start), 0.0, 1.0)
+
+
+def _values_at_nodes(old: BeamMesh, new: BeamMesh, state: State) -> dict[str, np.ndarray]:
+    """Return every coordinate (nodes,) that a node of the new mesh could have in a state of the old one, by name."""
+    element, xi = (each.ravel() for each in places(old, new, new.beam.element.field.nodes))
+    now, rest = axis_at(old, state.p[None], element, xi), reference_axis(old, element, xi)
+    node = new.node.ravel()
+    turned = _complex(now.d[0]) / _complex(rest.d)
+    offset = _complex(new.position[node] - reference_position(old, element, xi))
+    tangent = _complex(new.tangent[node])
+    r_x = _complex(now.r_s[0]) / _complex(rest.r_s) * tangent * new.speed[node]
+    vectors = {"r": _complex(now.r[0]) + turned * offset, "r_x": r_x, "r_y": 1j * tangent * turned}
+    # theta is the rotation of the director, whatever the section turns with
+    angle = np.angle(turned)
+    indices = state.model.numbered.numbers_uncounted.get(old)
+    counted = None if indices is None or state.turned is None else state.turned[None, [indices]]
+    near = postprocess.section_rotation(old, state.p[None], now, element, xi, counted)[0]
+    values = {"theta": angle + 2.0 * np.pi * np.round((near - angle) / (2.0 * np.pi))}
+    values["s"] = np.real(r_x * np.conj(tangent * turned / np.abs(turned)))
+    for name, vector in vectors.items():
+        values[f"{name}^x"], values[f"{name}^y"] = vector.real, vector.imag
+    result = {name: np.empty(new.nodes) for name in values}
+    for name, found in values.items():
+        result[name][node] = found
+    return result
+
+
+def _complex(vectors: np.ndarray) -> np.ndarray:
+    """Return vectors (n, 2) as complex numbers."""
+    return np.asarray(vectors[..., 0] + 1j * vectors[..., 1])
+
 
 Quantity = Callable[[Solution], Any] | Point | None
 

@@ -15,8 +15,7 @@ from beamfem.results.locking import stiffness_locking
 from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import advice, may_lock, warn_of
 from beamfem.results.status import Finding, Statistics, Status
-from beamfem.solve.accuracy.enriched_model import enriched
-from beamfem.solve.accuracy.error_estimate import enriched_state
+from beamfem.solve.accuracy.error_estimate import enriched, enriched_state
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.stability.linearised import linear_reach, linear_solution, linearised_loads
 from beamfem.solve.stability.loading_path import InvertedError, LoadingPath, PathLostError

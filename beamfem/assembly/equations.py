@@ -35,6 +35,12 @@ def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: 
     return np.asarray(sum(terms))
 
 
+def residual_at_rest(system: System, p: np.ndarray, time: float) -> np.ndarray:
+    """Return the residual (n,) [N, N m] of a state p (n,) at rest at a time or load factor, see `residual`."""
+    zeros = np.zeros(len(p))
+    return residual(system, p, zeros, zeros, time)
+
+
 def _residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float, dt: float) -> np.ndarray:
     """Return the residual (n,) of a motion at rest, see `residual`."""
     result, assembler = np.empty(len(p)), _acquired(system)
@@ -87,6 +93,18 @@ def linearise(
     if Proven.LOSES_DIGITS in system.proven and coefficients[0] != 0.0 and equations is None:
         tangent = with_stresses(system, (p, v, a), time, coefficients, stresses, tangent)
     return result, tangent
+
+
+def linearise_at_rest(
+    system: System,
+    p: np.ndarray,
+    time: float,
+    stresses: tuple[np.ndarray, ...] | None = None,
+    equations: Equations | None = None,
+) -> tuple[np.ndarray, Tangent]:
+    """Return residual (n,) and static tangent of a state p (n,) at rest, see `linearise`."""
+    zeros = np.zeros(len(p))
+    return linearise(system, p, zeros, zeros, time, STATICS, stresses, equations)
 
 
 def _linearise(
@@ -185,7 +203,7 @@ def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float
     """Return the static tangent in p (n,) with the stress resultants predicted by a linear step (n,) from p."""
     zeros = np.zeros(len(p))
     if Proven.LOSES_DIGITS in system.proven or system.model.frame is not None:
-        return linearise(system, p, zeros, zeros, time, STATICS, predicted_stresses(system, p, step, time))[1]
+        return linearise_at_rest(system, p, time, predicted_stresses(system, p, step, time))[1]
     matrix, assembler = _entries(system), _acquired(system)
     assembler.take(system.loads_at(time))
     assembler.weigh(STATICS)
@@ -305,11 +323,16 @@ def load_change(system: System, p: np.ndarray, before: float, after: float) -> n
     That for prescribed motions is linear, by a difference of fourth order at small strains, because slender parts
     stiffen within any width.
     """
-    zeros, prescribed = np.zeros(len(p)), system.prescribed_dofs
-    change = residual(system, p, zeros, zeros, after) - residual(system, p, zeros, zeros, before)
+    prescribed = system.prescribed_dofs
+    change = residual_at_rest(system, p, after) - residual_at_rest(system, p, before)
     motion = np.zeros(len(p))
     motion[prescribed] = system.prescribed_values(after) - system.prescribed_values(before)
     if not motion.any():
         return change
     middle = 0.5 * (before + after)
-    return np.asarray(change + differentiated(system, lambda q: residual(system, q, zeros, zeros, middle), p, motion))
+    return np.asarray(change + residual_change(system, p, motion, middle))
+
+
+def residual_change(system: System, p: np.ndarray, step: np.ndarray, load_factor: float) -> np.ndarray:
+    """Return the linear change of the residual (n,) for a step (n,) that may be below the round-off of p (n,)."""
+    return differentiated(system, lambda q: residual_at_rest(system, q, load_factor), p, step)

@@ -6,8 +6,16 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.assembly.applied_loads import LoadsAt
-from beamfem.assembly.differences import differentiated
-from beamfem.assembly.equations import ROUND_OFF, STATICS, linearise, residual, sizes, with_stresses
+from beamfem.assembly.equations import (
+    ROUND_OFF,
+    STATICS,
+    linearise,
+    linearise_at_rest,
+    residual_at_rest,
+    residual_change,
+    sizes,
+    with_stresses,
+)
 from beamfem.assembly.imposed_forces import imposed_forces
 from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.assembly.system import Proven, System
@@ -45,26 +53,18 @@ class Remainder:
     digits: float
 
 
-def change(system: System, p: np.ndarray, step: np.ndarray, load_factor: float) -> np.ndarray:
-    """Return the change of the residual (n,) for a step (n,) that may be below the round-off of p."""
-    zeros = np.zeros(len(p))
-    return differentiated(system, lambda q: residual(system, q, zeros, zeros, load_factor), p, step)
-
-
 def digits_of(system: System, p: np.ndarray, load_factor: float, largest: float = 0.0) -> float:
     """Return the number of reliable digits of the forces in a state p (n,); all if nothing acts.
 
     largest [N m]: a force of other states of the same path, see `largest_force`; if it is larger, its digits count.
     """
-    zeros = np.zeros(len(p))
-    unbalanced = residual(system, p, zeros, zeros, load_factor)
+    unbalanced = residual_at_rest(system, p, load_factor)
     return _digits(system, p, unbalanced, load_factor, largest)
 
 
 def largest_force(system: System, p: np.ndarray, load_factor: float) -> float:
     """Return the largest force times the size of the model, or moment [N m], that acts in a state p (n,)."""
-    zeros = np.zeros(len(p))
-    return _acting(system, p, residual(system, p, zeros, zeros, load_factor), load_factor)
+    return _acting(system, p, residual_at_rest(system, p, load_factor), load_factor)
 
 
 def remainder(system: System, p: np.ndarray, load_factor: float) -> Remainder:
@@ -83,21 +83,21 @@ def remainder(system: System, p: np.ndarray, load_factor: float) -> Remainder:
 
 def _refined(system: System, p: np.ndarray, load_factor: float) -> Remainder:
     """Return the best result of corrections with the current kind of tangent, plain or mixed."""
-    zeros, free = np.zeros(len(p)), system.free_dofs
-    initial = residual(system, p, zeros, zeros, load_factor)
+    free = system.free_dofs
+    initial = residual_at_rest(system, p, load_factor)
     best = Remainder(np.zeros(len(p)), _digits(system, p, initial, load_factor))
     step, unbalanced = np.zeros(len(p)), initial
     try:
-        factors = linearise(system, p, zeros, zeros, load_factor, STATICS)[1].factorised(system.rotated)
+        factors = linearise_at_rest(system, p, load_factor)[1].factorised(system.rotated)
         _, stresses = factors.correction(initial[free])
         if stresses is not None:
             # the stresses of the state itself are as inaccurate as its last digits
-            factors = linearise(system, p, zeros, zeros, load_factor, STATICS, stresses)[1].factorised(system.rotated)
+            factors = linearise_at_rest(system, p, load_factor, stresses)[1].factorised(system.rotated)
         for _ in range(_CORRECTIONS):
             step[free] += factors.solve(-unbalanced[free])
             if not np.max(np.abs(step) / system.scale, initial=0.0) <= LAST_DIGITS:
                 break
-            unbalanced = initial + change(system, p, step, load_factor)
+            unbalanced = initial + residual_change(system, p, step, load_factor)
             digits = _digits(system, p, unbalanced, load_factor)
             if digits <= best.digits:
                 break

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.equations import STATICS, linearise, residual
+from beamfem.assembly.equations import linearise_at_rest, residual_at_rest
 from beamfem.cached_properties import cached_property
 from beamfem.solve.continuation.continuation import Continuation, PathPoint
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError, interpolation_weights
@@ -126,8 +126,7 @@ def _apart(samples: Samples, left: float, right: float, passed: int) -> bool:
     if gap < _ONE * samples.distance:
         return False
     line, y = samples.segment.line, samples.at(x, samples.y)
-    zeros = np.zeros(len(y) - 1)
-    tangent = linearise(line.system, y[:-1], zeros, zeros, float(y[-1]), STATICS)[1]
+    tangent = linearise_at_rest(line.system, y[:-1], float(y[-1]))[1]
     count = tangent.factorised(line.system.rotated).negative_pivots
     if count == samples.segment.at(samples.before).negative_pivots + passed * np.sign(samples.change):
         return True
@@ -174,8 +173,7 @@ def _require_crossing(samples: Samples, x: float, mode: np.ndarray, rate: float)
     basis = np.stack([np.ones_like(fractions), fractions, 1.0 / fractions], axis=1)
     aside = [line.dot(mode, y) for y in samples.y]
     bend = np.linalg.lstsq(basis, np.array(aside))[0][-1]
-    zeros = np.zeros(len(mode) - 1)
-    unbalanced = max(abs(mode[:-1] @ residual(line.system, y[:-1], zeros, zeros, float(y[-1]))) for y in samples.y)
+    unbalanced = max(abs(mode[:-1] @ residual_at_rest(line.system, y[:-1], float(y[-1]))) for y in samples.y)
     if abs(bend) > max(_IMPERFECT, _LEFT * unbalanced / (abs(rate) * samples.distance)):
         raise SegmentLostError("the step leads to another path")
 

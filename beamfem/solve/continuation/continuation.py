@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.equations import STATICS, linearise, load_change, predicted_stresses, residual
+from beamfem.assembly.equations import linearise_at_rest, load_change, predicted_stresses, residual_at_rest
 from beamfem.assembly.imposed_forces import imposed_forces
 from beamfem.assembly.system import System
 from beamfem.cached_properties import cached_property
@@ -202,9 +202,9 @@ class Continuation:
         stresses: for the geometric tangent, None for those of the state. Raises LinAlgError.
         """
         system, p, at = self.system, y[:-1], float(y[-1])
-        zeros, free, prescribed = np.zeros(len(p)), system.free_dofs, system.prescribed_dofs
+        free, prescribed = system.free_dofs, system.prescribed_dofs
         before, after, width = self._around(at)
-        unbalanced, tangent = linearise(system, p, zeros, zeros, at, STATICS, stresses)
+        unbalanced, tangent = linearise_at_rest(system, p, at, stresses)
         factors = tangent.factorised(system.rotated)
         balance, along = np.zeros(len(y)), np.zeros(len(y))
         balance[free], _ = factors.correction(unbalanced[free])
@@ -288,9 +288,8 @@ def begin(
     on units. Raises LinAlgError if the tangent is singular, ConvergenceError if loads are too large or too small.
     """
     plain = Continuation(system, newton, 1.0, 1.0, piece)
-    zeros = np.zeros(len(p))
     loses_digits(system, p, load_factor)
-    _, tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)
+    _, tangent = linearise_at_rest(system, p, load_factor)
     factors = tangent.factorised(system.rotated)
     mode = plain.softest(factors)
     stiffness = 1.0 / abs(plain.softness(factors, mode)) / float(np.max(np.abs(mode) / plain.scale)) ** 2
@@ -320,9 +319,9 @@ def _reach(line: Continuation, p: np.ndarray, load_factor: float, stiffness: flo
 
     Imposed strains count by the forces that would suppress them: even if nothing moves, these may buckle a model.
     """
-    system, zeros, scale = line.system, np.zeros(len(p)), line.scale[:-1]
+    system, scale = line.system, line.scale[:-1]
     ends = load_factor, load_factor + width
-    forces = [residual(system, p, zeros, zeros, at)[system.free_dofs] for at in ends]
+    forces = [residual_at_rest(system, p, at)[system.free_dofs] for at in ends]
     prescribed = [system.prescribed_values(at) / scale[system.prescribed_dofs] for at in ends]
     moved = float(np.abs(forces[1] - forces[0]) @ scale[system.free_dofs]) / stiffness
     if system.model.imposing:

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.sparse import csr_array
 
-from beamfem.assembly.equations import STATICS, linearise, predicted_stresses
+from beamfem.assembly.equations import linearise_at_rest, predicted_stresses
 from beamfem.assembly.stress_resultants import free_group, resultants
 from beamfem.assembly.system import System
 from beamfem.linalg.tangent import UNROTATED
@@ -71,6 +71,5 @@ def stresses_of(system: System, p: np.ndarray, correction: np.ndarray, load_fact
 
 def weak_stiffness(system: System, p: np.ndarray, load_factor: float, stresses: tuple[np.ndarray, ...]) -> csr_array:
     """Return the tangent (unknown, unknown) without sum B^T C B: the contributions of stresses, springs and loads."""
-    zeros = np.zeros(len(p))
     weak = system.without_stiffness
-    return linearise(system, p, zeros, zeros, load_factor, STATICS, stresses, weak)[1].sparse(UNROTATED)
+    return linearise_at_rest(system, p, load_factor, stresses, weak)[1].sparse(UNROTATED)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
-from beamfem.assembly.equations import INERTIA, STATICS, linearise, residual, with_stresses
+from beamfem.assembly.equations import INERTIA, STATICS, linearise, residual_at_rest, with_stresses
 from beamfem.assembly.system import Proven, System
 from beamfem.cached_properties import cached_property
 from beamfem.errors import ConvergenceError
@@ -48,8 +48,7 @@ class Pencil:
     @cached_property
     def unbalanced(self) -> np.ndarray:
         """Residual (unknown,) of the state."""
-        zeros = np.zeros(len(self.p))
-        return residual(self.system, self.p, zeros, zeros, self.load_factor)[self.system.free_dofs]
+        return residual_at_rest(self.system, self.p, self.load_factor)[self.system.free_dofs]
 
     def shifted(self, shift: float) -> Tangent:
         """Return K - shift M."""

@@ -10,8 +10,14 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.assembly.band_workspace import band_workspace
-from beamfem.assembly.differences import differentiated
-from beamfem.assembly.equations import STATICS, linearise, linearise_after, predicted_stresses, residual
+from beamfem.assembly.equations import (
+    STATICS,
+    linearise_after,
+    linearise_at_rest,
+    predicted_stresses,
+    residual_at_rest,
+    residual_change,
+)
 from beamfem.assembly.system import Proven, System
 from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
@@ -159,8 +165,7 @@ class Balance(NamedTuple):
 
 def balance_of(system: System, p: np.ndarray, load_factor: float) -> Balance:
     """Return the balance of a state (n,) at a load factor."""
-    zeros = np.zeros(len(p))
-    unbalanced = residual(system, p, zeros, zeros, load_factor)
+    unbalanced = residual_at_rest(system, p, load_factor)
     return balance_with(system, p, load_factor, unbalanced, system.assembler().smallest_jacobian(p))
 
 
@@ -298,10 +303,7 @@ class PrescribedStep:
         """Change of the residual (n,) with the step."""
         if not self.moves:
             return np.zeros(len(self.start))
-        zeros = np.zeros(len(self.start))
-        return differentiated(
-            self.system, lambda p: residual(self.system, p, zeros, zeros, self.load_factor), self.start, self.step
-        )
+        return residual_change(self.system, self.start, self.step, self.load_factor)
 
 
 def count_after(system: System, start: np.ndarray, step: np.ndarray, load_factor: float) -> int:
@@ -398,8 +400,8 @@ class PivotedProblem(SingleCorrections):
         self.stresses = stresses
 
     def take(self) -> tuple[float, int]:
-        system, p, zeros, free = self.system, self.state, np.zeros(len(self.state)), self.system.free_dofs
-        unbalanced, tangent = linearise(system, p, zeros, zeros, self.load_factor, STATICS, self.stresses)
+        system, p, free = self.system, self.state, self.system.free_dofs
+        unbalanced, tangent = linearise_at_rest(system, p, self.load_factor, self.stresses)
         factors: Factorised = tangent.factorised(system.rotated)
         step = self.step.step.copy() if self.taken == 0 else np.zeros(len(p))
         step[free], after = factors.correction(unbalanced[free])

@@ -8,7 +8,7 @@ from scipy.sparse.linalg import LinearOperator, eigs
 
 from beamfem.assembly.connectors import Connector
 from beamfem.assembly.differences import differentiated
-from beamfem.assembly.equations import STATICS, linearise, load_change, predicted_stresses, residual
+from beamfem.assembly.equations import STATICS, linearise_at_rest, load_change, predicted_stresses, residual_at_rest
 from beamfem.assembly.stress_resultants import free_group, resultants
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
@@ -52,7 +52,7 @@ def linear_solution(system: System, p: np.ndarray, load_factor: float) -> Linear
     rate = sum(weight * load_change(system, p, load_factor, at) for at, weight in differences)
     if _negligible(system, p, load_factor, np.asarray(rate)):
         return None
-    tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)[1]
+    tangent = linearise_at_rest(system, p, load_factor)[1]
     factors = tangent.factorised(system.rotated)
     slope, before = np.zeros(len(p)), system.prescribed_values(load_factor)
     slope[free] = factors.solve(-np.asarray(rate)[free])
@@ -177,8 +177,7 @@ def linearised_loads(
     modes = np.zeros((shapes.shape[1], len(p)))
     modes[:, system.free_dofs] = shapes.T
     correction = np.zeros_like(p)
-    zeros = np.zeros_like(p)
-    unbalanced = residual(system, p, zeros, zeros, load_factor)[system.free_dofs]
+    unbalanced = residual_at_rest(system, p, load_factor)[system.free_dofs]
     correction[system.free_dofs] = -linear.factors.solve(unbalanced)
     softening = -shapes.T @ (linear.geometric @ shapes)
     stiffness = stiffness_of_modes(system, p, load_factor, modes, correction)

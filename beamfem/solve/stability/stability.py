@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.assembly.equations import STATICS, linearise, load_change, with_stresses
+from beamfem.assembly.equations import STATICS, linearise_at_rest, load_change, with_stresses
 from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.precision.mixed_tangent import MixedTangent
@@ -32,7 +32,7 @@ def stable_rows(solution: Solution) -> np.ndarray:
 def unstable_directions(system: System, p: np.ndarray, load_factor: float, mixed: bool) -> int:
     """Return how many eigenvalues of the tangent are negative in the state p (n,); mixed: with stress resultants."""
     zeros = np.zeros(len(p))
-    tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)[1]
+    tangent = linearise_at_rest(system, p, load_factor)[1]
     if mixed and not isinstance(tangent, MixedTangent):
         tangent = with_stresses(system, (p, zeros, zeros), load_factor, STATICS, None, tangent)
     return tangent.factorised(system.rotated).negative_pivots

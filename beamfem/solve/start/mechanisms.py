@@ -8,7 +8,7 @@ from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import ArpackError, eigsh
 
-from beamfem.assembly.equations import STATICS, linearise
+from beamfem.assembly.equations import linearise_at_rest
 from beamfem.assembly.rigid_velocity import RigidVelocity, set_rigid_rates
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, FreeMotionError, InputError
@@ -236,8 +236,7 @@ def require_independent(system: System, p: np.ndarray) -> None:
     multipliers = len(system.connectors.multipliers)
     if multipliers == 0:
         return
-    zeros = np.zeros(len(p))
-    tangent = linearise(system, p, zeros, zeros, 0.0, STATICS)[1].sparse(system.rotated)
+    tangent = linearise_at_rest(system, p, 0.0)[1].sparse(system.rotated)
     scale = system.scale[system.free_dofs][:-multipliers]
     rows = (tangent[-multipliers:, :-multipliers].toarray() * scale).T
     sizes = np.linalg.norm(rows, axis=0)

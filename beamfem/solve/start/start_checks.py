@@ -4,7 +4,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.assembly.connectors import damps_at_rest
-from beamfem.assembly.equations import STATICS, linearise, residual
+from beamfem.assembly.equations import linearise_at_rest, residual_at_rest
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.installed_memory import USABLE_FRACTION, in_gib, installed_memory
@@ -45,8 +45,7 @@ _CANCELLED = 1e4 * np.finfo(float).eps  # round-off of strains due to positions,
 
 def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
     """Return the largest unbalanced force [N, N m] in the state p (n,); 0 if it is small enough."""
-    zeros = np.zeros_like(p)
-    unbalanced, tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)
+    unbalanced, tangent = linearise_at_rest(system, p, load_factor)
     remaining = np.abs(system.along_free(unbalanced))
     acting = [float(np.abs(values).max(initial=0.0)) for values in system.point_values(load_factor)]
     if system.imposing(load_factor).any():
@@ -76,8 +75,7 @@ def require_equilibrium(system: System, p: np.ndarray, load_factor: float, use: 
 def _sure(system: System, p: np.ndarray, load_factor: float) -> bool:
     """Return whether a state (n,) balances the loads except for its last digits; without loads, all rows count."""
     if not system.loads_at(load_factor).any:
-        zeros = np.zeros_like(p)
-        unbalanced = np.abs(system.along_free(residual(system, p, zeros, zeros, load_factor)))
+        unbalanced = np.abs(system.along_free(residual_at_rest(system, p, load_factor)))
         if np.all(unbalanced <= row_floors(system, p)[system.free_dofs]):
             return True
     if digits_of(system, p, load_factor) >= 1.0:
@@ -91,8 +89,8 @@ def _sure(system: System, p: np.ndarray, load_factor: float) -> bool:
 
 def _missing(system: System, p: np.ndarray, load_factor: float) -> float:
     """Return the size of the correction, relative to the model, that balances a state (n,); inf if none does."""
-    zeros, free = np.zeros_like(p), system.free_dofs
-    unbalanced, tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)
+    free = system.free_dofs
+    unbalanced, tangent = linearise_at_rest(system, p, load_factor)
     try:
         step = tangent.factorised(system.rotated).solve(-unbalanced[free])
     except LinAlgError:

@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.equations import STATICS, linearise, load_slope, predicted_stresses
+from beamfem.assembly.equations import linearise_at_rest, load_slope, predicted_stresses
 from beamfem.assembly.system import Proven, System
 from beamfem.errors import ConvergenceError, LimitPointError
 from beamfem.precision.roundoff import ENOUGH, digits_of, largest_force
@@ -64,8 +64,8 @@ def _dips(first: float, last: float) -> bool:
 
 def _tangent(system: System, p: np.ndarray, load_factor: float, middle: float, width: float) -> np.ndarray:
     """Return the scaled derivative of p (n,) by the load factor, by a difference centred at `middle`."""
-    zeros, prescribed = np.zeros(len(p)), system.prescribed_dofs
-    _, stiffness = linearise(system, p, zeros, zeros, load_factor, STATICS)
+    prescribed = system.prescribed_dofs
+    _, stiffness = linearise_at_rest(system, p, load_factor)
     result = np.zeros(len(p))
     slope = load_slope(system, p, middle, width)[system.free_dofs]
     result[system.free_dofs] = stiffness.factorised(system.rotated).solve(-slope)
@@ -158,7 +158,7 @@ def _differs_half_way(system: System, done: StaticRecord, target: float, end: np
     ends = (predicted_stresses(system, p, zeros, at) for p, at in ((done.state, done.reached), (end, target)))
     mean = tuple(0.5 * (one + other) for one, other in zip(*ends, strict=True))
     middle = 0.5 * (done.state + end)
-    _, tangent = linearise(system, middle, zeros, zeros, 0.5 * (done.reached + target), STATICS, mean)
+    _, tangent = linearise_at_rest(system, middle, 0.5 * (done.reached + target), mean)
     try:
         return tangent.factorised(system.rotated).negative_pivots != done.negative_pivots
     except LinAlgError:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.assembly.equations import INERTIA, linearise, residual
+from beamfem.assembly.equations import INERTIA, linearise, residual_at_rest
 from beamfem.assembly.system import System
 from beamfem.errors import LimitPointError
 from beamfem.linalg.tangent import UNROTATED
@@ -44,8 +44,7 @@ def rest_state(
     p = limit[:-1] + aside
     p[system.prescribed_dofs] = system.prescribed_values(load_factor)
     mass = _mass(system, p, load_factor)
-    zeros = np.zeros(len(p))
-    pull = abs(float(aside[free] @ residual(system, p, zeros, zeros, load_factor)[free]))
+    pull = abs(float(aside[free] @ residual_at_rest(system, p, load_factor)[free]))
     time = float(aside[free] @ (mass @ aside[free])) / max(pull, np.finfo(float).tiny)
     iterations = waits = wait = 0
     shortest = _SHORTEST * time

@@ -10,7 +10,7 @@ from scipy.sparse import block_array, csc_array
 from scipy.sparse.linalg import splu
 
 from beamfem.assembly.compilation_notice import announce_compilation
-from beamfem.assembly.equations import STATICS, linearise, residual
+from beamfem.assembly.equations import linearise_at_rest, residual_at_rest
 from beamfem.assembly.system import Proven, System, system_of
 from beamfem.errors import ConvergenceError, InputError, LimitPointError
 from beamfem.linalg.tangent import UNROTATED
@@ -246,22 +246,22 @@ def stiffened_start(system: System, free: FreeMotion) -> np.ndarray:
     moved = np.array([free.conditions.rates(p, motion) for motion in free.motions])
     moved[:, system.prescribed_dofs] = 0.0
     moved /= np.abs(moved / system.scale).max(axis=1)[:, None]
-    stiffness, zeros = stiffness_of_modes(system, p, 0.0, moved), np.zeros(len(p))
+    stiffness = stiffness_of_modes(system, p, 0.0, moved)
     if not np.linalg.eigvalsh(stiffness)[0] > _NEGLIGIBLE * largest_force(system, p, 0.0):
         raise free.error
     # a bar on a pin that has to turn by more than 1 rad to hang is not held by its weight where it is drawn
-    if np.max(np.abs(np.linalg.solve(stiffness, moved @ residual(system, p, zeros, zeros, 0.0)))) > _FARTHEST:
+    if np.max(np.abs(np.linalg.solve(stiffness, moved @ residual_at_rest(system, p, 0.0)))) > _FARTHEST:
         raise free.error
     return p
 
 
 def _prevented(system: System, rates: np.ndarray) -> np.ndarray | None:
     """Return the equilibrium (n,) at load factor 0 with motions (m, n) prevented; None if it is not found."""
-    p, zeros, unknown = system.reference.copy(), np.zeros(system.model.size), system.free_dofs
+    p, unknown = system.reference.copy(), system.free_dofs
     p[system.prescribed_dofs] = system.prescribed_values(0.0)
     along = csc_array(rates[:, unknown] / system.scale[unknown] ** 2)
     for _ in range(_ITERATIONS):
-        unbalanced, tangent = linearise(system, p, zeros, zeros, 0.0, STATICS)
+        unbalanced, tangent = linearise_at_rest(system, p, 0.0)
         matrix = block_array([[tangent.sparse(UNROTATED), along.T], [along, None]], format="csc")
         right = np.append(-unbalanced[unknown], np.zeros(len(rates)))
         try:
@@ -313,8 +313,7 @@ def _free_of_force(system: System) -> bool:
     if not system.connectors.items and all(block.law is None for block in system.blocks):
         return True
     p = system.reference
-    zeros = np.zeros(p.shape)
-    return bool(np.all(np.abs(residual(system, p, zeros, zeros, 0.0)) <= row_floors(system, p)))
+    return bool(np.all(np.abs(residual_at_rest(system, p, 0.0)) <= row_floors(system, p)))
 
 
 def _grown(system: System, newton: Newton, failed: NewtonResult) -> NewtonResult:

@@ -222,23 +222,6 @@ class NumberedMeshes:
         counted = mesh not in self.numbers_uncounted
         return mesh.block, mesh.straight, counted, by_value(beam.section), by_value(beam.material), beam.damping
 
-    @cached_property
-    def places(self) -> dict[int, "Place"]:
-        """The place of each beam in its group of `joinable`."""
-        result = dict[int, Place]()
-        for group in self.joinable:
-            largest = max(self.meshes[number].elements for number in group)
-            result |= {number: Place(group, at, largest) for at, number in enumerate(group)}
-        return result
-
-
-class Place(NamedTuple):
-    """The numbers of beams whose meshes can be joined, the place of one among them, and the most elements of any."""
-
-    group: list[int]
-    at: int
-    largest: int
-
 
 class NodesNeeded(NamedTuple):
     """All that the meshes of a model depend on besides its beams and joints.

@@ -2,15 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import partial
 
 import numpy as np
 
 from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.cached_properties import cached_property
-from beamfem.model.beam import Point
 from beamfem.model.load_base import Load, factor
-from beamfem.model.model import Model
 from beamfem.reprs import brief
 from beamfem.results.displacements import Displacements
 from beamfem.results.postprocess import momenta
@@ -116,18 +113,10 @@ def recorded(solution: Solution, by_sections: np.ndarray) -> np.ndarray:
 
 def _of_loads(solution: Solution, displaced: Displacements) -> np.ndarray:
     result = np.zeros(len(solution))
-    for load in sorted(solution.model.loads, key=partial(_number_of_beam, solution.model)):
+    for load in solution.model.loads:
         if load.conservative:
             result -= _factors(solution, load) * load.work(displaced)
     return result
-
-
-def _number_of_beam(model: Model, load: Load) -> int:
-    """Return the number of the beam that a load acts on, -1 for all mass: displacements are kept for a beam."""
-    place = load.place
-    if place is None:
-        return -1
-    return model.number_of(place.beam if isinstance(place, Point) else place)
 
 
 def _factors(solution: Solution, load: Load) -> np.ndarray:

@@ -1,8 +1,5 @@
 """Results of models with many beams: like beams are evaluated together, with the values of each by itself."""
 
-import sys
-from concurrent.futures import ThreadPoolExecutor
-
 import numpy as np
 import pytest
 
@@ -151,48 +148,15 @@ def test_the_more_rows_the_fewer_beams_are_evaluated_at_once(rows):
         assert len(group.numbers) == 1 or sum(group.counts) * rows <= many_beams.VALUES
 
 
-def test_kept_values_are_bounded(monkeypatch):
-    """With the forces of one beam those of its neighbours are kept, but not of all beams of a large model."""
+def test_values_of_large_solutions_are_not_kept(monkeypatch):
+    """With the forces of one beam those of the others are kept, but not of a large solution."""
     solution = row_of(12)
     whole = [solution.section_forces(beam).moment for beam in solution.model.beams]
-    largest = []
-    original = neighbours.join
-    monkeypatch.setattr(neighbours, "join", lambda meshes: largest.append(len(meshes)) or original(meshes))
-    monkeypatch.setattr(neighbours, "_VALUES", 5 * 3 * whole[0].size)
-    monkeypatch.setattr(neighbours, "_MOST", 10 * 3 * whole[0].size)
+    monkeypatch.setattr(neighbours, "_KEPT", 0)
     again = _fresh(solution)
     for beam, moment in zip(solution.model.beams[::-1], whole[::-1], strict=True):
         assert np.array_equal(again.section_forces(beam).moment, moment)
-    assert largest == [2, 5, 5]
-    again.section_forces(solution.model.beams[5])
-    assert largest == [2, 5, 5]
-    again.section_forces(solution.model.beams[-1])
-    assert largest == [2, 5, 5, 2]
-
-
-def test_threads_may_ask_for_beams_at_once(monkeypatch):
-    """A thread changed what another one was reading: KeyError, or RuntimeError of a dictionary that changes size."""
-    solution = row_of(200)
-    beams = np.arange(200)
-
-    def values(_, mesh):
-        first = mesh.parts[0].first_element
-        return np.full((3, 1, 2 * mesh.elements), np.repeat(first + np.arange(mesh.elements), 2))
-
-    def ask(seed):
-        for number in np.random.default_rng(seed).permutation(np.tile(beams, 4)).tolist():
-            found = neighbours.of_beam(solution, number, values)
-            assert np.array_equal(found[0, 0], 2 * number + np.array([0, 0, 1, 1]))
-
-    monkeypatch.setattr(neighbours, "_VALUES", 2 * 2 * 6)
-    monkeypatch.setattr(neighbours, "_MOST", 100 * 6)
-    interval = sys.getswitchinterval()
-    sys.setswitchinterval(1e-6)
-    try:
-        with ThreadPoolExecutor(8) as pool:
-            list(pool.map(ask, range(8)))
-    finally:
-        sys.setswitchinterval(interval)
+    assert not any(kept for kept in again.computed(neighbours._none).values())
 
 
 def test_beams_of_two_kinds_in_turns_do_not_displace_each_other(monkeypatch):

@@ -1,17 +1,41 @@
-"""One state of a motion, with results without the axis of steps."""
+"""One state of a motion or a path, with results without the axis of steps."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.model.beam import Point
 from beamfem.results.solution import Solution, State
-from beamfem.results.status import Statistics
 
 
 @dataclass(frozen=True, eq=False)
-class MotionState(State):
+class StateWithResults(State):
+    """A state with the results of a solution, without its axis of steps."""
+
+    static: ClassVar[bool]
+
+    @cached_property
+    def alone(self) -> Solution:
+        """The state as a solution of one row."""
+        return self.as_row(self.static)
+
+    def position(self, point: Point) -> np.ndarray:
+        """Return the position of a point (2,) [m]."""
+        return np.asarray(self.alone.position(point)[0])
+
+    def displacement(self, point: Point) -> np.ndarray:
+        """Return the displacement of a point from the reference configuration (2,) [m]."""
+        return np.asarray(self.alone.displacement(point)[0])
+
+    def rotation(self, point: Point) -> float:
+        """Return the rotation of the section at a point [rad], counter-clockwise positive, full turns included."""
+        return float(self.alone.rotation(point)[0])
+
+
+@dataclass(frozen=True, eq=False)
+class MotionState(StateWithResults):
     """One state of a motion, as the function of an `Event` gets it: results as those of a Solution in one row.
 
     Parameters
@@ -32,35 +56,19 @@ class MotionState(State):
     7
     """
 
+    static: ClassVar[bool] = False
+
     def __repr__(self) -> str:
         return f"{type(self).__name__}(time {self.at:.6g} {self.model.unit('s')}, of {self.model!r})"
-
-    @cached_property
-    def _alone(self) -> Solution:
-        rows = (np.array([self.at]), self.p[None], self.v[None], self.a[None])
-        turned = None if self.turned is None else self.turned[None]
-        return Solution(self.model, False, *rows, Statistics(0, 0, 0, "one state of a motion"), turned=turned)
 
     @property
     def time(self) -> float:
         """Time [s] of the state."""
         return self.at
 
-    def position(self, point: Point) -> np.ndarray:
-        """Return the position of a point (2,) [m]."""
-        return np.asarray(self._alone.position(point)[0])
-
-    def displacement(self, point: Point) -> np.ndarray:
-        """Return the displacement of a point from the reference configuration (2,) [m]."""
-        return np.asarray(self._alone.displacement(point)[0])
-
     def velocity(self, point: Point) -> np.ndarray:
         """Return the velocity of a point (2,) [m/s]."""
-        return np.asarray(self._alone.velocity(point)[0])
-
-    def rotation(self, point: Point) -> float:
-        """Return the rotation of the section at a point from the reference [rad], counter-clockwise positive."""
-        return float(self._alone.rotation(point)[0])
+        return np.asarray(self.alone.velocity(point)[0])
 
 
 @dataclass(frozen=True)

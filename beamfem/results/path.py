@@ -2,15 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, SupportsIndex, overload
+from typing import TYPE_CHECKING, ClassVar, SupportsIndex, overload
 
 import numpy as np
 
-from beamfem.cached_properties import cached_property
 from beamfem.model.beam import Beam, Point
+from beamfem.results.motion_state import StateWithResults
 from beamfem.results.postprocess import Fields, part_of
-from beamfem.results.solution import Solution, State
-from beamfem.results.status import Statistics
+from beamfem.results.solution import Solution
 
 if TYPE_CHECKING:
     from beamfem.results.section_forces import SectionForces
@@ -20,7 +19,7 @@ _SHOWN = 6  # critical points of each kind in the text of a path
 
 
 @dataclass(frozen=True, eq=False)
-class PathState(State):
+class PathState(StateWithResults):
     """One state of a path: results as those of a Solution, without the axis of steps.
 
     Parameters
@@ -32,6 +31,7 @@ class PathState(State):
     """
 
     stability: bool | None = field(default=None, kw_only=True)
+    static: ClassVar[bool] = True
 
     def __repr__(self) -> str:
         known = {True: ", stable", False: ", not stable", None: ""}[self.stability]
@@ -42,29 +42,10 @@ class PathState(State):
         """Load factor [-] of the state."""
         return self.at
 
-    @cached_property
-    def alone(self) -> Solution:
-        """The state as a solution of one row."""
-        rows = (np.array([self.at]), self.p[None], self.v[None], self.a[None])
-        turned = None if self.turned is None else self.turned[None]
-        return Solution(self.model, True, *rows, Statistics(0, 0, 0, "one state of a path"), turned=turned)
-
     @property
     def stable(self) -> bool:
         """Whether it is a stable equilibrium, see `Solution.stable`."""
         return bool(self.alone.stable[0]) if self.stability is None else self.stability
-
-    def position(self, point: Point) -> np.ndarray:
-        """Return the position (2,) [m] of a point."""
-        return np.asarray(self.alone.position(point)[0])
-
-    def displacement(self, point: Point) -> np.ndarray:
-        """Return the displacement (2,) [m] of a point from the reference configuration."""
-        return np.asarray(self.alone.displacement(point)[0])
-
-    def rotation(self, point: Point) -> float:
-        """Return the rotation [rad] of the section, counter-clockwise positive, full turns included."""
-        return float(self.alone.rotation(point)[0])
 
     def reaction(self, point: Point) -> np.ndarray:
         """Return fx, fy [N] and m [N m] (3,) of the supports at a point. Raises InputError if there are none."""

@@ -77,6 +77,12 @@ class State:
 
         require_state(self)
 
+    def as_row(self, static: bool) -> "Solution":
+        """Return the state as a solution of one row."""
+        rows = (np.array([self.at]), self.p[None], self.v[None], self.a[None])
+        turned = None if self.turned is None else self.turned[None]
+        return Solution(self.model, static, *rows, Statistics(0, 0, 0, "one state"), turned=turned)
+
     def _repr_html_(self) -> str:
         from beamfem.view.summary import state_table
 

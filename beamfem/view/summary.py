@@ -15,7 +15,6 @@ from beamfem.results.energies import Energy
 from beamfem.results.extremes import Force
 from beamfem.results.section_forces import SectionForces, extreme_force
 from beamfem.results.solution import Solution, State
-from beamfem.results.status import Statistics
 from beamfem.solve.motion.period_error import lengthened_period
 from beamfem.tables import as_html
 from beamfem.validation import shown
@@ -134,13 +133,10 @@ def _kinds(items: Sequence[object]) -> str:
 
 def state_table(state: State) -> str:
     """Return a state and its model as an HTML table."""
-    turned = None if state.turned is None else state.turned[None]
-    parts = (np.array([state.at]), state.p[None], state.v[None], state.a[None], Statistics(0, 0, 0, "one state"))
-    alone = Solution(state.model, True, *parts, turned=turned)
     speed = float(np.abs(state.v).max()) if state.v.size else 0.0
     rows = [
         ("load factor or time", f"{state.at:.6g}"),
-        largest_displacement(alone, with_row=False),
+        largest_displacement(state.as_row(static=True), with_row=False),
         ("at rest", "no" if speed else "yes"),
         *model_rows(state.model),
     ]

@@ -36,7 +36,6 @@ with _deferred, needed_for("to_vtk"):
 _deferred.deliver()
 
 VALUES_IN_MEMORY = 100_000
-_STEPS_BETWEEN_PUBLISHING = 50
 
 
 def write_vtk(
@@ -73,103 +72,72 @@ def write_vtk(
 
 
 def _write_series(solution: Solution, path: Path, cells: Cells | Boundary, chunk: int) -> None:
-    series = _Series(path, cells, "load_factor" if solution.static else "time", times(solution.at))
+    """Write a .pvd file and a folder of its steps, both at the end in place of earlier ones."""
+    folder, at = path.with_suffix(""), times(solution.at)
+    steps = path.with_name(f"{path.stem[:40]}.{uuid4().hex[:8]}.part")
+    make_folder(folder)
+    make_folder(steps)
     try:
-        for first in range(0, len(solution), chunk):
-            series.write(solution, slice(first, first + chunk))
-        series.finish()
+        _write_steps(solution, steps, cells, chunk)
+        lines = [
+            f'    <DataSet timestep="{float(time)!r}" part="0" file={quoteattr(f"{folder.name}/{row:04d}.vtu")}/>\n'
+            for row, time in enumerate(at)
+        ]
+        _replace_series(path, folder, steps, lines)
     finally:
-        series.close()
+        shutil.rmtree(steps, ignore_errors=True)
 
 
-class _Series:
-    """A .pvd file and the folder of its steps.
-
-    Where there is an earlier one, steps are written into a folder beside it and moved when all of them are there;
-    otherwise into its own, and the .pvd lists those so far.
-    """
-
-    def __init__(self, path: Path, cells: Cells | Boundary, name: str, at: np.ndarray) -> None:
-        self.path, self.cells, self.folder = path, cells, path.with_suffix("")
-        self.name, self.times = name, at
-        self.earlier = path.exists()
-        self.steps = path.with_name(f"{path.stem[:40]}.{uuid4().hex[:8]}.part") if self.earlier else self.folder
-        make_folder(self.folder)
-        make_folder(self.steps)
-        self.lines: list[str] = []
-        table = vtkCellArray()
-        table.SetData(*(numpy_to_vtkIdTypeArray(ids, deep=True) for ids in (cells.offsets, cells.connectivity)))
-        self.grid = vtkUnstructuredGrid()
-        self.grid.SetPoints(vtkPoints())
-        self.grid.SetCells(cells.cell_type, table)
-        if cells.degrees is not None:
-            self.grid.GetCellData().SetHigherOrderDegrees(_named("HigherOrderDegrees", cells.degrees))
-        for name_of_cells, values in cells.numbers.items():
-            self.grid.GetCellData().AddArray(_named(name_of_cells, values.astype(np.int32)))
-        # meshio reads no texts, and lines are what it is to read
-        for name_of_legend, texts in cells.legend.items() if cells.cell_type != LINE else ():
-            self.grid.GetFieldData().AddArray(_texts(name_of_legend, texts))
-        self.writer = vtkXMLUnstructuredGridWriter()
-        self.writer.SetInputData(self.grid)
-        self.writer.EncodeAppendedDataOff()
-
-    def write(self, solution: Solution, rows: slice) -> None:
-        """Write a file a step, of some rows of a solution."""
-        arrays = self.cells.arrays(solution, rows)
-        for row, value in enumerate(solution.at[rows]):
+def _write_steps(solution: Solution, folder: Path, cells: Cells | Boundary, chunk: int) -> None:
+    """Write a .vtu file for each row of a solution."""
+    table = vtkCellArray()
+    table.SetData(*(numpy_to_vtkIdTypeArray(ids, deep=True) for ids in (cells.offsets, cells.connectivity)))
+    grid = vtkUnstructuredGrid()
+    grid.SetPoints(vtkPoints())
+    grid.SetCells(cells.cell_type, table)
+    if cells.degrees is not None:
+        grid.GetCellData().SetHigherOrderDegrees(_named("HigherOrderDegrees", cells.degrees))
+    for name, values in cells.numbers.items():
+        grid.GetCellData().AddArray(_named(name, values.astype(np.int32)))
+    # meshio reads no texts, and lines are what it is to read
+    for name, texts in cells.legend.items() if cells.cell_type != LINE else ():
+        grid.GetFieldData().AddArray(_texts(name, texts))
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetInputData(grid)
+    writer.EncodeAppendedDataOff()
+    for first in range(0, len(solution), chunk):
+        arrays = cells.arrays(solution, slice(first, first + chunk))
+        for row, value in enumerate(solution.at[first : first + chunk]):
             now = {name: numpy_to_vtk(values[row]) for name, values in arrays.items()}
-            self.grid.GetPoints().SetData(now.pop("points"))
+            grid.GetPoints().SetData(now.pop("points"))
             for name, array in now.items():
                 array.SetName(name)
                 if name in UNITS:
-                    array.GetInformation().Set(vtkDataArray.UNITS_LABEL(), self.cells.unit(UNITS[name]))
-                self.grid.GetPointData().AddArray(array)
-            self.grid.GetFieldData().AddArray(_named(self.name, np.array([value])))
-            file = self.steps / f"{len(self.lines):04d}.vtu"
-            partial = file.with_suffix(".part")
-            self.writer.SetFileName(os.fspath(partial))
-            if not self.writer.Write():
-                partial.unlink(missing_ok=True)
+                    array.GetInformation().Set(vtkDataArray.UNITS_LABEL(), cells.unit(UNITS[name]))
+                grid.GetPointData().AddArray(array)
+            grid.GetFieldData().AddArray(_named("load_factor" if solution.static else "time", np.array([value])))
+            file = folder / f"{first + row:04d}.vtu"
+            writer.SetFileName(os.fspath(file))
+            if not writer.Write():
                 raise FileError(f"{file} cannot be written: the disk is full, or takes no files")
-            os.replace(partial, file)
-            source = quoteattr(f"{self.folder.name}/{file.name}")
-            time = float(self.times[len(self.lines)])
-            self.lines.append(f'    <DataSet timestep="{time!r}" part="0" file={source}/>\n')
-            if not self.earlier and len(self.lines) % _STEPS_BETWEEN_PUBLISHING == 1:
-                self.publish()
 
-    @uninterrupted
-    def finish(self) -> None:
-        """Replace the earlier export; signals wait until all of it is replaced."""
-        try:
-            if self.earlier:
-                for file in sorted(self.steps.iterdir()):
-                    os.replace(file, self.folder / file.name)
-            self.clean()
-            self.publish()
-        except FileError:
-            raise
-        except OSError as error:
-            raise FileError(f"{self.path} cannot be written: {error.strerror or error}") from error
 
-    def close(self) -> None:
-        """Publish the steps so far, or leave the earlier export as it is."""
-        if self.earlier:
-            shutil.rmtree(self.steps, ignore_errors=True)
-        else:
-            self.publish()
-
-    def clean(self) -> None:
-        """Remove the steps that an earlier, longer export left behind."""
-        for file in self.folder.glob("*.vtu"):
-            if re.fullmatch(r"\d{4,}", file.stem) and int(file.stem) >= len(self.lines) and file.is_file():
+@uninterrupted
+def _replace_series(path: Path, folder: Path, steps: Path, lines: list[str]) -> None:
+    """Move the steps to their folder in place of those of an earlier export, and write the .pvd file."""
+    head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'
+    try:
+        for file in sorted(steps.iterdir()):
+            os.replace(file, folder / file.name)
+        for file in folder.glob("*.vtu"):
+            if re.fullmatch(r"\d{4,}", file.stem) and int(file.stem) >= len(lines):
                 file.unlink()
-
-    def publish(self) -> None:
-        """Rewrite the .pvd with the steps so far; readers see the old file or the new one, never a part."""
-        head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'
-        with whole(self.path) as partial:
-            partial.write_text(head + "".join(self.lines) + "  </Collection>\n</VTKFile>\n", encoding="utf-8")
+        with whole(path) as partial:
+            partial.write_text(head + "".join(lines) + "  </Collection>\n</VTKFile>\n", encoding="utf-8")
+    except OSError as error:
+        if isinstance(error, FileError):
+            raise
+        raise FileError(f"{path} cannot be written: {error.strerror or error}") from error
 
 
 def _named(name: str, values: np.ndarray) -> object:

@@ -2,8 +2,6 @@
 
 import contextlib
 import io
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,46 +11,8 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
 
-_OFTEN = 100  # no reader that stops asks as often behind the end
-# by the format's name in meshio, with the mode that its reader opens a file in
-_OVERREAD = {"mdpa": "rb", "nastran": "r", "ply": "rb", "tecplot": "r"}
-
-
-class _Lines:
-    """Raises EOFError if lines beyond the end are requested repeatedly."""
-
-    _behind = 0
-
-    def readline(self, size: int = -1, /):  # type: ignore[no-untyped-def]  # text or bytes
-        line = super().readline(size)  # type: ignore[misc]
-        if not line and size != 0:
-            self._behind += 1
-            if self._behind > _OFTEN:
-                raise EOFError("the file ends early")
-        return line
-
-
-class _Text(_Lines, io.TextIOWrapper):  # type: ignore[misc]
-    pass
-
-
-class _Bytes(_Lines, io.BufferedReader):  # type: ignore[misc]
-    pass
-
-
-@contextmanager
-def opened(path: Path, kind: str) -> Iterator[io.IOBase | Path]:
-    """Yield the input for meshio to read a file of this format: a file object that raises EOFError, or the path."""
-    if kind not in _OVERREAD:
-        yield path
-        return
-    with path.open("rb", buffering=0) as raw:
-        yield _Bytes(raw) if _OVERREAD[kind] == "rb" else _Text(io.BufferedReader(raw))
-
-
 _DIMENSION = {"vertex": 0, "line": 1, "line3": 1}
 _NUMBERINGS = {"beam", "material", "section"}  # of the cells of centre lines that `Solution.to_vtk` wrote
-_WITHOUT_LINES = {"off": "triangles", "tetgen": "tetrahedra", "wkt": "triangles"}  # what meshio reads of these formats
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,15 +37,13 @@ def read_through_meshio(path: Path) -> MeshFile:
         ending: "gmsh" if ending == ".msh" else kinds[0] for ending, kinds in meshio.extension_to_filetypes.items()
     }
     kind = formats.get(path.suffix.lower())
-    if kind is None or kind in _WITHOUT_LINES:
-        holds = f"; those of {kind} hold {_WITHOUT_LINES[kind]} only" if kind else ""
-        endings = ", ".join(sorted(ending for ending in formats if formats[ending] not in _WITHOUT_LINES))
-        raise InputError(f"{path}: mesh files end in {endings}{holds}")
+    if kind is None:
+        raise InputError(f"{path}: mesh files end in {', '.join(sorted(formats))}")
     printed = io.StringIO()
     silence = contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed)
     try:
-        with silence[0], silence[1], opened(path, kind) as source:
-            mesh = meshio.read(source, file_format=kind)
+        with silence[0], silence[1]:
+            mesh = meshio.read(path, file_format=kind)
     except (Exception, SystemExit) as error:  # meshio raises anything for a bad file, and exits for some
         words = printed.getvalue().strip() if isinstance(error, SystemExit) else str(error)
         reason = " ".join(words.split()) or type(error).__name__

@@ -1,10 +1,7 @@
 """Line meshes in files: every format, sets, and what is refused."""
 
-import contextlib
-import io
 from pathlib import Path
 
-import meshio
 import numpy as np
 import pytest
 from mesh_parts import THREE, ends, frame, written
@@ -289,41 +286,3 @@ def test_reading_prints_nothing(tmp_path, capfd):
     with pytest.raises(bf.InputError):
         read_mesh(tmp_path / "bad.msh")
     assert capfd.readouterr() == ("", "")
-
-
-# What becomes of them
-
-
-def cut(path, data):
-    """Return whether the beginning of a file is read, or refused as InputError."""
-    path.write_bytes(data)
-    try:
-        read_mesh(path)
-    except bf.InputError:
-        return False
-    return True
-
-
-@pytest.mark.parametrize(
-    ("suffix", "options"),
-    [(".ply", {}), (".ply", {"binary": False}), (".bdf", {}), (".dat", {}), (".mdpa", {})],
-    ids=["binary ply", "ply", "nastran", "tecplot", "mdpa"],
-)
-def test_files_that_end_early_are_refused(tmp_path, suffix, options):
-    """The readers of these wait for ever for a line behind the end."""
-    whole = tmp_path / f"whole{suffix}"
-    cells = [("line", [[0, 1], [1, 2], [3, 2]])]
-    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-        meshio.Mesh(np.array(THREE, dtype=float), cells).write(whole, **options)
-    data = whole.read_bytes()
-    assert ends(read_mesh(whole)) == [[(0, 0), (0, 1)], [(0, 1), (1, 1)], [(1, 0), (1, 1)]]
-    # a text may lack what ends its last line and the marks behind it
-    essential = len(data) - 1 if suffix in (".ply", ".dat") else data.rindex(b"3")
-    assert not any(cut(tmp_path / f"cut{suffix}", data[:size]) for size in range(essential))
-
-
-@pytest.mark.parametrize("suffix", [".off", ".node", ".ele", ".wkt"])
-def test_formats_without_lines_are_refused_unread(tmp_path, suffix):
-    (tmp_path / f"mesh{suffix}").write_text("OFF\n")
-    with pytest.raises(bf.InputError, match=r"hold (triangles|tetrahedra) only"):
-        read_mesh(tmp_path / f"mesh{suffix}")

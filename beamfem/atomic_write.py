@@ -31,10 +31,8 @@ def readable(path: str | PathLike[str]) -> Path:
     """Return the path of a file that can be opened. Raises InputError, FileNotFoundError, FileError."""
     source = path_of(path)
     try:
-        if source.is_char_device():
-            raise FileError(f"{source} cannot be read: it is a device, whose bytes may have no end")
-        if source.is_fifo():
-            raise FileError(f"{source} cannot be read: it is a pipe, whose writer may never come; give a file")
+        if source.exists() and not source.is_file():
+            raise FileError(f"{source} cannot be read: it is a folder, a device or a pipe; give a file")
         with source.open("rb"):
             return source
     except FileNotFoundError:

@@ -109,22 +109,12 @@ def items(name: str, values: Any) -> list[Any]:
     """Return what a list, tuple or array holds, or raise InputError naming it: text, sets and mappings are none."""
     if type(values) is list or type(values) is tuple:
         return list(values)
-    if hasattr(values, "columns") or isinstance(values, np.ma.MaskedArray):
-        values = _plain_array(name, values)
+    if hasattr(values, "columns"):  # a table, which iterates over the names of its columns
+        values = np.asarray(values)
     if not isinstance(values, str | bytes | bytearray | Set | Mapping):
         with suppress(TypeError):
             return list(values)
     raise InputError(f"{name} must be a list, got {shown(values)}")
-
-
-def _plain_array(name: str, values: Any) -> np.ndarray:
-    """Return the rows of a table, which iterates over the names of its columns. Raises InputError for masked values."""
-    if isinstance(values, np.ma.MaskedArray):
-        if np.ma.is_masked(values):
-            raise InputError(f"{name} has masked values, got {shown(values)}")
-        return np.asarray(values.data)
-    table = np.asarray(values)
-    return table[0] if len(table) == 1 else table
 
 
 def text(name: str, value: Any) -> str:
@@ -164,16 +154,7 @@ def number_table(name: str, values: Any, columns: int) -> np.ndarray:
     if array.dtype.kind not in "iuf" or array.ndim != 2 or array.shape[1] != columns or not np.isfinite(array).all():
         size = f" {array.shape}" if array.size else ""
         raise InputError(f"{name} must be an array (n, {columns}) of finite numbers, got{size} {shown(values)}")
-    if holds_truth_values(values):
-        raise InputError(f"{name} must hold numbers only, got truth values among them")
     return array
-
-
-def holds_truth_values(values: Any) -> bool:
-    """Return whether there is True or False in nested lists or arrays, which NumPy takes for 1 and 0 beside numbers."""
-    if isinstance(values, list | tuple):
-        return any(map(holds_truth_values, values))
-    return isinstance(values, _TRUTH) or (isinstance(values, np.ndarray) and values.dtype.kind == "b")
 
 
 def flag(name: str, value: Any) -> bool:

@@ -20,7 +20,7 @@ from beamfem.io.abaqus import read_abaqus
 from beamfem.io.mesh_file import MeshFile, read_through_meshio
 from beamfem.material import Material
 from beamfem.reprs import brief
-from beamfem.validation import LARGEST, flag, holds_truth_values, items, number_table, shown, text
+from beamfem.validation import LARGEST, flag, items, number_table, shown, text
 
 if TYPE_CHECKING:
     from beamfem.io.frame import Frame, Members
@@ -85,9 +85,8 @@ class LineMesh:
             checked = {}
             for key, values in sets.items():
                 what = f"{name}[{text(f'a name in {name} of LineMesh', key)!r}] of LineMesh"
-                entries = items(what, values)
-                numbers = np.array(entries)
-                if numbers.ndim != 1 or holds_truth_values(entries):
+                numbers = np.array(items(what, values))
+                if numbers.ndim != 1:
                     raise InputError(f"{what} must be a list of whole numbers, got {shown(values)}")
                 checked[key] = _numbers_below(what, numbers, size, lowest)
             object.__setattr__(self, name, checked)

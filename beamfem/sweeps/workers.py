@@ -14,7 +14,6 @@ import traceback
 from collections import deque
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
-from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import cache, partial
 from numbers import Real
@@ -35,7 +34,6 @@ ExecutorFactory = Callable[[], Executor]
 Point = Mapping[str, Any]
 
 _RETURNED = "a number, an array, a Solution or a mapping of named ones"
-_THREAD_LIMITS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
 @dataclass(frozen=True)
@@ -74,11 +72,11 @@ def call_all(function: Callable[..., Any], points: Sequence[Point], home: int, a
     home: process number of the caller. attempt: makes a repetition a new task for executors that merge equal ones
     (dask). The package is imported before any call is timed.
     """
+    for name in beamfem.__all__:
+        getattr(beamfem, name)  # imports it
     if os.getpid() != home:
         end_with_parent()
         _one_thread()
-    for name in beamfem.__all__:
-        getattr(beamfem, name)  # imports it
     with no_progress():
         return [call(function, point) for point in points]
 
@@ -104,10 +102,9 @@ def open_executor(factory: ExecutorFactory, function: Callable[..., Any], tasks:
         raise InputError(
             f"{name} cannot be sent to a worker process ({error}); define it with def at the top level of a module"
         ) from None
-    with _environment_of_one_thread():
-        # a pool starts a process with each task that finds none idle: as many questions start them all at once
-        questions = range(min(tasks, workers(executor)))
-        answers = [executor.submit(call_all, function, (), os.getpid(), 0) for _ in questions]
+    # a pool starts a process with each task that finds none idle: as many questions start them all at once
+    questions = range(min(tasks, workers(executor)))
+    answers = [executor.submit(call_all, function, (), os.getpid(), 0) for _ in questions]
     try:
         answers[0].result()
     except BrokenExecutor:
@@ -172,28 +169,12 @@ def end_with_parent() -> None:
     threading.Thread(target=follow, name="end with parent", daemon=True).start()
 
 
-@contextmanager
-def _environment_of_one_thread() -> Iterator[None]:
-    """Environment variables that child processes inherit: libraries read them when they are loaded."""
-    before = {name: os.environ.get(name) for name in _THREAD_LIMITS}
-    os.environ.update(dict.fromkeys(_THREAD_LIMITS, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
-
-
 @cache
 def _one_thread() -> None:
     """Limit the BLAS and OpenMP libraries of this worker to one thread permanently; workers share the cores."""
-    with suppress(ImportError):
-        from threadpoolctl import threadpool_limits
+    from threadpoolctl import threadpool_limits
 
-        threadpool_limits(limits=1)
+    threadpool_limits(limits=1)
 
 
 def _checked(value: Any) -> Any:

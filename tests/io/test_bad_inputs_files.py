@@ -18,7 +18,7 @@ FILES = {
     "no result": ("none.h5", None, FILE, "there is no file"),
     "no mesh": ("none.msh", None, FILE, "there is no file"),
     "no drawing": ("none.dxf", None, FILE, "there is no file"),
-    "a folder for a result": ("folder", None, FILE, "cannot be read: Is a directory"),
+    "a folder for a result": ("folder", None, FILE, "cannot be read: it is a folder"),
     "an empty result": ("x.h5", b"", BAD, "no HDF5 file"),
     "text for a result": ("x.h5", b"hello", BAD, "no HDF5 file"),
     "a result of its first bytes": ("x.h5", b"\x89HDF\r\n\x1a\n", BAD, "truncated"),
@@ -29,7 +29,7 @@ FILES = {
     "a mesh of an unknown kind": ("x.mesh99", b"", BAD, "mesh files end in"),
     "a mesh without a cell": ("x.obj", b"", BAD, "no lines"),
     "an Abaqus file of 1e300": ("x.inp", b"*NODE\n1, 0, 0\n2, 1e300, 0\n*ELEMENT, TYPE=B21\n1, 1, 2\n", BAD, "apart"),
-    "an include without end": ("x.inp", b"*INCLUDE, INPUT=/dev/zero\n", BAD, "it is a device"),
+    "an include without end": ("x.inp", b"*INCLUDE, INPUT=/dev/zero\n", BAD, "a device"),
     "a drawing of its first line": ("x.dxf", b"  0\n", BAD, "DXF"),
     "an empty Abaqus file": ("x.inp", b"", BAD, "no lines"),
     "an element of no node": ("x.inp", f"{NODES}*ELEMENT, TYPE=B21\n1, 1, 9\n".encode(), BAD, "does not give"),
@@ -144,7 +144,7 @@ def test_a_wrong_command_shows_no_traceback(case):
 @pytest.mark.parametrize("reader", [bf.load, bf.read_mesh, bf.read_dxf])
 def test_a_device_is_read_by_nothing(reader):
     """Its bytes have no end, and would fill the memory."""
-    require_named(lambda: reader("/dev/zero"), FILE, "it is a device")
+    require_named(lambda: reader("/dev/zero"), FILE, "a device")
     done = CliRunner().invoke(app, ["run", "/dev/zero"])
     assert (done.exit_code, "this is a device" in done.stderr) == (2, True)
 

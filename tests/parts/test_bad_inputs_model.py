@@ -123,18 +123,6 @@ MESHES = {
         "a text, got 3",
     ),
     "set of rows": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 1, -1]], {"a": [[0]]}, {}), BAD, "a list of whole"),
-    "nodes of True": (lambda: bf.LineMesh([[0, 0], [True, 0.5]], [[0, 1, -1]], {}, {}), BAD, "truth values"),
-    "cells of True": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, True, -1]], {}, {}), BAD, "truth values"),
-    "cells of arrays of truth values": (
-        lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 1, -1], np.array([False, True, True])], {}, {}),
-        BAD,
-        "truth values",
-    ),
-    "set of True": (
-        lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 1, -1]], {}, {"a": [0, True]}),
-        BAD,
-        "a list of whole",
-    ),
     "cells of halves": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 0.5, -1]], {}, {}), BAD, "whole numbers"),
     "sets as a list": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 1, -1]], [], {}), BAD, "member_sets .* mapping"),
     "set of no cell": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 1, -1]], {"a": [3]}, {}), BAD, "between 0 and 0"),

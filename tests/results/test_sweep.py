@@ -39,15 +39,11 @@ def deadly(x):
     return x
 
 
-def limits():
-    return {"process": os.getpid(), "threads": int(os.environ.get("OMP_NUM_THREADS", "0"))}
-
-
 def blas_threads(x):
     from threadpoolctl import threadpool_info
 
     np.linalg.solve(np.eye(3), np.ones(3))
-    return max(library["num_threads"] for library in threadpool_info())
+    return os.getpid() != x and max(library["num_threads"] for library in threadpool_info())
 
 
 def calls(folder):
@@ -66,16 +62,7 @@ def test_every_combination_in_order(executor):
 
 
 def test_processes_are_spawned_with_one_thread_each():
-    before = dict(os.environ)
-    found = bf.sweep(limits, executor=TWO_PROCESSES)
-    assert found.values[0]["process"] != os.getpid()
-    assert found.values[0]["threads"] == 1
-    assert dict(os.environ) == before
-
-
-def test_threads_of_a_loaded_blas():
-    pytest.importorskip("threadpoolctl")
-    assert bf.sweep(blas_threads, x=[1], executor=TWO_PROCESSES).values == (1,)
+    assert bf.sweep(blas_threads, x=[os.getpid()], executor=TWO_PROCESSES).values == (1,)
 
 
 def test_a_dead_worker_costs_one_point():
@@ -188,7 +175,7 @@ def test_a_changed_function_is_called_again(tmp_path, monkeypatch):
 
 def test_keys_tell_values_apart():
     values = [1, 1.0, True, "1", None, "None", (1,), (1, 2), [(1, 2)], 0.1, np.float32(0.1), np.array([1, 2])]
-    values += [np.array([1.0, 2.0]), np.array([[1, 2]]), {"a": 1}, Path("1"), product, limits]
+    values += [np.array([1.0, 2.0]), np.array([[1, 2]]), {"a": 1}, Path("1"), product, blas_threads]
     values += [lambda x: x, lambda x: 2 * x, lambda x, y=1: x]
     values += [bf.ANCF(), bf.ANCFCRBF(), bf.ANCF(bf.ContinuumMechanics(True)), bf.CRBF(1), bf.CRBF(2)]
     values += [bf.Rectangle(0.1, 0.2), bf.Rectangle(0.2, 0.1), partial(product, 1), partial(product, 2)]

@@ -16,12 +16,8 @@ _TYPES = {_REAL: np.dtype(float), "b": np.dtype(bool)}
 
 def require_state(state: State) -> None:
     """Raise InputError unless the arrays of a state have one number for each coordinate of its model."""
-    model = _model_of(state)
-    for name in ("p", "v", "a"):
-        _require_array(state, name, (model.size,))
+    _require_arrays(state, (), ("p", "v", "a"))
     object.__setattr__(state, "at", finite(f"at of {type(state).__name__}", state.at))
-    if state.turned is not None:
-        _require_array(state, "turned", (len(model.numbered.uncounted),))
 
 
 def require_crossing(state: Bifurcation) -> None:
@@ -35,28 +31,21 @@ def require_crossing(state: Bifurcation) -> None:
 def require_rows(solution: Solution) -> None:
     """Raise InputError unless the arrays of a solution have a row of its model's coordinates for each `at`.
 
-    Only `at` and p are checked for finite values: reading v and a of static solutions would allocate their memory.
+    Only `at` and p are checked for finite values: reading v and a of static solutions would allocate their memory. What
+    is computed from the arrays is kept, so that they become read-only.
     """
-    model, kind = _model_of(solution), type(solution).__name__
+    kind = type(solution).__name__
     flag(f"static of {kind}", solution.static)
     if np.ndim(solution.at) != 1:
         raise InputError(f"at of {kind} must be a list of load factors or times, got {shown(solution.at)}")
-    rows = len(solution.at)
-    _require_array(solution, "at", (rows,))
-    for name in ("p", "v", "a"):
-        _require_array(solution, name, (rows, model.size))
+    rows = (len(solution.at),)
+    _require_arrays(solution, rows, ("p", "v", "a"))
+    _require_array(solution, "at", rows)
+    for name, kinds in (("stability", "b"), ("loaded", _REAL)):
+        if getattr(solution, name) is not None:
+            _require_array(solution, name, rows, kinds)
     for name in ("at", "p"):
         _require_finite(f"{name} of {kind}", getattr(solution, name))
-    if solution.stability is not None:
-        _require_array(solution, "stability", (rows,), "b")
-    if solution.loaded is not None:
-        _require_array(solution, "loaded", (rows,))
-    if solution.turned is not None:
-        _require_array(solution, "turned", (rows, len(model.numbered.uncounted)))
-
-
-def made_read_only(solution: Solution) -> None:
-    """Make the arrays of a solution read-only, for it keeps quantities that were computed from them."""
     for name in ("at", "p", "v", "a"):
         values = getattr(solution, name)
         if values.flags.writeable:  # whoever made it may go on writing to it
@@ -71,10 +60,14 @@ def require_finite(name: str, state: State) -> None:
         _require_finite(f"{part} of {name}", getattr(state, part))
 
 
-def _model_of(item: Any) -> Model:
+def _require_arrays(item: Any, rows: tuple[int, ...], names: tuple[str, ...]) -> None:
+    """Raise InputError unless arrays have a number for each coordinate of the model, and `turned` one for each beam."""
     if not isinstance(item.model, Model):
         raise InputError(f"model of {type(item).__name__} must be the Model of its states, got {shown(item.model)}")
-    return item.model
+    for name in names:
+        _require_array(item, name, (*rows, item.model.size))
+    if item.turned is not None:
+        _require_array(item, "turned", (*rows, len(item.model.numbered.uncounted)))
 
 
 def _require_array(item: Any, name: str, shape: tuple[int, ...], kinds: str = _REAL) -> None:
@@ -86,20 +79,16 @@ def _require_array(item: Any, name: str, shape: tuple[int, ...], kinds: str = _R
         values = np.asarray(given)
     except ValueError:  # rows of different lengths
         values = np.empty(0, dtype=object)
+    what = f"{name} of {type(item).__name__} must be"
     if values.dtype.kind not in kinds or values.shape != shape:
-        what = "truth values" if kinds == "b" else "numbers"
         got = f"shape {values.shape} of {values.dtype}" if isinstance(given, np.ndarray) else shown(given)
         raise InputError(
-            f"{name} of {type(item).__name__} must be an array {shape} of {what}, as its model has "
+            f"{what} an array {shape} of {'truth values' if kinds == 'b' else 'numbers'}, as its model has "
             f"{item.model.size} coordinates, got {got}"
         )
     if values.dtype.kind == "f" and values.dtype.itemsize < 8:
-        raise InputError(
-            f"{name} of {type(item).__name__} must be in double precision, got {values.dtype}, in which the digits of "
-            "strains are lost"
-        )
-    if values is not given or values.dtype.kind in "iu":
-        object.__setattr__(item, name, values if kinds == "b" else values.astype(float))
+        raise InputError(f"{what} in double precision, got {values.dtype}, in which the digits of strains are lost")
+    object.__setattr__(item, name, values if kinds == "b" else values.astype(float))
 
 
 def _require_finite(name: str, values: np.ndarray) -> None:

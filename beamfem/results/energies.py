@@ -11,7 +11,6 @@ from beamfem.model.load_base import Load, factor
 from beamfem.reprs import brief
 from beamfem.results.displacements import Displacements
 from beamfem.results.postprocess import momenta
-from beamfem.results.reactions import potential_of_connectors
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
 
@@ -89,11 +88,12 @@ class Energy:
 def potential(solution: Solution, first_moments: Sequence[np.ndarray]) -> np.ndarray:
     """Return the potential (steps,) [J] of loads, springs and foundations, zero in the reference configuration.
 
+    Connectors are not included.
+
     first_moments: integral of the position over the mass of each beam (steps, 2) [kg m].
     """
     displaced = Displacements(solution, first_moments)
-    parts = _of_loads(solution, displaced), _of_supports(solution, displaced), _of_frame(solution)
-    return sum(parts, potential_of_connectors(solution))
+    return _of_loads(solution, displaced) + _of_supports(solution, displaced) + _of_frame(solution)
 
 
 def recorded(solution: Solution, by_sections: np.ndarray) -> np.ndarray:

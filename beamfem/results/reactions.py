@@ -8,7 +8,6 @@ from beamfem.assembly.connectors import Connector, Connectors, Motion
 from beamfem.assembly.equations import residual
 from beamfem.assembly.frame_inertia import seen_from_rest
 from beamfem.assembly.model_coordinates import COORDINATES, coordinate_of
-from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
 from beamfem.model.contribution import Contribution
@@ -58,17 +57,11 @@ def _of_some(solution: Solution, dof: int, prescribed: bool, stiffness: float) -
     return np.asarray(solution.support_forces[:, dof] + others * moved)
 
 
-def _supported(system: System) -> set[int]:
-    """Return the coordinates on which supports other than springs act."""
-    inclined = {dof + axis for dof, _ in system.inclined for axis in (0, 1)}
-    return {*system.prescribed_dofs.tolist(), *inclined}
-
-
 def support_forces(solution: Solution) -> np.ndarray:
     """Return the generalized forces (steps, n) that supports and springs exert on every coordinate."""
     system, times = loading(solution)
     prescribed = np.zeros(solution.model.size, dtype=bool)
-    prescribed[list(_supported(system))] = True
+    prescribed[[*system.prescribed_dofs, *(dof + axis for dof, _ in system.inclined for axis in (0, 1))]] = True
     springs = system.springs
 
     def forces(p: np.ndarray) -> np.ndarray:
@@ -81,14 +74,10 @@ def support_forces(solution: Solution) -> np.ndarray:
     return exactly(solution, forces)
 
 
-def kinetic_of_connectors(solution: Solution) -> np.ndarray:
-    """Return their kinetic energy (steps,) [J]."""
-    return _energies(solution)[:, 0]
-
-
-def potential_of_connectors(solution: Solution) -> np.ndarray:
-    """Return their potential (steps,) [J]."""
-    return _energies(solution)[:, 1]
+def energies_of_connectors(solution: Solution) -> np.ndarray:
+    """Return the kinetic and the potential energy (steps, 2) [J] of all connectors."""
+    system, times = loading(solution)
+    return energies_of(system.connectors, solution, times)
 
 
 def momenta_of_connectors(solution: Solution) -> np.ndarray:
@@ -127,11 +116,6 @@ def _bound(solution: Solution, connector: Contribution) -> list[Connector]:
     if bound:
         return bound
     raise InputError(f"{shown(connector)} is not a connector of this model; use one of model.connectors")
-
-
-def _energies(solution: Solution) -> np.ndarray:
-    system, times = loading(solution)
-    return energies_of(system.connectors, solution, times)
 
 
 def energies_of(connectors: Connectors, solution: Solution, times: np.ndarray) -> np.ndarray:

@@ -135,10 +135,9 @@ class Solution:
     events: tuple["Occurrence", ...] = ()
 
     def __post_init__(self) -> None:
-        from beamfem.results.check_arrays import made_read_only, require_rows
+        from beamfem.results.check_arrays import require_rows
 
         require_rows(self)
-        made_read_only(self)
 
     def __repr__(self) -> str:
         what = "load factor" if self.static else "time"
@@ -474,14 +473,15 @@ class Solution:
         array([  0. , 152.6])
         """
         from beamfem.results.energies import Energy, potential, recorded
-        from beamfem.results.reactions import kinetic_of_connectors
+        from beamfem.results.reactions import energies_of_connectors
         from beamfem.results.solution_system import imposed_measures
 
-        kinetic = sum((m.kinetic for m in self._momenta), kinetic_of_connectors(self))
+        moving, stored = energies_of_connectors(self).T
+        kinetic = sum((m.kinetic for m in self._momenta), moving)
         imposed = ((mesh, imposed_measures(self, mesh)) for mesh in self.model.meshes)
         parts = (postprocess.strain_energies(mesh, self.p, measures) for mesh, measures in imposed)
         strain, lost = sum(parts, np.zeros((len(self), 2))).T
-        acting = potential(self, [m.first_moment for m in self._momenta])
+        acting = stored + potential(self, [m.first_moment for m in self._momenta])
         return Energy(kinetic, strain, acting, recorded(self, lost), self.model.unit("J"), self)
 
     @cached_property

@@ -31,11 +31,6 @@ class Distribution:
     curvature: np.ndarray
     flexibility: tuple[np.ndarray, np.ndarray, np.ndarray]
 
-    @property
-    def has_stress(self) -> bool:
-        """Whether the materials and faces of the section are known, so that its faces have a stress."""
-        return bool(self.parts) and all(part.outline.known for part in self.parts)
-
     def layer_at(self, y: float) -> int:
         """Return the layer at a height [m]: between two layers the upper one, beyond the faces the nearest."""
         return int(np.clip(np.searchsorted([low for low, _ in self.layers], y, side="right") - 1, 0, None))

@@ -1,37 +1,15 @@
-"""Outlines of sections for the stress over their height: width at each height, area and first moment below it."""
+"""Outlines of parts of sections, between heights y [m], for the stress over them.
+
+Each is `known` if it ends at `low` and `high`. It has its width [m] at heights, nan where that is not known, the
+integrals of 1 [m^2] and y [m^3] below heights, and heights [m] and weights [m^2] of a quadrature.
+"""
 
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import ClassVar
 
 import numpy as np
 
 from beamfem.quadrature import gauss_between
-
-
-class Outline(Protocol):
-    """A part of a section between two heights y [m] above the beam's axis."""
-
-    @property
-    def low(self) -> float: ...
-    @property
-    def high(self) -> float: ...
-    @property
-    def known(self) -> bool: ...  # whether the part ends at `low` and `high`
-    def width(self, y: np.ndarray) -> np.ndarray: ...  # [m], nan where it is not known
-
-    def below(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the integrals of 1 [m^2] and y [m^3] over the part below the heights y."""
-
-    def quadrature(self, points: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return heights [m] and weights [m^2] of a quadrature over the part; points: requested number."""
-
-
-@dataclass(frozen=True)
-class Part:
-    """A part of a section: its Young's modulus [Pa] and its outline."""
-
-    modulus: float
-    outline: Outline
 
 
 @dataclass(frozen=True)
@@ -119,6 +97,14 @@ class MomentsOutline:
         outer = 0.5 * spread / reach**2
         heights = centroid + reach * np.array([-1.0, 0.0, 1.0])
         return heights, np.array([outer, area - 2.0 * outer, outer])
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a section: its Young's modulus [Pa] and its outline."""
+
+    modulus: float
+    outline: RectangleOutline | TubeOutline | MomentsOutline
 
 
 def _half_chord(radius: float, y: np.ndarray) -> np.ndarray:

@@ -27,6 +27,15 @@ def path_of(path: str | PathLike[str]) -> Path:
     return Path(text)
 
 
+def path_ending(path: str | PathLike[str], kind: str, *suffixes: str, example: str) -> Path:
+    """Return the path of a file of a kind with one of some suffixes. Raises InputError, with what would be right."""
+    target = path_of(path)
+    if target.suffix.lower() not in suffixes:
+        right = target.with_suffix(suffixes[0]) if target.name else target / example
+        raise InputError(f'{kind} is a {" or a ".join(suffixes)} file, got "{target}"; "{right}" would be right')
+    return target
+
+
 def readable(path: str | PathLike[str]) -> Path:
     """Return the path of a file that can be opened. Raises InputError, FileNotFoundError, FileError."""
     source = path_of(path)

@@ -18,7 +18,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from beamfem.assembly.callbacks import Deferred, uninterrupted
-from beamfem.atomic_write import make_folder, path_of, whole
+from beamfem.atomic_write import make_folder, path_ending, path_of, whole
 from beamfem.errors import FileError, InputError
 from beamfem.extras import needed_for
 from beamfem.io.hdf5 import write_hdf5
@@ -50,10 +50,7 @@ def write_vtk(
     path = path_of(path)
     if path.name and not path.suffix:
         path = path.with_suffix(".vtkhdf")
-    suffix = path.suffix.lower()
-    if suffix not in (".pvd", ".vtkhdf"):
-        right = path.with_suffix(".pvd") if path.name else path / "result.pvd"
-        raise InputError(f'ParaView opens a .pvd or a .vtkhdf file, got "{path}"; "{right}" would be right')
+    suffix = path_ending(path, "a file for ParaView", ".pvd", ".vtkhdf", example="result.pvd").suffix.lower()
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to write")
     chosen = None if fields is None else tuple(items("fields", fields))

@@ -164,20 +164,12 @@ def global_digests(function: Any) -> dict[str, str]:
 
 def canonical(value: Any, where: str) -> Any:
     """Return lists and texts that are equal for equal values only; floats by every digit, dataclasses by members."""
-    if value is None or isinstance(value, bool | np.bool_):
-        return str(value)
+    if isinstance(value, np.generic):
+        value = value.item()
     if isinstance(value, Enum):
         return ["enum", _class(type(value), where), value.name]
-    if isinstance(value, str):
-        return ["text", value]
-    if isinstance(value, PurePath):
-        return ["path", str(value)]
-    if isinstance(value, int | np.integer):
-        return ["int", str(int(value))]
-    if isinstance(value, float | np.floating):
-        return ["float", float(value).hex()]
-    if isinstance(value, complex | np.complexfloating):
-        return ["complex", float(value.real).hex(), float(value.imag).hex()]
+    if value is None or isinstance(value, bool | int | float | complex | str | PurePath):
+        return [type(value).__name__, repr(value)]
     if isinstance(value, np.ndarray):
         return _array(value, where)
     if isinstance(value, tuple | list | range):

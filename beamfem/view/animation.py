@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.atomic_write import path_of, whole
+from beamfem.atomic_write import path_ending, whole
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
 from beamfem.results.solution import Solution
@@ -36,10 +36,7 @@ def animate(
     dpi: int = 100,
 ) -> Path:
     """Write an animation of the body to a .gif or .mp4 file and return its path, see `Solution.animate`."""
-    target = path_of(path)
-    if target.suffix not in (".gif", ".mp4"):
-        right = target.with_suffix(".gif") if target.name else target / "motion.gif"
-        raise InputError(f'an animation is a .gif or a .mp4 file, got "{target}"; "{right}" would be right')
+    target = path_ending(path, "an animation", ".gif", ".mp4", example="motion.gif")
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to animate")
     for name, value in (("undeformed", undeformed), ("supports", supports), ("loads", loads)):
@@ -50,7 +47,7 @@ def animate(
     most = max(2, round(min(fps * seconds, len(solution))))
     rows = spread_rows(solution, most)
     duration = min(seconds / len(rows), _LONGEST_FRAME)
-    write = _write_gif if target.suffix == ".gif" else _mp4_writer()
+    write = _write_gif if target.suffix.lower() == ".gif" else _mp4_writer()
     shapes = Shapes(solution, rows, colour, _POINTS)
     frames = _frames(shapes, undeformed, supports, loads, dpi)
     with whole(target) as partial:

@@ -11,7 +11,7 @@ from typing import Any, assert_never
 
 import numpy as np
 
-from beamfem.atomic_write import path_of, whole
+from beamfem.atomic_write import path_ending, whole
 from beamfem.errors import InputError
 from beamfem.mesh.joined_mesh import join
 from beamfem.model.beam import Beam
@@ -162,10 +162,7 @@ _LEVELS = 65534  # into which the box of all shapes is cut
 
 def write_player(solution: Solution, path: str | PathLike[str], title: str | None = None, frames: int = 60) -> Path:
     """Write a self-contained page with a slider over up to `frames` steps and return its path: `Solution.to_html`."""
-    target = path_of(path)
-    if target.suffix != ".html":
-        right = target.with_suffix(".html") if target.name else target / "steps.html"
-        raise InputError(f'a page is a .html file, got "{target}"; "{right}" would be right')
+    target = path_ending(path, "a page", ".html", example="steps.html")
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to show")
     heading = optional(text)("title", title) or (target.stem.replace("_", " ").replace("-", " ") or "Solution")

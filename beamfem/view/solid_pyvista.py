@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.atomic_write import path_of, whole
+from beamfem.atomic_write import path_ending, whole
 from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError, warn
 from beamfem.mesh.reference import sections_at
@@ -35,10 +35,7 @@ def picture(
     size: tuple[int, int] = (1400, 900),
 ) -> Path:
     """Write a picture (.png) of the solid body in a row, off screen; return its path, see `Solution.picture`."""
-    target = path_of(path)
-    if target.suffix != ".png":
-        right = target.with_suffix(".png") if target.name else target / "body.png"
-        raise InputError(f'a picture of the body is a .png file, got "{target}"; "{right}" would be right')
+    target = path_ending(path, "a picture of the body", ".png", example="body.png")
     number = number_below("row", row, len(solution), -len(solution)) % len(solution)
     _require_size(size)
     if not can_render():

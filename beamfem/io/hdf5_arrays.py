@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from beamfem.io.hdf5 import read_checked, write_checked
-from beamfem.results.axis_fields import QUANTITIES, AxisPoints, rotation, section_forces
+from beamfem.results.axis_fields import QUANTITIES, rotation, section_forces
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import VALUES, LikeBeams, equal_beams
 from beamfem.results.path import Bifurcation, Path, PathState
 from beamfem.results.solution import Solution
@@ -93,7 +94,7 @@ def save_axes(file: Any, solution: Solution, require_written: Callable[[], None]
     """
     meshes = solution.model.meshes
     small = len(solution) * sum(mesh.elements for mesh in meshes) <= _MOST
-    for group in equal_beams(solution.model, [AxisPoints(mesh, 1) for mesh in meshes], len(solution)):
+    for group in equal_beams(solution.model, [AxisPoints.spaced(mesh, 1) for mesh in meshes], len(solution)):
         # several beams are together only where one table holds all rows
         tables = _tables(solution, group, small) if len(group.numbers) == 1 else [*_tables(solution, group, small)]
         for place, number in enumerate(group.numbers):

@@ -9,7 +9,8 @@ import numpy as np
 from beamfem.extras import needed_for
 from beamfem.model.beam import Beam, names
 from beamfem.model.model import Model
-from beamfem.results.axis_fields import QUANTITIES, AxisPoints, section_forces
+from beamfem.results.axis_fields import QUANTITIES, section_forces
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import LikeBeams, equal_beams
 from beamfem.results.beam_stress import stress_at
 from beamfem.results.energies import Energy
@@ -69,7 +70,7 @@ def _of_group(solution: Solution, group: LikeBeams, energy: Energy) -> tuple[Var
         quantity = QUANTITIES[name]
         values = forces[name] if name in forces else quantity.values(points, solution, rows)
         data[name] = along, values, about(quantity.label, quantity.unit)
-    stresses = stress_at(solution, points.mesh, points.element, points.xi, rows)
+    stresses = stress_at(solution, points, rows)
     for name, label in _STRESSES.items():
         if np.isfinite(stresses[name]).any():
             data[f"stress_{name}"] = along, stresses[name], about(label, "Pa")
@@ -81,9 +82,9 @@ def _of_group(solution: Solution, group: LikeBeams, energy: Energy) -> tuple[Var
 def groups_of(model: Model, beam: Beam | None, rows: int) -> list[LikeBeams]:
     """Return the stations of one beam, or of all in groups of like beams."""
     if beam is None:
-        return equal_beams(model, [AxisPoints(mesh, _PIECES) for mesh in model.meshes], rows)
+        return equal_beams(model, [AxisPoints.spaced(mesh, _PIECES) for mesh in model.meshes], rows)
     number = model.number_of(beam)
-    return [LikeBeams([number], [AxisPoints(model.meshes[number], _PIECES)])]
+    return [LikeBeams([number], [AxisPoints.spaced(model.meshes[number], _PIECES)])]
 
 
 def stations(model: Model, group: LikeBeams) -> Variables:

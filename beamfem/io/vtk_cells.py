@@ -14,7 +14,8 @@ from beamfem.mesh.reference import reference_axis
 from beamfem.model.beam import Beam, names
 from beamfem.model.model import Model
 from beamfem.results import postprocess
-from beamfem.results.axis_fields import AxisPoints, rotation, section_forces
+from beamfem.results.axis_fields import rotation, section_forces
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import LikeBeams, equal_beams
 from beamfem.results.solution import Solution
 from beamfem.results.stresses import (
@@ -92,7 +93,7 @@ class Samples:
         for component in ("xx", "yy", "xy"):
             result[f"green_strain_{component}"] = getattr(strain, component)
         forces = section_forces(self.points, solution, rows)
-        eigenstress = self_stress(solution, self.mesh, element, xi, self.layer, self.y, rows)
+        eigenstress = self_stress(solution, self.points, self.layer, self.y, rows)
         result |= self._stress(forces, eigenstress)
         result["cauchy_stress"] = in_the_plane(
             result["stress_xx"], result["stress_xy"], postprocess.direction(self.mesh, now)
@@ -154,13 +155,13 @@ def bodies(model: Model, alike: bool = False) -> list[Samples]:
 
     They are exact for the field r0(x) + y d(x), and for the parabola of the shear stress in a rectangle.
     """
-    groups = equal_beams(model, [AxisPoints(mesh, _degree(mesh)) for mesh in model.meshes], 1)
+    groups = equal_beams(model, [AxisPoints.spaced(mesh, _degree(mesh)) for mesh in model.meshes], 1)
     return [sample for group in groups for sample in _body(group, alike)]
 
 
 def centrelines(model: Model) -> list[Samples]:
     """Return the points of straight pieces, because ParaView 5.11 crashes on Lagrange curves."""
-    groups = equal_beams(model, [AxisPoints(mesh, _LINES_PER_ELEMENT) for mesh in model.meshes], 1)
+    groups = equal_beams(model, [AxisPoints.spaced(mesh, _LINES_PER_ELEMENT) for mesh in model.meshes], 1)
     return [Samples(group, None, np.arange(_LINES_PER_ELEMENT + 1)) for group in groups]
 
 

@@ -7,97 +7,19 @@ from typing import Literal
 
 import numpy as np
 
-from beamfem.cached_properties import cached_property
-from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.mesh.reference import reference_position
-from beamfem.mesh.section_stress import Distributions, distributions, layers
 from beamfem.model.beam import Beam
 from beamfem.results import postprocess
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.beam_stress import stress_at, stress_over_height
-from beamfem.results.free_bodies import Cuts
 from beamfem.results.full_turns import turned_of
 from beamfem.results.section_forces import at_points
 from beamfem.results.solution import Solution
 from beamfem.validation import require_known, shown
 
 
-@dataclass(frozen=True, eq=False)
-class AxisPoints:
-    """Points of a beam's axis: `pieces` equal intervals per element; adjacent elements both include their common end.
-
-    element, xi (points,).
-    """
-
-    mesh: BeamMesh
-    pieces: int
-
-    @cached_property
-    def element(self) -> np.ndarray:
-        return np.repeat(np.arange(self.mesh.elements), self.pieces + 1)
-
-    @cached_property
-    def xi(self) -> np.ndarray:
-        return np.tile(np.arange(self.pieces + 1) / self.pieces, self.mesh.elements)
-
-    @cached_property
-    def arc_length(self) -> np.ndarray:
-        """Arc length in the reference configuration (points,) [m]."""
-        return self.mesh.arc_length(self.element, self.xi)
-
-    @cached_property
-    def distributions(self) -> Distributions:
-        """The layers of the section at each point, and the distribution of section forces over their height."""
-        return distributions(self.mesh, self.element, self.xi)
-
-    @cached_property
-    def layers(self) -> np.ndarray:
-        """Lower and upper y of each layer of the section (points, layers, 2) [m], from the bottom up."""
-        return layers(self.mesh, self.element, self.xi)
-
-    @cached_property
-    def faces(self) -> np.ndarray:
-        """Lower and upper y of the section (points, 2) [m]."""
-        return self.layers[:, [0, -1], [0, 1]]
-
-    @cached_property
-    def reference(self) -> np.ndarray:
-        """Position in the reference configuration (points, 2) [m]."""
-        return reference_position(self.mesh, self.element, self.xi)
-
-    def positions(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return r [m] and d [-] (steps, points, 2) in the states p (steps, n)."""
-        now = self.now(p)
-        return now.r, now.d
-
-    def now(self, p: np.ndarray) -> postprocess.Axis:
-        """Return the deformed axis at the points in the states p (steps, n)."""
-        return postprocess.axis(self.mesh, postprocess.nodal_vectors(self.mesh, p), self.element, self.xi)
-
-    def velocities(self, p: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Return the velocity of the axis (steps, points, 2) [m/s]."""
-        rates = postprocess.nodal_velocities(self.mesh, p, v)
-        return postprocess.axis(self.mesh, rates, self.element, self.xi).r
-
-
-@dataclass(frozen=True, eq=False)
-class PointsAt(AxisPoints):
-    """Points at any places `cuts` of a beam."""
-
-    cuts: Cuts
-
-    @cached_property
-    def element(self) -> np.ndarray:
-        return self.cuts.element
-
-    @cached_property
-    def xi(self) -> np.ndarray:
-        return self.cuts.xi
-
-
 def section_forces(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> dict[str, np.ndarray]:
     """Return normal and shear force [N] and moment [N m] (rows, points) of some rows of a solution, by name."""
-    cuts = Cuts(points.element, points.xi)
-    forces = at_points(solution, points.mesh, cuts, rows)
+    forces = at_points(solution, points, rows)
     return {name: forces[:, i] for i, name in enumerate(("normal", "shear", "moment"))}
 
 
@@ -156,18 +78,18 @@ def _speed(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> 
 
 
 def _stress(name: str, points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
-    return stress_at(solution, points.mesh, points.element, points.xi, rows)[name]
+    return stress_at(solution, points, rows)[name]
 
 
 def _outer(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
-    stress = stress_at(solution, points.mesh, points.element, points.xi, rows)
+    stress = stress_at(solution, points, rows)
     return np.where(np.abs(stress["upper"]) >= np.abs(stress["lower"]), stress["upper"], stress["lower"])
 
 
 def _over_height(
     name: Literal["von_mises", "utilisation"], points: AxisPoints, solution: Solution, rows: slice | np.ndarray
 ) -> np.ndarray:
-    return stress_over_height(solution, points.mesh, Cuts(points.element, points.xi), rows, name)
+    return stress_over_height(solution, points, rows, name)
 
 
 _NO_STRESS = "stresses need sections with a material and a height"

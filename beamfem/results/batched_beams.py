@@ -10,7 +10,7 @@ import numpy as np
 from beamfem.cached_properties import cached_property
 from beamfem.mesh.joined_mesh import join
 from beamfem.model.model import Model
-from beamfem.results.axis_fields import AxisPoints
+from beamfem.results.axis_points import AxisPoints
 
 VALUES = 500_000  # most points times rows that are evaluated at once
 _Item = TypeVar("_Item")
@@ -28,7 +28,7 @@ class LikeBeams:
         """The points of all beams, those of one after those of another."""
         if len(self.single) == 1:
             return self.single[0]
-        return AxisPoints(join([points.mesh for points in self.single]), self.single[0].pieces)
+        return AxisPoints.spaced(join([points.mesh for points in self.single]), self.single[0].pieces)
 
     @cached_property
     def counts(self) -> list[int]:

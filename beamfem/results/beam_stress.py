@@ -7,12 +7,11 @@ from typing import Literal
 import numpy as np
 
 from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.mesh.section_stress import distributions
 from beamfem.model.beam import Beam
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.extremes import Measure, Part, Peak, estimate, extreme_of_beams
-from beamfem.results.free_bodies import Cuts
 from beamfem.results.neighbouring_beams import of_beam
-from beamfem.results.section_forces import at_points, by_element, in_parts, peak_of, stations
+from beamfem.results.section_forces import at_points, in_parts, peak_of, stations
 from beamfem.results.solution import Solution
 from beamfem.results.stresses import self_stress, strengths, von_mises, warn_of_unknown_stress
 from beamfem.units import Units, units_of
@@ -106,8 +105,8 @@ class BeamStress:
         require_known(f"there is no stress {shown(part)}", part, PARTS)
         unit = "-" if part == "utilisation" else "Pa"
 
-        def at(solution: Solution, mesh: BeamMesh, cuts: Cuts, rows: np.ndarray) -> np.ndarray:
-            return stress_at(solution, mesh, cuts.element, cuts.xi, rows)[part]
+        def at(solution: Solution, points: AxisPoints, rows: np.ndarray) -> np.ndarray:
+            return stress_at(solution, points, rows)[part]
 
         return peak_of(self.solution, self.beam, (part, unit), getattr(self, part), _measure(part), at)
 
@@ -115,18 +114,15 @@ class BeamStress:
 def beam_stress(solution: Solution, beam: Beam) -> BeamStress:
     """Return the stress of a beam at the stations of its section forces."""
     number = solution.model.number_of(beam)
-    mesh = solution.model.meshes[number]
-    cuts = stations(mesh)
     stress = dict(zip(PARTS, of_beam(solution, number, _at_stations), strict=True))
-    arc = mesh.arc_length(cuts.element, cuts.xi)
+    arc = stations(solution.model.meshes[number]).arc_length
     units = units_of(solution.model.units)
     return BeamStress(arc, at=solution.at, beam=beam, static=solution.static, units=units, solution=solution, **stress)
 
 
 def _at_stations(solution: Solution, mesh: BeamMesh) -> np.ndarray:
     """Return all parts of the stress (parts, steps, stations)."""
-    cuts = stations(mesh)
-    stress = stress_at(solution, mesh, cuts.element, cuts.xi)
+    stress = stress_at(solution, stations(mesh))
     return np.stack([stress[part] for part in PARTS])
 
 
@@ -138,7 +134,7 @@ def peak_stress(solution: Solution, part: Part = "von_mises") -> Peak:
     require_known(f"there is no stress {shown(part)}", part, PARTS)
     measure, beams = _measure(part), solution.model.beams
     by_mesh = zip(solution.model.meshes, (getattr(beam_stress(solution, beam), part) for beam in beams), strict=True)
-    sizes = np.array([estimate(*by_element(mesh, values), measure) for mesh, values in by_mesh])
+    sizes = np.array([estimate(*stations(mesh).by_element(values), measure) for mesh, values in by_mesh])
     unknown = np.isnan(sizes)
     if part != "utilisation":  # which a material without a strength does not have either
         what = "nan" if unknown.all() else "left out"
@@ -151,32 +147,22 @@ def _measure(part: Part) -> Measure:
     return np.negative if part == "compression" else np.abs if part in ("lower", "upper") else np.asarray
 
 
-def stress_at(
-    solution: Solution,
-    mesh: BeamMesh,
-    element: np.ndarray,
-    xi: np.ndarray,
-    rows: slice | np.ndarray = slice(None),
-) -> dict[str, np.ndarray]:
-    """Return the stresses of `BeamStress` (steps, points) of some rows at points (element, xi) of a beam, by name."""
-    chunk = max(1, _VALUES // (len(HEIGHTS) * max(len(xi), 1)))
+def stress_at(solution: Solution, points: AxisPoints, rows: slice | np.ndarray = slice(None)) -> dict[str, np.ndarray]:
+    """Return the stresses of `BeamStress` (steps, points) of some rows at points of a beam, by name."""
+    chunk = max(1, _VALUES // (len(HEIGHTS) * max(len(points.xi), 1)))
     chosen = list(in_parts(len(solution), rows, chunk)) or [slice(0)]
-    parts = [_of_rows(solution, mesh, element, xi, part) for part in chosen]
+    parts = [_of_rows(solution, points, part) for part in chosen]
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
 def stress_over_height(
-    solution: Solution,
-    mesh: BeamMesh,
-    cuts: Cuts,
-    rows: slice | np.ndarray,
-    name: Literal["von_mises", "utilisation"],
+    solution: Solution, points: AxisPoints, rows: slice | np.ndarray, name: Literal["von_mises", "utilisation"]
 ) -> np.ndarray:
     """Return a stress (rows, points, layers, heights) at equal distances between the faces of each layer.
 
     A shear stress that is not known there, as the width is not, counts as zero.
     """
-    layers = _layers(solution, mesh, cuts, rows)
+    layers = _layers(solution, points, rows)
     parts = [
         (von_mises(along, np.where(np.isnan(sheared), 0.0, sheared)), strength) for along, sheared, strength in layers
     ]
@@ -184,11 +170,9 @@ def stress_over_height(
     return np.stack([values / strength if ratio else values for values, strength in parts], axis=2)
 
 
-def _of_rows(
-    solution: Solution, mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, rows: slice | np.ndarray
-) -> dict[str, np.ndarray]:
+def _of_rows(solution: Solution, points: AxisPoints, rows: slice | np.ndarray) -> dict[str, np.ndarray]:
     extremes = dict[str, np.ndarray]()
-    for along, sheared, strength in _layers(solution, mesh, Cuts(element, xi), rows):
+    for along, sheared, strength in _layers(solution, points, rows):
         equivalent = von_mises(along, sheared)
         stresses = {
             "lower": along[..., 0],
@@ -232,16 +216,15 @@ def _largest_of_parabola(stress: np.ndarray) -> np.ndarray:
 
 
 def _layers(
-    solution: Solution, mesh: BeamMesh, cuts: Cuts, rows: slice | np.ndarray
+    solution: Solution, points: AxisPoints, rows: slice | np.ndarray
 ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Yield normal and shear stress (rows, points, heights) [Pa] and the strength (points, 1) [Pa] of each layer."""
-    element, xi = cuts.element, cuts.xi
-    normal, shear, moment = np.moveaxis(at_points(solution, mesh, cuts, rows), 1, 0)
-    distribution = distributions(mesh, element, xi)
-    strength = strengths(mesh, element, xi, distribution.layers.shape[1])
+    normal, shear, moment = np.moveaxis(at_points(solution, points, rows), 1, 0)
+    distribution = points.distributions
+    strength = strengths(points.mesh, points.element, points.xi, distribution.layers.shape[1])
     for layer in range(distribution.layers.shape[1]):
         low, high = np.moveaxis(distribution.layers[:, layer], -1, 0)
         y = low[:, None] + (high - low)[:, None] * HEIGHTS
         along = distribution.normal_stress(layer, y, normal, moment)
-        along = along + self_stress(solution, mesh, element, xi, layer, y, rows)
+        along = along + self_stress(solution, points, layer, y, rows)
         yield along, distribution.shear_stress(layer, y, shear), strength[layer][:, None]

@@ -16,16 +16,9 @@ from beamfem.element.fields import cross, dot
 from beamfem.kernels.block import Block
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import interpolate
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.element_loads import Acting, Rows, acting_on, at_more_points, fractions_before
 from beamfem.results.postprocess import direction
-
-
-@dataclass(frozen=True, eq=False)
-class Cuts:
-    """Cuts (points,) through a beam: element and xi."""
-
-    element: np.ndarray
-    xi: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +36,7 @@ class FreeBodies:
     force: np.ndarray
     moment: np.ndarray
 
-    def at(self, cuts: Cuts) -> np.ndarray:
+    def at(self, cuts: AxisPoints) -> np.ndarray:
         """Return normal and shear force [N] and moment [N m] (steps, 3, points) at cuts.
 
         They balance the part before a cut and the part after it. If the two differ by round-off of the equilibrium of
@@ -75,7 +68,7 @@ class FreeBodies:
     def _origin(self) -> np.ndarray:
         return self.vectors[:, :, 0]
 
-    def _before(self, cuts: Cuts, element: np.ndarray) -> csr_array:
+    def _before(self, cuts: AxisPoints, element: np.ndarray) -> csr_array:
         """Return the fraction (points, m) of each force that acts between the start of its element and a cut."""
         acting = self.acting
         order = np.argsort(acting.element, kind="stable")

@@ -11,9 +11,10 @@ import numpy as np
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.beam import Beam
 from beamfem.reprs import brief
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.element_loads import Rows, rows_of
 from beamfem.results.extremes import Force, Measure, Part, Peak, extreme
-from beamfem.results.free_bodies import Cuts, Parted, cut_free, parted
+from beamfem.results.free_bodies import Parted, cut_free, parted
 from beamfem.results.neighbouring_beams import of_beam
 from beamfem.results.roundoff_corrections import exactly
 from beamfem.results.solution import Solution
@@ -23,7 +24,7 @@ from beamfem.validation import require_known, shown
 
 _VALUES = 2_000_000  # most values in one array
 FORCES: tuple[Force, ...] = get_args(Force)
-Values = Callable[[Solution, BeamMesh, Cuts, np.ndarray], np.ndarray]  # of some rows (rows, points)
+Values = Callable[[Solution, AxisPoints, np.ndarray], np.ndarray]  # of some rows (rows, points)
 
 
 @dataclass(frozen=True)
@@ -94,9 +95,7 @@ class SectionForces:
 def section_forces(solution: Solution, beam: Beam) -> SectionForces:
     """Return the section forces of a beam at the stations listed in `SectionForces`."""
     number = solution.model.number_of(beam)
-    mesh = solution.model.meshes[number]
-    cuts = stations(mesh)
-    arc = mesh.arc_length(cuts.element, cuts.xi)
+    arc = stations(solution.model.meshes[number]).arc_length
     normal, shear, moment = of_beam(solution, number, _at_stations)
     units = units_of(solution.model.units)
     return SectionForces(arc, normal, shear, moment, units, beam=beam, solution=solution)
@@ -106,8 +105,8 @@ def extreme_force(forces: SectionForces, part: Force, measure: Measure) -> Peak:
     """Return the section force of largest measure, at and between stations."""
     number = FORCES.index(part)
 
-    def at(solution: Solution, mesh: BeamMesh, cuts: Cuts, rows: np.ndarray) -> np.ndarray:
-        return at_points(solution, mesh, cuts, rows)[:, number]
+    def at(solution: Solution, points: AxisPoints, rows: np.ndarray) -> np.ndarray:
+        return at_points(solution, points, rows)[:, number]
 
     values, unit = np.atleast_2d(getattr(forces, part)), "N m" if part == "moment" else "N"  # a state has no rows
     return peak_of(forces.solution, forces.beam, (part, unit), values, measure, at)
@@ -123,9 +122,9 @@ def peak_of(
     mesh = solution.model.meshes[solution.model.number_of(beam)]
 
     def in_row(row: int, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
-        return at(solution, mesh, Cuts(element, xi), np.array([row]))[0]
+        return at(solution, AxisPoints(mesh, element, xi), np.array([row]))[0]
 
-    value, row, element, xi = extreme(*by_element(mesh, values), measure, in_row)
+    value, row, element, xi = extreme(*stations(mesh).by_element(values), measure, in_row)
     part, unit = named
     place = (np.nan, -1, np.nan)
     if row >= 0:
@@ -134,25 +133,19 @@ def peak_of(
     return Peak(value, *place, beam, part, solution.static, units_of(solution.model.units), unit)
 
 
-def by_element(mesh: BeamMesh, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return values at stations (rows, stations) as (rows, elements, stations of each), and xi of these."""
-    xi = _station_xi(mesh)
-    return values.reshape(len(values), mesh.elements, len(xi)), xi
-
-
 def _at_stations(solution: Solution, mesh: BeamMesh) -> np.ndarray:
     """Return normal and shear force and moment (3, steps, stations)."""
-    return at_points(solution, mesh, stations(mesh)).swapaxes(0, 1)
+    return at_points(solution, stations(mesh)).swapaxes(0, 1)
 
 
-def at_points(solution: Solution, mesh: BeamMesh, cuts: Cuts, rows: slice | np.ndarray = slice(None)) -> np.ndarray:
+def at_points(solution: Solution, points: AxisPoints, rows: slice | np.ndarray = slice(None)) -> np.ndarray:
     """Return normal and shear force [N] and moment [N m] (steps, 3, points) of some rows at points of a beam."""
-    elements = np.unique(cuts.element)
+    mesh, elements = points.mesh, np.unique(points.element)
 
     def at_cuts(chunk: Rows, own: Parted, p: np.ndarray) -> np.ndarray:
-        return cut_free(chunk, mesh, elements, own, p).at(cuts)
+        return cut_free(chunk, mesh, elements, own, p).at(points)
 
-    return of_elements(solution, mesh, elements, at_cuts, (3, len(cuts.xi)), rows)
+    return of_elements(solution, mesh, elements, at_cuts, (3, len(points.xi)), rows)
 
 
 def of_elements(
@@ -190,13 +183,8 @@ def in_parts(count: int, rows: slice | np.ndarray, longest: int) -> Iterator[sli
         yield slice(part[0], part[-1] + 1, part.step) if part.step > 0 else np.array(part)
 
 
-def stations(mesh: BeamMesh) -> Cuts:
+def stations(mesh: BeamMesh) -> AxisPoints:
     """Return the ends, the Gauss points and the middle of every element of a beam."""
-    xi = _station_xi(mesh)
-    return Cuts(np.repeat(np.arange(mesh.elements), len(xi)), np.tile(xi, mesh.elements))
-
-
-def _station_xi(mesh: BeamMesh) -> np.ndarray:
     gauss = mesh.beam.element.quadrature()[0]
     middle = [] if len(gauss) % 2 else [0.5]  # a Gauss point of odd rules
-    return np.sort(np.concatenate([[0.0], gauss, middle, [1.0]]))
+    return AxisPoints.on_each(mesh, np.sort(np.concatenate([[0.0], gauss, middle, [1.0]])))

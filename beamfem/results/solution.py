@@ -247,14 +247,15 @@ class Solution:
 
         Where two elements meet or a load acts, strain and stress are those on the side towards the beam's end.
         """
+        from beamfem.results.axis_points import AxisPoints
         from beamfem.results.full_turns import turned_of
-        from beamfem.results.section_forces import Cuts, at_points
+        from beamfem.results.section_forces import at_points
         from beamfem.results.stresses import self_stress
 
         mesh = self.model.mesh_of(point)
         element, xi = (np.array([value]) for value in mesh.locate(point.fraction))
-        forces = at_points(self, mesh, Cuts(element, xi))
-        eigenstress = self_stress(self, mesh, element, xi, None, np.zeros((1, 1)))
+        points = AxisPoints(mesh, element, xi)
+        forces, eigenstress = at_points(self, points), self_stress(self, points, None, np.zeros((1, 1)))
         result = postprocess.fields(mesh, self.p, element, xi, forces, eigenstress, turned_of(self, mesh))
         return postprocess.part_of(result, (slice(None), 0))
 

@@ -13,6 +13,7 @@ from beamfem.mesh.reference import sections_at
 from beamfem.model.along_beam import jumps_along
 from beamfem.model.beam import Beam, names
 from beamfem.model.imposed_strains import heat_of
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import imposing
 from beamfem.section.protocol import CrossSection
@@ -107,25 +108,20 @@ def warn_of_unknown_stress(beams: Sequence[Beam], unknown: Sequence[int], what: 
 
 
 def self_stress(
-    solution: Solution,
-    mesh: BeamMesh,
-    element: np.ndarray,
-    xi: np.ndarray,
-    layer: int | None,
-    y: np.ndarray,
-    rows: slice | np.ndarray = slice(None),
+    solution: Solution, points: AxisPoints, layer: int | None, y: np.ndarray, rows: slice | np.ndarray = slice(None)
 ) -> np.ndarray | float:
-    """Return E (eps - y kappa - alpha T(y)) (steps, n, heights) [Pa] at points (element, xi); 0 if there is none.
+    """Return E (eps - y kappa - alpha T(y)) (steps, n, heights) [Pa] at points of a beam; 0 if there is none.
 
     eps, kappa: free strains of the section; y (n, heights) [m]; layer: the one, of several, to which y belongs; None:
     the one at the axis. It does not contribute to section forces.
     """
+    mesh, element, xi = points.mesh, points.element, points.xi
     if not any(part.beam in solution.model.imposed_on for part in mesh.parts):
         return 0.0
     if isinstance(mesh, JoinedMesh):
         result = np.zeros((len(solution.computed(imposing)[rows]), *y.shape))
-        for part, points, own in mesh.by_beam(element):
-            result[:, points] = self_stress(solution, part, own, xi[points], layer, y[points], rows)
+        for part, some, own in mesh.by_beam(element):
+            result[:, some] = self_stress(solution, AxisPoints(part, own, xi[some]), layer, y[some], rows)
         return result
     beam = mesh.beam
     imposed = solution.model.imposed_on[beam]

@@ -8,7 +8,8 @@ import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
-from beamfem.results.axis_fields import AxisPoints, Quantity, quantity
+from beamfem.results.axis_fields import Quantity, quantity
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import LikeBeams, equal_beams, of_each
 from beamfem.results.beam_stress import HEIGHTS
 from beamfem.results.solution import Solution

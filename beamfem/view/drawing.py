@@ -11,9 +11,8 @@ from beamfem.assembly.system import system_of
 from beamfem.errors import InputError
 from beamfem.model.model import Model
 from beamfem.results import extremes
-from beamfem.results.axis_fields import PointsAt
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.extremes import estimate, extreme_of_beams
-from beamfem.results.free_bodies import Cuts
 from beamfem.results.path import Path
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics
@@ -57,8 +56,7 @@ def _extreme_of(shapes: Shapes) -> _Extreme:
     assert shapes.quantity is not None
     fields = []
     for points, values in zip(shapes.points, shapes.values, strict=True):
-        count = points.pieces + 1  # points of an element
-        fields.append((values.reshape(len(values), points.mesh.elements, count), points.xi[:count]))
+        fields.append(points.by_element(values))
     estimates = np.array([estimate(*field, np.abs) for field in fields])
     beam, found = extreme_of_beams(estimates, np.abs, lambda number: _of_beam(shapes, number, *fields[number]))
     solution, unit = shapes.solution, shapes.quantity.unit
@@ -82,8 +80,8 @@ def _of_beam(shapes: Shapes, beam: int, values: np.ndarray, xi: np.ndarray) -> e
     return extremes.extreme(values, xi, np.abs, at)
 
 
-def _points_at(shapes: Shapes, beam: int, element: np.ndarray, xi: np.ndarray) -> PointsAt:
-    return PointsAt(shapes.points[beam].mesh, 0, Cuts(element, xi))
+def _points_at(shapes: Shapes, beam: int, element: np.ndarray, xi: np.ndarray) -> AxisPoints:
+    return AxisPoints(shapes.points[beam].mesh, element, xi)
 
 
 _ROOM = 0.45  # [inch] around the shapes for symbols and arrows

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.results.axis_fields import AxisPoints
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.path import Path
 from beamfem.results.solution import Solution
 
@@ -28,10 +28,9 @@ def spread_rows(solution: Solution, most: int) -> np.ndarray:
 
 def axis_points(solution: Solution, total: int = _POINTS) -> list[AxisPoints]:
     """Return the points of each beam to draw, about `total` of them if there are few elements."""
-    elements = sum(mesh.elements for mesh in solution.model.meshes)
-    pieces = int(np.clip(total // elements, 1, _SMOOTH))
-    straight = [mesh.beam.element.field.degree == 1 for mesh in solution.model.meshes]
-    return [AxisPoints(mesh, 1 if flat else pieces) for mesh, flat in zip(solution.model.meshes, straight, strict=True)]
+    meshes = solution.model.meshes
+    pieces = int(np.clip(total // sum(mesh.elements for mesh in meshes), 1, _SMOOTH))
+    return [AxisPoints.spaced(mesh, 1 if mesh.beam.element.field.degree == 1 else pieces) for mesh in meshes]
 
 
 def axis_of_rows(solution: Solution) -> tuple[str, str]:

@@ -17,7 +17,8 @@ from beamfem.mesh.joined_mesh import join
 from beamfem.model.beam import Beam
 from beamfem.model.load_base import factor
 from beamfem.model.load_shapes import Acceleration, Force, ForcesAlong, Moment, Strains
-from beamfem.results.axis_fields import QUANTITIES, AxisPoints, section_forces
+from beamfem.results.axis_fields import QUANTITIES, section_forces
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import of_each
 from beamfem.results.beam_stress import stress_at
 from beamfem.results.solution import Solution
@@ -43,8 +44,8 @@ def names_of(solution: Solution) -> tuple[str, ...]:
     model = solution.model
     for numbers in model.numbered.joinable:
         mesh = join([model.meshes[number] for number in numbers])
-        starts = np.arange(mesh.elements)
-        stress = stress_at(solution, mesh, starts, np.zeros(mesh.elements), slice(len(solution) - 1, len(solution)))
+        starts = AxisPoints.on_each(mesh, np.zeros(1))
+        stress = stress_at(solution, starts, slice(len(solution) - 1, len(solution)))
         known |= {name for name, part in _STRESSES.items() if np.isfinite(stress[part]).any()}
     stresses = tuple(name for name in _STRESSES if name in known)
     moved = ("rotation", "displacement") if solution.static else ("rotation", "displacement", "speed")
@@ -72,7 +73,7 @@ def _along(points: AxisPoints, solution: Solution, rows: np.ndarray, names: Sequ
     """Return fields (names, rows, points)."""
     result = section_forces(points, solution, rows)
     if any(name in _STRESSES for name in names):
-        stress = stress_at(solution, points.mesh, points.element, points.xi, rows)
+        stress = stress_at(solution, points, rows)
         result |= {name: stress[part] for name, part in _STRESSES.items()}
     result |= {name: QUANTITIES[name].values(points, solution, rows) for name in names if name not in result}
     return np.stack([result[name] for name in names])

@@ -8,8 +8,8 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
-from beamfem.results.axis_fields import QUANTITIES, PointsAt, Quantity
-from beamfem.results.free_bodies import Cuts
+from beamfem.results.axis_fields import QUANTITIES, Quantity
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.path import Path, PathState
 from beamfem.results.quantities import AT_POINT, UNITS, value_of
 from beamfem.results.solution import Solution
@@ -194,8 +194,8 @@ def _taken(solution: Solution, which: str, given: Drawn) -> tuple[str, np.ndarra
 def _of_section(solution: Solution, quantity: Quantity, point: Point) -> tuple[str, str, np.ndarray]:
     """Return label, unit and values (steps,) of a quantity along the axis at a point. Raises InputError."""
     mesh = solution.model.mesh_of(point)
-    at = Cuts(*(np.array([value]) for value in mesh.locate(point.fraction)))
-    values = quantity.values(PointsAt(mesh, 0, at), solution, np.arange(len(solution)))[:, 0]
+    element, xi = (np.array([value]) for value in mesh.locate(point.fraction))
+    values = quantity.values(AxisPoints(mesh, element, xi), solution, np.arange(len(solution)))[:, 0]
     if not np.isfinite(values).any():
         why = quantity.unknown_of([point.beam])
         raise InputError(f"the section at this point has no {quantity.label} to draw: {why}")

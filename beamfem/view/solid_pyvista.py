@@ -11,7 +11,7 @@ from beamfem.atomic_write import path_ending, whole
 from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError, warn
 from beamfem.mesh.reference import sections_at
-from beamfem.results.axis_fields import AxisPoints
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.solution import Solution
 from beamfem.validation import count, items, number_below, shown
 from beamfem.view.deformed_shapes import FIELD_COLOURS, Shapes

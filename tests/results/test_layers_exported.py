@@ -5,7 +5,7 @@ import pytest
 import pyvista
 
 import beamfem as bf
-from beamfem.results.axis_fields import AxisPoints
+from beamfem.results.axis_points import AxisPoints
 from beamfem.view import solid_pyvista as body
 from beamfem.view.deformed_shapes import Shapes
 
@@ -221,6 +221,6 @@ def test_faces_are_those_of_the_layers_that_are_there():
     two, three = (bf.Layered([bf.Layer(STEEL, h) for h in thickness[:n]], 0.1, axis=0.01) for n in (2, 3))
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), lambda s: two if s < 0.5 else three)
     model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 1.0))])
-    points = AxisPoints(model.mesh_of(beam.start), 1)
+    points = AxisPoints.spaced(model.mesh_of(beam.start), 1)
     np.testing.assert_allclose(points.faces, [[-0.01, 0.04]] * 2 + [[-0.01, 0.08]] * 2, atol=1e-15)
     np.testing.assert_allclose(points.layers[0], [[-0.01, 0.01], [0.01, 0.04], [0.04, 0.04]], atol=1e-15)

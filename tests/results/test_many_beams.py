@@ -10,7 +10,8 @@ from beamfem.results import axis_fields as along
 from beamfem.results import batched_beams as many_beams
 from beamfem.results import beam_stress, free_bodies
 from beamfem.results import neighbouring_beams as neighbours
-from beamfem.results.axis_fields import QUANTITIES, AxisPoints
+from beamfem.results.axis_fields import QUANTITIES
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import equal_beams, of_each
 from tests.many_beams import PLASTIC, SECTION, mixed_model
 
@@ -40,7 +41,7 @@ def _all_forces(points, solution, rows):
 
 
 def _all_stresses(points, solution, rows):
-    stress = beam_stress.stress_at(solution, points.mesh, points.element, points.xi, rows)
+    stress = beam_stress.stress_at(solution, points, rows)
     return np.stack([stress[part] for part in beam_stress.PARTS])
 
 
@@ -54,7 +55,7 @@ FIELDS |= {"forces": _all_forces, "stresses": _all_stresses}
 @pytest.mark.parametrize("values", FIELDS.values(), ids=FIELDS)
 def test_fields_of_beams_evaluated_together_are_those_of_each(solutions, values, motion):
     solution = solutions[motion]
-    points = [AxisPoints(mesh, 1 + number % 2) for number, mesh in enumerate(solution.model.meshes)]
+    points = [AxisPoints.spaced(mesh, 1 + number % 2) for number, mesh in enumerate(solution.model.meshes)]
     groups = equal_beams(solution.model, points, len(solution))
     assert 1 < len(groups) < len(points)
     rows = slice(1, None)
@@ -94,7 +95,7 @@ def test_files_and_tables_are_the_same_beam_by_beam(solutions, monkeypatch, tmp_
     solution.save(tmp_path / "together.h5")
     monkeypatch.setattr(many_beams, "VALUES", 0)
     monkeypatch.setattr(hdf5_arrays, "VALUES", 0)  # row by row
-    points = [AxisPoints(mesh, 1) for mesh in solution.model.meshes]
+    points = [AxisPoints.spaced(mesh, 1) for mesh in solution.model.meshes]
     assert len(equal_beams(solution.model, points, 1)) == len(points)
     each = solution.to_pandas(), Cells(solution.model, True).arrays(solution, slice(None))
     solution.save(tmp_path / "each.h5")
@@ -142,7 +143,7 @@ def test_more_beams_do_not_take_more_evaluations(evaluate, monkeypatch, tmp_path
 def test_the_more_rows_the_fewer_beams_are_evaluated_at_once(rows):
     """All beams of a long motion at once would take more memory than its coordinates."""
     model = mixed_model()
-    groups = equal_beams(model, [AxisPoints(mesh, 4) for mesh in model.meshes], rows)
+    groups = equal_beams(model, [AxisPoints.spaced(mesh, 4) for mesh in model.meshes], rows)
     assert sorted(number for group in groups for number in group.numbers) == list(range(len(model.beams)))
     for group in groups:
         assert len(group.numbers) == 1 or sum(group.counts) * rows <= many_beams.VALUES

@@ -12,7 +12,8 @@ from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.quiver import Quiver
 
 import beamfem as bf
-from beamfem.results.axis_fields import AxisPoints, section_forces
+from beamfem.results.axis_fields import section_forces
+from beamfem.results.axis_points import AxisPoints
 from beamfem.view import symbols
 from beamfem.view.deformed_shapes import Shapes, limits
 from beamfem.view.drawing import equal_axes
@@ -89,7 +90,7 @@ def test_section_forces_between_their_stations(element):
     load = 1e-6
     solution = cantilever(load, 4, element)
     mesh = solution.model.meshes[0]
-    points = AxisPoints(mesh, 5)
+    points = AxisPoints.spaced(mesh, 5)
     found = section_forces(points, solution, slice(None))
     s = points.arc_length
     np.testing.assert_allclose(found["moment"][-1], load * EI * (1.0 - s), atol=1e-6 * load * EI)

@@ -9,8 +9,8 @@ from drawn import EI as DRAWN
 from drawn import cantilever
 
 import beamfem as bf
-from beamfem.results.axis_fields import AxisPoints
 from beamfem.results.axis_fields import section_forces as along_axis
+from beamfem.results.axis_points import AxisPoints
 from beamfem.view.deformed_shapes import Shapes
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
@@ -267,7 +267,7 @@ def test_pictures_and_files_have_the_moments_at_the_ends_of_elements(element):
     assert drawn[0] == pytest.approx(forces.moment[-1, 0], rel=1e-9)
     assert drawn[0] == pytest.approx(-solution.reaction(beam.start)[-1, 2], rel=1e-6)
     assert drawn[-1] == pytest.approx(0.0, abs=1e-6 * DRAWN)
-    points = AxisPoints(solution.model.meshes[0], 4)
+    points = AxisPoints.spaced(solution.model.meshes[0], 4)
     found = along_axis(points, solution, slice(None))["shear"][-1]
     np.testing.assert_allclose(found[[0, -1]], forces.shear[-1, [0, -1]], atol=1e-9 * DRAWN)
 

@@ -56,6 +56,29 @@ def write_checked(group: Any, name: str, values: np.ndarray) -> None:
     group.create_dataset(name, data=values).attrs[_CHECKSUM] = checksum(values)
 
 
+def begin_checked(group: Any, name: str, row: tuple[int, ...], kind: Any, rows: int) -> None:
+    """Make an array of rows that `extend_checked` appends; rows: in a chunk of the file."""
+    made = group.create_dataset(name, (0, *row), kind, maxshape=(None, *row), chunks=(rows, *row))
+    made.attrs[_CHECKSUM] = checksum()
+
+
+def extend_checked(group: Any, name: str, values: np.ndarray) -> None:
+    """Append rows to an array with a checksum."""
+    data = group[name]
+    before = len(data)
+    data.resize(before + len(values), axis=0)
+    data[before:] = values
+    data.attrs.modify(_CHECKSUM, checksum(values.astype(data.dtype), begin=int(data.attrs[_CHECKSUM])))
+
+
+def shorten_checked(group: Any, name: str, rows: int) -> None:
+    """Keep some rows of an array with a checksum."""
+    data = group[name]
+    data.resize(rows, axis=0)
+    parts = (data[first : first + data.chunks[0]] for first in range(0, rows, data.chunks[0]))
+    data.attrs.modify(_CHECKSUM, checksum(*parts))
+
+
 def read_checked(group: Any, name: str) -> np.ndarray:
     """Return an array. Raises InputError if it differs from what was written; older files have no checksum."""
     data = group[name]
@@ -95,9 +118,9 @@ def read_label(group: Any, name: str) -> str:
     return label.decode() if isinstance(label, bytes) else str(label)
 
 
-def checksum(*arrays: np.ndarray) -> int:
-    """Return the CRC-32 of arrays, one after the other."""
-    result = 0
+def checksum(*arrays: np.ndarray, begin: int = 0) -> int:
+    """Return the CRC-32 of arrays, one after the other; begin: that of what is before them."""
+    result = begin
     for values in arrays:
         result = crc32(np.ascontiguousarray(values).tobytes(), result)
     return result

@@ -1,7 +1,7 @@
 """Solutions in HDF5 files: the model described in JSON, the states in rows."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from importlib.metadata import version
 from math import prod
@@ -14,7 +14,9 @@ from beamfem.atomic_write import readable
 from beamfem.errors import InputError
 from beamfem.io.description import describe, rebuild
 from beamfem.io.hdf5 import (
+    begin_checked,
     checksum,
+    extend_checked,
     read_checked,
     read_label,
     require_own,
@@ -24,17 +26,20 @@ from beamfem.io.hdf5 import (
     write_label,
 )
 from beamfem.io.hdf5_arrays import AXES, load_factors, load_path, save_axes, save_critical
+from beamfem.results.motion_state import Occurrence
 from beamfem.results.path import Path as EquilibriumPath
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics, Status
 
-_FORMAT = "beamfem solution"
+FORMAT = "beamfem solution"
 _FORMAT_VERSION = 1
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _BLOCK_BYTES = 2**20
 _STATES = ("at", "p", "v", "a")
 _OPTIONAL = ("stability", "turned", "loaded")
 _CHECKSUMS = "checksums"  # of each block of rows
+_EVENTS = "events"
+_BLOCK_EVENTS = 64
 
 
 def save(solution: Solution, path: str | PathLike[str]) -> None:
@@ -44,7 +49,7 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
     block = max(min(_BLOCK_BYTES // (8 * solution.p.shape[1]), len(solution)), 1)
 
     def fill(file: Any, require_written: Callable[[], None]) -> None:
-        write_label(file, "format", _FORMAT)
+        write_label(file, "format", FORMAT)
         file.attrs["format_version"] = _FORMAT_VERSION
         write_label(file, "beamfem_version", version("beamfem"))
         about = asdict(solution.statistics) | {"status": solution.status.name}
@@ -66,6 +71,9 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
             require_written()
         if isinstance(solution, EquilibriumPath):
             save_critical(file, solution)
+        if solution.events:
+            begin_events(file, max(len(event.name.encode()) for event in solution.events))
+            append_events(file, solution.events)
         save_axes(file, solution, require_written)
 
     write_hdf5(path, fill)
@@ -142,7 +150,7 @@ def _append(file: Any, solution: Solution, rows: slice) -> None:
 
 
 def _read(file: Any) -> Solution:
-    if read_label(file, "format") != _FORMAT:
+    if read_label(file, "format") != FORMAT:
         raise InputError("it is an HDF5 file, but not one that beamfem saved")
     if file.attrs["format_version"] > _FORMAT_VERSION:
         raise InputError(
@@ -172,7 +180,28 @@ def _read(file: Any) -> Solution:
         statistics = replace(statistics, ended=ended, status=Status.STOPPED)
     _require_whole(file, rows, (at, p, v, a))
     optional_arrays: dict[str, Any] = {name: read_checked(file, name)[:rows] for name in _OPTIONAL if name in file}
-    return load_path(file, Solution(model, static, at, p, v, a, statistics, **optional_arrays))
+    return load_path(file, Solution(model, static, at, p, v, a, statistics, **optional_arrays, events=_events(file)))
+
+
+def begin_events(file: Any, size: int) -> None:
+    """Make the group of events with names of at most some bytes."""
+    group = file.create_group(_EVENTS)
+    for name, kind in (("name", f"S{size}"), ("time", np.float64), ("row", np.int64)):
+        begin_checked(group, name, (), kind, _BLOCK_EVENTS)
+
+
+def append_events(file: Any, events: Sequence[Occurrence]) -> None:
+    """Write further events."""
+    extend_checked(file[_EVENTS], "name", np.array([event.name.encode() for event in events]))
+    for name in ("time", "row"):
+        extend_checked(file[_EVENTS], name, np.array([getattr(event, name) for event in events]))
+
+
+def _events(file: Any) -> tuple[Occurrence, ...]:
+    if _EVENTS not in file:
+        return ()
+    columns = (read_checked(file[_EVENTS], name).tolist() for name in ("name", "time", "row"))
+    return tuple(Occurrence(name.decode(), time, row) for name, time, row in zip(*columns, strict=True))
 
 
 def _text(item: Any) -> np.ndarray:

@@ -1,5 +1,6 @@
 """Reactions of supports that share a coordinate, rows at given load factors, and paths in files."""
 
+import h5py
 import numpy as np
 import pytest
 
@@ -178,3 +179,17 @@ def test_a_saved_vibration_keeps_the_loads_of_its_equilibrium(tmp_path):
         forces = solution.section_forces(solution.model.beams[0])
         expected = np.broadcast_to(250.0 * (1.0 - forces.arc_length), forces.normal.shape)
         np.testing.assert_allclose(forces.normal, expected, atol=0.1)
+
+
+def test_a_saved_motion_keeps_its_events(tmp_path):
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Section.from_stiffness(1e3, 1e3, 1.0, 1.0, 1.0))
+    model = bf.Model([beam], [bf.Pin(beam.start)], [bf.Gravity((0.0, -9.81))])
+    turns = [bf.Event(name, lambda state: state.velocity(beam.end)[1]) for name in ("turns", "kehrt um, übrigens")]
+    motion = bf.simulate(model, 3.0, 0.01, events=turns)
+    motion.save(tmp_path / "swing.h5")
+    assert bf.load(tmp_path / "swing.h5").events == motion.events
+    assert len(motion.events) >= 2
+    with h5py.File(tmp_path / "swing.h5", "r+") as file:
+        file["events/time"][0] += 1e-9
+    with pytest.raises(bf.InputError, match="its time is damaged"):
+        bf.load(tmp_path / "swing.h5")

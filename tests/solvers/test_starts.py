@@ -40,3 +40,23 @@ def test_modes_and_buckling_are_about_the_last_state_of_a_solution_as_about_the_
             solve(pushed, 1, motion)
         with pytest.raises(bf.InputError, match=r"about must be a state, such as .* or a solution, got a str"):
             solve(pushed, 1, "reference")
+
+
+def test_a_motion_starts_in_a_mode_and_vibrates_in_it(pushed):
+    """About the equilibrium under a third of Euler's load: after half a period it is on the other side."""
+    modes = bf.solve_modes(pushed, 2, bf.solve_static(pushed))
+    tip = pushed.beams[0].end
+    for number, frequency in enumerate(modes.frequencies.tolist()):
+        begin, half = modes.start(number, 1e-5), 0.5 / frequency
+        motion = bf.simulate(pushed, half, half / 200, bf.GeneralizedAlpha(1.0), start=begin)
+        moved = motion.p - modes.state.p
+        size = np.abs(moved[0]).max()
+        np.testing.assert_allclose(moved[-1], -moved[0], atol=2e-3 * size)
+        assert abs(motion.displacement(tip)[0, 0]) == pytest.approx(1e-5, rel=1e-3)
+
+
+def test_a_motion_starts_in_a_rigid_mode_with_its_velocity():
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), SQUARE, STEEL)
+    model = bf.Model([beam], [bf.Pin(beam.start)])
+    motion = bf.simulate(model, 1e-2, 1e-4, start=bf.solve_modes(model, 2).start(0, 0.1))
+    assert abs(motion.displacement(beam.end)[-1, 1]) == pytest.approx(1e-3, rel=1e-4)

@@ -238,6 +238,18 @@ class Modes:
         loaded = np.full(frames, self.state.at)
         return Solution(self.model, False, at, self.state.p + p, v, a, statistics, loaded=loaded)
 
+    def start(self, mode: int = 0, amplitude: float | None = None) -> State:
+        """Return the state in which the motion of a mode begins, the first row of its `solution`, as `start` of a motion.
+
+        It is at rest with the shape added, but moves with undisplaced shape if the mode is rigid, and with the growth
+        or phases of the mode if it grows or is complex. amplitude [m]: largest displacement of a node; of a rigid mode
+        largest velocity [m/s]. Raises InputError for a mode that does not exist.
+
+        >>> struck = bf.solve_modes(model, count=2).start(mode=1, amplitude=1e-3)
+        >>> motion = bf.simulate(model.with_loads([]), duration=0.01, step=1e-4, start=struck)
+        """
+        return self.solution(mode, amplitude, 2)[0]
+
     def to_pandas(self) -> Any:
         """Return frequency [Hz], growth [1/s] and rigid motion of the modes as a table, one row per mode.
 

@@ -239,10 +239,10 @@ class Modes:
         return Solution(self.model, False, at, self.state.p + p, v, a, statistics, loaded=loaded)
 
     def start(self, mode: int = 0, amplitude: float | None = None) -> State:
-        """Return the state in which the motion of a mode begins, the first row of its `solution`, as `start` of a motion.
+        """Return the state in which the motion of a mode begins, the first row of its `solution`; `simulate` takes it.
 
-        It is at rest with the shape added, but moves with undisplaced shape if the mode is rigid, and with the growth
-        or phases of the mode if it grows or is complex. amplitude [m]: largest displacement of a node; of a rigid mode
+        It is at rest with the shape added, but moves without displacement if the mode is rigid, and with the growth and
+        phases of a mode that grows or is complex. amplitude [m]: largest displacement of a node; of a rigid mode
         largest velocity [m/s]. Raises InputError for a mode that does not exist.
 
         >>> struck = bf.solve_modes(model, count=2).start(mode=1, amplitude=1e-3)

@@ -35,7 +35,7 @@ Contents; see help(bf.Beam), for example, for details.
                       Motor MovingForce
     Time functions    Interpolated Piecewise
     From files        read_mesh LineMesh Frame read_dxf load
-    Solvers           solve_static trace_equilibrium solve_buckling solve_modes simulate
+    Solvers           solve_static trace_equilibrium solve_buckling solve_modes simulate resume
                       linearise frequency_response reduce
     Solver settings   Newton GeneralizedAlpha Gauss Radau EnergyMomentum RigidVelocity Event
     Results           Solution State Path PathState Bifurcation Modes Buckling Status
@@ -49,7 +49,7 @@ Contents; see help(bf.Beam), for example, for details.
     Errors            BeamfemError InputError UnknownPointError FreeMotionError ConvergenceError
                       LimitPointError FileError MissingPackageError
     Warnings          UnstableWarning RoundOffWarning LockingWarning LargeStrainWarning CuspWarning EnergyWarning
-                      TimeStepWarning CoarseMeshWarning
+                      TimeStepWarning CoarseMeshWarning LongRunWarning
                       UnitsWarning SeveralTurnsWarning UnknownStressWarning
                       NotJoinedWarning NotReadWarning NotStoredWarning ChangedCodeWarning
 """

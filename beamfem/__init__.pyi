@@ -40,6 +40,7 @@ from .errors import InputError as InputError
 from .errors import LargeStrainWarning as LargeStrainWarning
 from .errors import LimitPointError as LimitPointError
 from .errors import LockingWarning as LockingWarning
+from .errors import LongRunWarning as LongRunWarning
 from .errors import MissingPackageError as MissingPackageError
 from .errors import NotJoinedWarning as NotJoinedWarning
 from .errors import NotReadWarning as NotReadWarning
@@ -150,6 +151,7 @@ from .solve.motion.equations_of_motion import Integrator as Integrator
 from .solve.motion.events import Event as Event
 from .solve.motion.integrators import GeneralizedAlpha as GeneralizedAlpha
 from .solve.motion.integrators import Scheme as Scheme
+from .solve.motion.long_runs import resume as resume
 from .solve.newton.newton import Newton as Newton
 from .solve.paths.trace import trace_equilibrium as trace_equilibrium
 from .solve.stability.buckling import Buckling as Buckling

@@ -128,6 +128,10 @@ class TimeStepWarning(UserWarning):
     """The step of a motion changes the frequencies that carry its energy by more than their damping allows."""
 
 
+class LongRunWarning(UserWarning):
+    """A file holds a motion that is complete already, or of more rows than fit into memory."""
+
+
 class NotJoinedWarning(UserWarning):
     """Lines of a mesh end close to others without being joined to them."""
 

@@ -1,11 +1,13 @@
 """Solutions in HDF5 files: the model described in JSON, the states in rows."""
 
 import json
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from importlib.metadata import version
 from math import prod
 from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,45 +28,36 @@ from beamfem.io.hdf5 import (
     write_label,
 )
 from beamfem.io.hdf5_arrays import AXES, load_factors, load_path, save_axes, save_critical
+from beamfem.io.paged_file import replay
 from beamfem.results.motion_state import Occurrence
 from beamfem.results.path import Path as EquilibriumPath
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics, Status
 
-FORMAT = "beamfem solution"
+_FORMAT = "beamfem solution"
 _FORMAT_VERSION = 1
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _BLOCK_BYTES = 2**20
-_STATES = ("at", "p", "v", "a")
+STATES = ("at", "p", "v", "a")
 _OPTIONAL = ("stability", "turned", "loaded")
-_CHECKSUMS = "checksums"  # of each block of rows
-_EVENTS = "events"
+CHECKSUMS = "checksums"  # of each block of rows
+EVENTS = "events"
 _BLOCK_EVENTS = 64
 
 
 def save(solution: Solution, path: str | PathLike[str]) -> None:
     """Write model and states into one HDF5 file with checksums, see `Solution.save`."""
     at = np.append(solution.at, load_factors(solution)) if isinstance(solution, EquilibriumPath) else solution.at
-    description = _text(describe(solution.model, at))
+    description = as_text(describe(solution.model, at))
     block = max(min(_BLOCK_BYTES // (8 * solution.p.shape[1]), len(solution)), 1)
 
     def fill(file: Any, require_written: Callable[[], None]) -> None:
-        write_label(file, "format", FORMAT)
-        file.attrs["format_version"] = _FORMAT_VERSION
-        write_label(file, "beamfem_version", version("beamfem"))
-        about = asdict(solution.statistics) | {"status": solution.status.name}
-        write_checked(file, "statistics", _text({"static": solution.static, **about}))
-        file.attrs["all_rows"] = len(solution)
-        file.attrs["rows"] = 0
-        write_checked(file, "model", description)
+        begin_file(file, len(solution), description, solution.p.shape[1], block)
+        write_checked(file, "statistics", as_text(about(solution.static, solution.statistics)))
         for name in _OPTIONAL:
             values = getattr(solution, name)
             if values is not None and values.size:
                 write_checked(file, name, values)
-        for name in _STATES:
-            row = getattr(solution, name).shape[1:]
-            file.create_dataset(name, (0, *row), np.float64, maxshape=(None, *row), chunks=(block, *row))
-        file.create_dataset(_CHECKSUMS, (0,), np.int64, maxshape=(None,))
         file.flush()
         for first in range(0, len(solution), block):
             _append(file, solution, slice(first, min(first + block, len(solution))))
@@ -79,7 +72,25 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
     write_hdf5(path, fill)
 
 
-def load(path: str | PathLike[str]) -> Solution:
+def begin_file(file: Any, rows: int, description: np.ndarray, size: int, block: int) -> None:
+    """Write what is before the first row; rows: of all; size: number of coordinates; block: rows with a checksum."""
+    write_label(file, "format", _FORMAT)
+    file.attrs["format_version"] = _FORMAT_VERSION
+    write_label(file, "beamfem_version", version("beamfem"))
+    file.attrs["all_rows"], file.attrs["rows"] = rows, 0
+    write_checked(file, "model", description)
+    for name in STATES:
+        row = (size,) if name != "at" else ()
+        file.create_dataset(name, (0, *row), np.float64, maxshape=(None, *row), chunks=(block, *row))
+    file.create_dataset(CHECKSUMS, (0,), np.int64, maxshape=(None,))
+
+
+def about(static: bool, statistics: Statistics) -> dict[str, Any]:
+    """Return how a solve went, to be written as a text."""
+    return {"static": static, **asdict(statistics), "status": statistics.status.name}
+
+
+def load(path: str | PathLike[str], rows: slice | None = None) -> Solution:
     """Return the solution stored in a file.
 
     Functions of time are returned as `Sampled`, their values at the saved rows. If the writing process was killed, the
@@ -88,7 +99,9 @@ def load(path: str | PathLike[str]) -> Solution:
     Parameters
     ----------
     path : path
-        A file that `Solution.save` wrote.
+        A file that `Solution.save`, or a motion with `file`, wrote.
+    rows : slice, optional
+        Which rows, in ascending order, if not all: the others need no memory.
 
     Returns
     -------
@@ -100,7 +113,7 @@ def load(path: str | PathLike[str]) -> Solution:
     FileError
         If the system refuses to read the file; FileNotFoundError if there is none.
     InputError
-        If the file is damaged, of a newer format or not of beamfem.
+        If the file is damaged, of a newer format or not of beamfem, and if no row is selected.
     MissingPackageError
         Without h5py.
 
@@ -112,12 +125,13 @@ def load(path: str | PathLike[str]) -> Solution:
     """
     h5py = required_h5py("loading")
     source = readable(path)
+    replay(Path(os.path.realpath(source)))
     with source.open("rb") as stream:
         if stream.read(len(_SIGNATURE)) != _SIGNATURE:
             raise InputError(f"{source} is not a file that beamfem saved: it is no HDF5 file")
     try:
         with h5py.File(source, "r") as file:
-            return _read(file)
+            return _read(file, slice(None) if rows is None else rows)
     except InputError as error:
         raise InputError(f"{source} cannot be loaded: {error}") from error
     except MemoryError as error:
@@ -137,20 +151,20 @@ def load(path: str | PathLike[str]) -> Solution:
 
 
 def _append(file: Any, solution: Solution, rows: slice) -> None:
-    for name in _STATES:
+    for name in STATES:
         file[name].resize(rows.stop, axis=0)
         file[name][rows] = getattr(solution, name)[rows]
-    blocks = len(file[_CHECKSUMS])
-    file[_CHECKSUMS].resize(blocks + 1, axis=0)
-    file[_CHECKSUMS][blocks] = checksum(*(getattr(solution, name)[rows] for name in _STATES))
+    blocks = len(file[CHECKSUMS])
+    file[CHECKSUMS].resize(blocks + 1, axis=0)
+    file[CHECKSUMS][blocks] = checksum(*(getattr(solution, name)[rows] for name in STATES))
     # rows count only when their numbers have left for the file
     file.flush()
     file.attrs.modify("rows", rows.stop)
     file.flush()
 
 
-def _read(file: Any) -> Solution:
-    if read_label(file, "format") != FORMAT:
+def _read(file: Any, selected: slice) -> Solution:
+    if read_label(file, "format") != _FORMAT:
         raise InputError("it is an HDF5 file, but not one that beamfem saved")
     if file.attrs["format_version"] > _FORMAT_VERSION:
         raise InputError(
@@ -161,74 +175,89 @@ def _read(file: Any) -> Solution:
     if rows == 0:
         raise InputError("its writing was cut off before the first rows")
     require_own(file, AXES)
-    model = rebuild(_read_text(file, "model"))
-    for name in _STATES:
+    model = rebuild(read_text(file, "model"))
+    for name in STATES:
         data = file[name]
         if (
             data.compression is None
             and data.id.get_storage_size() < min(rows, len(data)) * prod(data.shape[1:]) * data.dtype.itemsize
         ):
             raise InputError(f"its {name} has {len(data)} rows that were never written")
-    at, p, v, a = (np.asarray(file[name][:rows]) for name in _STATES)
-    if at.shape != (rows,) or any(values.shape != (rows, model.size) for values in (p, v, a)):
+    sizes = {name: (model.size,) if name != "at" else () for name in STATES}
+    if any(len(file[name]) < rows or file[name].shape[1:] != size for name, size in sizes.items()):
         raise InputError(f"its arrays do not fit its model of {model.size} coordinates and its {rows} rows")
-    about = _about(file)
-    static = bool(about.pop("static"))
-    statistics = _statistics(about)
+    chosen = range(rows)[selected]
+    if not chosen or chosen.step < 0:
+        raise InputError(f"rows must select some of its {rows} rows in ascending order, got {selected}")
+    at, p, v, a = _states(file, rows, np.array(chosen))
+    saved = _about(file)
+    static = bool(saved.pop("static"))
+    statistics = _statistics(saved)
     if rows < all_rows:
         ended = f"{statistics.ended}; the file holds {rows} of {all_rows} rows because its writing was cut off"
         statistics = replace(statistics, ended=ended, status=Status.STOPPED)
-    _require_whole(file, rows, (at, p, v, a))
-    optional_arrays: dict[str, Any] = {name: read_checked(file, name)[:rows] for name in _OPTIONAL if name in file}
-    return load_path(file, Solution(model, static, at, p, v, a, statistics, **optional_arrays, events=_events(file)))
+    optional_arrays: dict[str, Any] = {
+        name: read_checked(file, name)[:rows][np.array(chosen)] for name in _OPTIONAL if name in file
+    }
+    events = _events(file)
+    if len(chosen) < rows:
+        events = tuple(replace(event, row=int(np.searchsorted(at, event.time))) for event in events)
+    return load_path(file, Solution(model, static, at, p, v, a, statistics, **optional_arrays, events=events))
 
 
 def begin_events(file: Any, size: int) -> None:
     """Make the group of events with names of at most some bytes."""
-    group = file.create_group(_EVENTS)
+    group = file.create_group(EVENTS)
     for name, kind in (("name", f"S{size}"), ("time", np.float64), ("row", np.int64)):
         begin_checked(group, name, (), kind, _BLOCK_EVENTS)
 
 
 def append_events(file: Any, events: Sequence[Occurrence]) -> None:
     """Write further events."""
-    extend_checked(file[_EVENTS], "name", np.array([event.name.encode() for event in events]))
+    extend_checked(file[EVENTS], "name", np.array([event.name.encode() for event in events]))
     for name in ("time", "row"):
-        extend_checked(file[_EVENTS], name, np.array([getattr(event, name) for event in events]))
+        extend_checked(file[EVENTS], name, np.array([getattr(event, name) for event in events]))
 
 
 def _events(file: Any) -> tuple[Occurrence, ...]:
-    if _EVENTS not in file:
+    if EVENTS not in file:
         return ()
-    columns = (read_checked(file[_EVENTS], name).tolist() for name in ("name", "time", "row"))
+    columns = (read_checked(file[EVENTS], name).tolist() for name in ("name", "time", "row"))
     return tuple(Occurrence(name.decode(), time, row) for name, time, row in zip(*columns, strict=True))
 
 
-def _text(item: Any) -> np.ndarray:
+def as_text(item: Any) -> np.ndarray:
     """Return an object that JSON can represent as an array of one text, which can have a checksum."""
     return np.array([json.dumps(item).encode()])
 
 
-def _read_text(file: Any, name: str) -> Any:
+def read_text(file: Any, name: str) -> Any:
     """Return the object in a text; older versions wrote it without a checksum."""
     return json.loads(read_checked(file, name)[0] if file[name].shape else file[name].asstr()[()])
 
 
-def _require_whole(file: Any, rows: int, states: tuple[np.ndarray, ...]) -> None:
-    """Raise InputError if rows differ from those that were written; older files have no checksum."""
-    if _CHECKSUMS not in file:
-        return
-    block, sums = file["at"].chunks[0], file[_CHECKSUMS][:].tolist()
+def _states(file: Any, rows: int, chosen: np.ndarray) -> list[np.ndarray]:
+    """Return chosen rows (k,) of all states, after a look at each block of rows.
+
+    Raises InputError if rows differ from those that were written; older files have no checksum.
+    """
+    block, sums = file["at"].chunks[0], file[CHECKSUMS][:].tolist() if CHECKSUMS in file else None
+    result = [np.empty((len(chosen), *file[name].shape[1:])) for name in STATES]
     for number, first in enumerate(range(0, rows, block)):
         last = min(first + block, rows)
-        if checksum(*(values[first:last] for values in states)) != sums[number]:
+        parts = [np.asarray(file[name][first:last]) for name in STATES]
+        if sums is not None and checksum(*parts) != sums[number]:
             raise InputError(f"its rows {first} to {last - 1} are damaged: the checksum is that of other numbers")
+        begin, end = np.searchsorted(chosen, [first, last])
+        for values, part in zip(result, parts, strict=True):
+            values[begin:end] = part[chosen[begin:end] - first]
+    return result
 
 
 def _about(file: Any) -> dict[str, Any]:
     """Return the statistics and whether the solution is static; in older files these are attributes."""
     if "statistics" in file:
-        return dict(_read_text(file, "statistics"))
+        return dict(read_text(file, "statistics"))
     return {"static": file.attrs["static"], **json.loads(file.attrs["statistics"])}
 
 

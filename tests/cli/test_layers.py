@@ -32,6 +32,12 @@ LAYERS = (
     "solve/accuracy",
     "solve/newton",
     "solve/start",
+    "io/motion_file",
+    "io/results_hdf5",
+    "io/paged_file",
+    "io/hdf5_arrays",
+    "io/hdf5",
+    "io/description",
     "results",
     "precision/roundoff",
     "assembly/band_workspace",
@@ -70,7 +76,7 @@ LAYERS = (
     "errors",
 )
 # what a method may import inside: what meshes, draws and writes the object, and some analyses of it
-INSIDE_METHODS = ("mesh", "view", "io")
+INSIDE_METHODS = ("mesh", "view", "io", "io/results_hdf5")
 ANALYSES = {
     "model/model.py": ("beamfem.results.imperfection",),
     "results/solution.py": ("beamfem.solve.stability.stability", "beamfem.solve.accuracy.error_estimate"),

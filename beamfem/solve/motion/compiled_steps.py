@@ -119,6 +119,12 @@ class CompiledSteps:
         self._error = next((error for error in (*errors, assembler.take_error()) if error is not None), None)
         return completed if self._deferred.lost is None else 0
 
+    def memory(self, state: np.ndarray) -> None:
+        """Return None: the state (4, n) is all that the next steps need."""
+
+    def recall(self, memory: object, state: np.ndarray) -> None:
+        """Recall nothing."""
+
     def raise_error(self) -> None:
         """Raise what has ended the last call early, if it was an error or a Ctrl-C."""
         if self._deferred is not None:

@@ -20,7 +20,7 @@ from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.start_acceleration import initial_acceleration, mean_acceleration
 from beamfem.solve.motion.stored_states import Saving
 from beamfem.solve.motion.time_steps import PARTS, Stretch
-from beamfem.solve.motion.user_integrators import OwnSteps
+from beamfem.solve.motion.user_integrators import Memory, OwnSteps
 
 _CHUNK_SECONDS = 0.25  # of a call of compiled code, which the next call is made to last at least
 _MOST = 6  # cuts of a step, to 1 / 4096
@@ -70,7 +70,8 @@ class StepCutter:
     pairs (m, 2): see `full_turns.rotation_pairs`; end [s]: of the motion; size: of a call of compiled code, in steps,
     which grows up to `largest`; judge: of energies, if there is one; relaxed: whether a motion starts with mean
     accelerations, see `initial_acceleration`; cuts: how many times steps were redone; further: how many steps more
-    than without cuts there are; why: the reason of a failure; stopped: whether the motion was stopped.
+    than without cuts there are; why: the reason of a failure; stopped: whether the motion was stopped; memory: of an
+    integrator with steps of its own.
     """
 
     system: System
@@ -86,6 +87,7 @@ class StepCutter:
     further: int = 0
     why: str = ""
     stopped: bool = False
+    memory: Memory | None = None
 
     def take(
         self,
@@ -97,20 +99,25 @@ class StepCutter:
         reached: Callable[[int, Rows], bool] = lambda done, rows: False,
         level: int = 0,
         jumps: bool = True,
+        goes_on: bool = False,
     ) -> int:
         """March a state (4, n) and rotations (m,) through a stretch in place; return how many steps were completed.
 
         prescribed (steps, 3, nh): prescribed coordinates and their rates at the ends of the steps; table: rows for the
         states, None if only `reached` needs them, which takes how many steps are done and the rows of the last ones,
         and returns whether to stop there; level: how many times steps were cut; jumps: whether the acceleration may
-        jump at the beginning.
+        jump at the beginning; goes_on: whether the steps before were equal, so that both accelerations remain.
         """
         done, steps = 0, len(part.times) - 1
         size = self.size if level == 0 else steps
         while done < steps:
-            own, window = state[2].copy(), None
-            self._start(part.after(done), state, jumps and done == 0)
+            continued = goes_on and done == 0
+            own: np.ndarray | None = state[[2, 3 if continued else 2]]
+            window: _Window | None = None
+            if not continued:
+                self._start(part.after(done), state, jumps and done == 0)
             with _steps(self.system, self.integrator, part, self.statistics) as motion:
+                motion.recall(self.memory, state)
                 while done < steps and window is None:
                     count, begin, started = min(size, steps - done), state.copy(), clock.perf_counter()
                     if own is not None:
@@ -126,6 +133,7 @@ class StepCutter:
                         self.why = f"{motion.why}, also with steps of {part.step:.3g} {self.system.model.unit('s')}"
                         return done
                     size = self._next_size(size, count, clock.perf_counter() - started, window)
+                self.memory = motion.memory(state)
             if window is not None:
                 good = self._redo(window, part, state, rotations, level, jumps)
                 done = window.first + good
@@ -135,6 +143,10 @@ class StepCutter:
         if level == 0:
             self.size = max(size, self.size)
         return done
+
+    def judged(self) -> dict[str, np.ndarray]:
+        """Return what the judge of energies keeps."""
+        return {} if self.judge is None else self.judge.memory()
 
     def _start(self, part: Stretch, state: np.ndarray, jumps: bool) -> None:
         """Set the accelerations p'' and a that steps start with, where p'' satisfies the equations of motion."""

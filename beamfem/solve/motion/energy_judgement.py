@@ -1,5 +1,6 @@
 """Judgement of time steps by energy, which must change by the work that is done."""
 
+from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -40,6 +41,22 @@ class EnergyJudge:
         self._fastest, self._speed, self._speed_evaluated = self._first, 0.0, 0.0
         self._drift = self._total = 0.0
         self._parts = np.empty((3, 0))  # extreme kinetic, strain and potential energies so far
+
+    def memory(self) -> dict[str, np.ndarray]:
+        """Return what `recall` needs to go on with the judgement of the same motion."""
+        numbers = [self._speed, self._speed_evaluated, self._drift, self._total]
+        result = {"numbers": np.array(numbers), "parts": self._parts}
+        for name, row in (("first", self._first), ("fastest", self._fastest)):
+            result[f"{name}_time"], result[name] = row.at, np.array([row.p[0], row.v[0], row.a[0]])
+        return result
+
+    def recall(self, memory: Mapping[str, np.ndarray]) -> None:
+        """Go on with what was kept."""
+        self._speed, self._speed_evaluated, self._drift, self._total = memory["numbers"].tolist()
+        self._parts = memory["parts"]
+        self._first, self._fastest = (
+            self._solution(memory[f"{name}_time"], memory[name][None].copy()) for name in ("first", "fastest")
+        )
 
     @cached_property
     def _able(self) -> bool:

@@ -1,6 +1,6 @@
 """Energy and momentum conserving steps: forces between two states with mean stresses."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -103,6 +103,14 @@ class EnergyMomentumRun:
         self._vectors: _Vectors | None = None
         self._masses: csr_array | None = None
         self._rates: tuple[float, np.ndarray] | None = None
+
+    def memory(self) -> dict[str, np.ndarray]:
+        """Return the rates of nodal vectors, and their time."""
+        return {} if self._rates is None else {"time": np.array(self._rates[0]), "rates": self._rates[1]}
+
+    def recall(self, memory: Mapping[str, np.ndarray]) -> None:
+        """Go on with the rates that were kept."""
+        self._rates = (float(memory["time"]), memory["rates"]) if memory else None
 
     def step(self, motion: EquationsOfMotion, begin: State, end: float) -> State:
         """Return the state after a step. Raises ConvergenceError."""

@@ -1,6 +1,6 @@
 """Steps whose size follows an estimate of their error."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,6 +23,15 @@ _LONGEST = 64  # steps of equal size, at the end of which the error is judged
 _SHORTEST = 1e-12  # of the motion: a step that fails however short it is
 
 
+@dataclass
+class Reached:
+    """Where a motion is: its time [s], the size [s] of the next steps and how many of them to judge together."""
+
+    time: float = 0.0
+    step: float = 0.0
+    count: int = CHUNK
+
+
 def march_to_tolerance(
     cutter: StepCutter,
     parts: tuple[Stretch, ...],
@@ -31,24 +40,32 @@ def march_to_tolerance(
     tolerance: float,
     saved: SavedRows,
     record: Record,
+    reached: Reached | None = None,
+    most: float = np.inf,
 ) -> Failure | None:
     """March a state (4, n) and rotations (m,) through stretches of time, in place; return where it failed, or None.
+
+    reached: where to go on from, updated; most: number of steps after which to pause.
 
     The error of a step h is estimated by p - p0 - h p0' - h^2 (p0'' / 3 + p'' / 6), as accelerations that are linear in
     it would have none (Zienkiewicz and Xie 1991). It may be the share of the tolerance that the step is of the motion,
     so that errors add up to the tolerance at most. That of an integrator with steps of its own is the difference of two
     steps and one of double size, over 2^k - 1 with its order k.
     """
-    duration, step, order = cutter.end, 0.0, getattr(cutter.integrator, "order", 2)
+    reached, duration, order = reached or Reached(), cutter.end, getattr(cutter.integrator, "order", 2)
+    time, step, count, taken = reached.time, reached.step, reached.count, 0
     rule = is_scheme(cutter.integrator)
     with progress("time [s]", duration) as report:
         for number, part in enumerate(parts):
-            time, end, jumps = float(part.times[0]), float(part.times[-1]), True
-            if number > 0:
+            end, jumps = float(part.times[-1]), time == part.times[0]
+            if jumps and number > 0:
                 state[2] = state[3] = initial_acceleration(cutter.system, state, part.loads_from)
                 step *= _SMALLEST
-            count = CHUNK if rule else 2
+            if jumps:
+                count = CHUNK if rule else 2
             while time < end:
+                if taken >= most:
+                    return None
                 step = min(step or _first_step(cutter, state, tolerance), 0.25 * (end - part.times[0]))
                 steps = min(count, int(np.ceil((end - time) / step * (1.0 - 1e-9)))) if rule else 2
                 size = (end - time) / steps if time + 1.001 * steps * step >= end else step
@@ -89,6 +106,7 @@ def march_to_tolerance(
                     count = min(2 * count, _LONGEST) if best < _SAME * step else CHUNK
                 if best > _SAME * step or best < step:
                     step = min(best, _LARGEST * size)
+                reached.time, reached.step, reached.count, taken = time, step, count, taken + steps
     return None
 
 
@@ -106,10 +124,10 @@ def _difference(cutter: StepCutter, part: Stretch, state: np.ndarray, rotations:
     """Return the largest difference between two steps, to the last of rows, and one from a state (4, n), per scale."""
     begin, end = float(part.times[0]), float(part.times[-1])
     whole = replace(part, times=np.array([begin, end]), step=end - begin)
-    state, turned, counted = state.copy(), rotations.copy(), (cutter.cuts, cutter.further)
+    state, turned, counted = state.copy(), rotations.copy(), (cutter.cuts, cutter.further, cutter.memory)
     one, given = Rows.empty(1, state, turned), cutter.prescribed(whole, end - begin)
     done = cutter.take(whole, given, state, turned, one)
-    cutter.cuts, cutter.further = counted
+    cutter.cuts, cutter.further, cutter.memory = counted
     if done == 0:
         return float(np.inf)
     error = (one.states[1, 0] - rows.states[-1, 0]) / cutter.system.scale

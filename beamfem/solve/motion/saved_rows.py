@@ -6,6 +6,7 @@ import numpy as np
 
 from beamfem.assembly.system import System
 from beamfem.kernels.motion_steps import count_rotations
+from beamfem.results.motion_state import Occurrence
 from beamfem.solve.motion.cut_steps import Rows
 from beamfem.solve.motion.dense_output import between
 from beamfem.solve.motion.events import Watch
@@ -51,12 +52,31 @@ class SavedRows:
         else:
             self._keep_at(times, rows, self.at[(self.at > times[0]) & (self.at <= times[-1])])
 
+    def take_out(self, before: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[Occurrence, ...]]:
+        """Return and forget times (k,), states (k, 3, n), rotations (k, m) and events.
+
+        before: number of rows that were taken out.
+        """
+        times, found = np.array(self.times), self.watch.found
+        rows = before + np.searchsorted(times, [time for _, time in found])
+        events = tuple(Occurrence(*each, row) for each, row in zip(found, rows.tolist(), strict=True))
+        states = np.array(self.states).reshape(len(times), 3, self.system.model.size)
+        rotations = np.array(self.rotations).reshape(len(times), len(self.pairs))
+        self.times, self.states, self.rotations, self.watch.found = [], [], [], []
+        return times, states, rotations, events
+
     def _wanted(self, times: np.ndarray, end: float) -> np.ndarray:
         own = times[1:] if self.at is None else self.at
         return np.append(own[(own > times[0]) & (own < end)], end)
 
     def _keep_at(self, times: np.ndarray, rows: Rows, at: np.ndarray, end: float | None = None) -> None:
         if not len(at):
+            return
+        ends = np.searchsorted(times, at)
+        if np.array_equal(times[ends], at):
+            self.times += at.tolist()
+            self.states += list(rows.states[ends])
+            self.rotations += list(rows.rotations[ends])
             return
         for time, state in zip(at.tolist(), between(self.system, times, rows.states, at, self.smooth), strict=True):
             before = max(int(np.searchsorted(times, time, side="left")) - 1, 0)

@@ -1,5 +1,8 @@
 """Marching with user-defined integrators, step by step."""
 
+from collections.abc import Mapping
+from typing import NamedTuple
+
 import numpy as np
 from scipy.linalg import LinAlgError
 
@@ -11,6 +14,13 @@ from beamfem.solve.motion.stored_states import Saving
 from beamfem.validation import shown
 
 _SAME = 1e-6  # of a step: accuracy of the time of the state that it returns
+
+
+class Memory(NamedTuple):
+    """What an integrator keeps besides the coordinates p (n,) at the end of a step: arrays by name."""
+
+    p: np.ndarray
+    kept: Mapping[str, np.ndarray]
 
 
 class OwnSteps:
@@ -46,6 +56,16 @@ class OwnSteps:
             saving.keep(number, before, state)
             self._time = time
         return len(times)
+
+    def memory(self, state: np.ndarray) -> Memory | None:
+        """Return what the integrator keeps in a state (4, n), None if it keeps nothing."""
+        kept = getattr(self._integrator, "memory", None)
+        return Memory(state[0].copy(), kept()) if callable(kept) else None
+
+    def recall(self, memory: Memory | None, state: np.ndarray) -> None:
+        """Let the integrator recall what it kept in a state (4, n), if it was in this one."""
+        if memory is not None and np.array_equal(memory.p, state[0]):
+            self._integrator.recall(memory.kept)  # type: ignore[union-attr]
 
     def raise_error(self) -> None:
         """Raise nothing: an error of an integrator is raised where it occurs."""

@@ -1,0 +1,247 @@
+"""Motions that are written into an HDF5 file while they run, with what a run needs to go on from there."""
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beamfem.assembly.callbacks import uninterrupted
+from beamfem.atomic_write import path_of, readable
+from beamfem.errors import FileError, InputError
+from beamfem.io.description import describe, rebuild
+from beamfem.io.hdf5 import (
+    begin_checked,
+    checksum,
+    extend_checked,
+    read_checked,
+    required_h5py,
+    shorten_checked,
+    write_checked,
+    write_hdf5,
+)
+from beamfem.io.paged_file import Journal, Pages
+from beamfem.io.results_hdf5 import (
+    CHECKSUMS,
+    EVENTS,
+    STATES,
+    about,
+    append_events,
+    as_text,
+    begin_events,
+    begin_file,
+    read_text,
+)
+from beamfem.model.model import Model
+from beamfem.results.motion_state import Occurrence
+from beamfem.results.status import Statistics
+
+_BLOCK_BYTES = 2**17  # of rows with a checksum, which are written anew while they are not complete
+_TEXT = 2048  # characters of the statistics, so that their place can be used again
+_SETTINGS, _CHECKPOINT = "settings", "checkpoint"
+
+Rows = tuple[np.ndarray, np.ndarray, np.ndarray, tuple[Occurrence, ...]]
+
+
+class MotionFile:
+    """An open file of a motion; what it holds is what the last `commit` left, whenever the process ends."""
+
+    def __init__(self, path: str | PathLike[str], create: Callable[[Path], None] | None = None) -> None:
+        """create: writes the file, once nobody else does. Raises InputError, FileError and MissingPackageError."""
+        self.h5py = required_h5py("writing")
+        self.path = Path(os.path.realpath(path_of(path) if create else readable(path)))
+        self._journal = Journal(self.path)
+        try:
+            self._journal.replay()
+            if create is not None:
+                create(self.path)
+            self._pages = Pages(self.path, self._journal)
+            try:
+                self._file = self.h5py.File(self._pages, "r+", libver=("v108", "v110"))
+            except OSError as error:
+                raise InputError(f"{path} cannot be resumed: it is no HDF5 file, or damaged ({error})") from error
+            if _CHECKPOINT not in self._file:
+                self._file.close()
+                raise InputError(f"{path} cannot be resumed: it holds no motion that simulate wrote with file=")
+        except BaseException:
+            self._journal.close()
+            raise
+        self._tail = [np.empty(0)] * len(STATES)
+
+    def close(self) -> None:
+        """Close the file; what was not committed is dropped."""
+        self._file.close()
+        self._pages.close()
+        self._journal.close()
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return len(self._file["at"])
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return int(self._file["p"].shape[1])
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """What the motion was begun with."""
+        return dict(read_text(self._file, _SETTINGS))
+
+    @property
+    def checkpoint(self) -> dict[str, np.ndarray]:
+        """What the run needs to go on."""
+        group = self._file[_CHECKPOINT]
+        return {name: read_checked(group, name) for name in group}
+
+    def model(self, given: Model | None) -> Model:
+        """Return the model given, or that of the file. Raises InputError for another one, or if it has functions."""
+        described = read_text(self._file, "model")
+        if given is None:
+            if described["functions"]:
+                raise InputError(
+                    f"{self.path} has functions of time, of which it holds values only; give resume the model itself"
+                )
+            return rebuild(described)
+        if as_text(describe(given, np.array(described["at"])))[0] != read_checked(self._file, "model")[0]:
+            raise InputError(f"{self.path} holds a motion of another model than the one given")
+        return given
+
+    @uninterrupted
+    def shorten(self, rows: int, events: int) -> None:
+        """Keep some rows and events."""
+        for name in STATES:
+            self._file[name].resize(rows, axis=0)
+        block = self._block
+        first = rows - rows % block
+        self._tail = [np.asarray(self._file[name][first:]) for name in STATES]
+        self._file[CHECKSUMS].resize(first // block, axis=0)
+        self._sum(first, self._tail)
+        if "turned" in self._file:
+            shorten_checked(self._file, "turned", rows)
+        if EVENTS in self._file:
+            for name in self._file[EVENTS]:
+                shorten_checked(self._file[EVENTS], name, events)
+
+    @uninterrupted
+    def commit(
+        self,
+        rows: Rows,
+        statistics: Statistics,
+        checkpoint: Mapping[str, np.ndarray],
+        begun: dict[str, Any] | None = None,
+    ) -> None:
+        """Append rows, and replace what the run needs to go on; begun: new settings. Raises FileError."""
+        times, states, rotations, events = rows
+        before, added = len(self._file["at"]), (times, *states.swapaxes(0, 1))
+        if len(times):
+            for name, values in zip(STATES, added, strict=True):
+                self._file[name].resize(before + len(times), axis=0)
+                self._file[name][before:] = values
+            first = before - len(self._tail[0])
+            joined = [
+                np.concatenate([old, new]) if len(old) else new for old, new in zip(self._tail, added, strict=True)
+            ]
+            self._sum(first, joined)
+            whole = len(joined[0]) - len(joined[0]) % self._block
+            self._tail = [values[whole:].copy() for values in joined]
+            if "turned" in self._file:
+                extend_checked(self._file, "turned", rotations)
+        if events:
+            append_events(self._file, events)
+        _write_anew(self._file, "statistics", _padded(as_text(about(False, statistics))))
+        for name, values in checkpoint.items():
+            _write_anew(self._file[_CHECKPOINT], name, values)
+        if begun is not None:
+            _write_anew(self._file, _SETTINGS, as_text(begun))
+        for name in ("rows", "all_rows"):
+            self._file.attrs.modify(name, before + len(times))
+        self._file.flush()
+        try:
+            self._pages.commit()
+        except FileError as error:
+            raise FileError(f"{error}; the motion up to then is in it, and bf.resume goes on from there") from error
+
+    @uninterrupted
+    def describe(self, model: Model, at: np.ndarray | None = None) -> None:
+        """Write the functions of a model anew, with values at times [s], by default those of the rows."""
+        if read_text(self._file, "model")["functions"]:
+            _write_anew(self._file, "model", as_text(describe(model, self._file["at"][:] if at is None else at)))
+
+    @property
+    def _block(self) -> int:
+        return int(self._file["at"].chunks[0])
+
+    def _sum(self, first: int, states: Sequence[np.ndarray]) -> None:
+        """Write the checksums of blocks of rows from one on that begins a block."""
+        block, count = self._block, len(states[0])
+        sums = [checksum(*(values[at : at + block] for values in states)) for at in range(0, count, block)]
+        self._file[CHECKSUMS].resize(first // block + len(sums), axis=0)
+        self._file[CHECKSUMS][first // block :] = sums
+
+
+def created(
+    model: Model,
+    at: np.ndarray,
+    settings: dict[str, Any],
+    checkpoint: Mapping[str, np.ndarray],
+    statistics: Statistics,
+    event_names: Sequence[str],
+) -> Callable[[Path], None]:
+    """Return what writes the file of a motion that has no rows yet; at [s]: where its functions are evaluated.
+
+    Raises InputError for a model that cannot be saved. An unfinished motion is not replaced: InputError.
+    """
+    once = describe(model, at[:1])
+    description = as_text(describe(model, at) if once["functions"] else once)
+    size, turned = model.size, len(model.numbered.rotation_pairs)
+    block = max(_BLOCK_BYTES // (8 * size), 1)
+
+    def fill(file: Any, require_written: Callable[[], None]) -> None:
+        begin_file(file, 0, description, size, block)
+        write_checked(file, "statistics", _padded(as_text(about(False, statistics))))
+        if turned:
+            begin_checked(file, "turned", (turned,), np.float64, block)
+        if event_names:
+            begin_events(file, max(len(name.encode()) for name in event_names))
+        write_checked(file, _SETTINGS, as_text(settings))
+        group = file.create_group(_CHECKPOINT)
+        for name, values in checkpoint.items():
+            write_checked(group, name, values)
+
+    def create(path: Path) -> None:
+        _refuse_unfinished(path)
+        write_hdf5(path, fill)
+
+    return create
+
+
+def _refuse_unfinished(path: Path) -> None:
+    """Raise InputError if a file holds a motion that has not ended."""
+    h5py = required_h5py("writing")
+    try:
+        with h5py.File(path, "r") as file:
+            unfinished = _CHECKPOINT in file and bool(read_text(file, _SETTINGS)["unfinished"])
+    except (OSError, FileError, InputError, KeyError, ValueError):
+        return
+    if unfinished:
+        raise InputError(f"{path} holds a motion that has not ended; resume it, or delete the file")
+
+
+def _padded(text: np.ndarray) -> np.ndarray:
+    return text.astype(f"S{max(_TEXT, text.dtype.itemsize)}")
+
+
+def _write_anew(group: Any, name: str, values: np.ndarray) -> None:
+    """Replace an array, in its place if it has the same size."""
+    old = group.get(name)
+    if old is not None and (old.shape, old.dtype) == (values.shape, values.dtype):
+        old[...] = values
+        old.attrs.modify("crc32", checksum(np.asarray(old)))
+        return
+    if old is not None:
+        del group[name]
+    write_checked(group, name, values)

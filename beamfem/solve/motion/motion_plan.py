@@ -1,0 +1,137 @@
+"""What a motion is to do: its steps, its rows, and its loads over time."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.assembly.compilation_notice import announce_compilation
+from beamfem.assembly.system import System, system_of
+from beamfem.errors import InputError
+from beamfem.model.model import Model
+from beamfem.solve.motion.equations_of_motion import Integrator
+from beamfem.solve.motion.events import Event, Watch
+from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, is_scheme, require_rule
+from beamfem.solve.motion.saved_rows import SavedRows
+from beamfem.solve.motion.time_steps import Stretch, stretches
+from beamfem.solve.start.functions_of_time import FunctionOfTime, functions_of_time
+from beamfem.solve.start.start_checks import refuse_frame, require_memory
+from beamfem.validation import count, positive, shown
+
+_PARTS = 1000  # of a motion whose steps follow a tolerance, within which kinks of loads are found
+
+
+@dataclass(frozen=True)
+class MotionSettings:
+    """What `simulate` is asked for, see there."""
+
+    duration: float
+    step: float | None
+    integrator: Scheme | Integrator
+    save_every: int
+    tolerance: float | None
+    save_at: tuple[float, ...] | None
+    events: tuple[Event, ...]
+
+
+@dataclass(frozen=True)
+class MotionPlan:
+    """Steps and rows of a motion.
+
+    rule (5,): of a scheme, else empty; rows_at [s]: time between the multiples of the step, `times` (steps + 1,); ends
+    (m + 1,) [s]: of all steps, those at kinks of loads included, in stretches `parts`; wanted (rows,) [s]: times of the
+    rows, None for all steps; acting: functions of time.
+    """
+
+    system: System
+    settings: MotionSettings
+    rule: tuple[float, ...]
+    rows_at: float
+    times: np.ndarray
+    ends: np.ndarray
+    parts: tuple[Stretch, ...]
+    wanted: np.ndarray | None
+    acting: list[FunctionOfTime]
+
+    def saved_rows(self) -> SavedRows:
+        """Return what collects the rows."""
+        settings, pairs = self.settings, self.system.model.numbered.rotation_pairs
+        smooth = not is_scheme(settings.integrator)
+        return SavedRows(self.system, pairs, self.wanted, Watch(self.system, settings.events), smooth)
+
+
+def settings_of(
+    duration: float,
+    step: float | None,
+    integrator: Scheme | Integrator | None,
+    save_every: int,
+    tolerance: float | None,
+    save_at: Sequence[float] | np.ndarray | None,
+    events: Sequence[Event],
+) -> MotionSettings:
+    """Return the settings of a motion. Raises InputError for invalid ones."""
+    duration, save_every = positive("duration", duration), count("save_every", save_every)
+    if step is None and tolerance is None:
+        raise InputError("simulate needs a step [s], or a tolerance that steps follow")
+    step, tolerance = (None if x is None else positive(n, x) for n, x in (("step", step), ("tolerance", tolerance)))
+    if step is not None and step > duration:
+        raise InputError(f"step ({step:g}) must not exceed duration ({duration:g})")
+    integrator = GeneralizedAlpha() if integrator is None else integrator
+    user_defined = not is_scheme(integrator)
+    steps = any(callable(getattr(integrator, name, None)) for name in ("step", "run"))
+    if isinstance(integrator, type) or (user_defined and not steps):
+        raise InputError(
+            "integrator must be a GeneralizedAlpha(rho_inf=...), an object with rule(step) as it has, or one with "
+            f"step(motion, begin, end) as bf.Integrator describes it, got {shown(integrator)}"
+        )
+    events = tuple(events)
+    if not all(isinstance(event, Event) for event in events):
+        raise InputError(f"events must be Events, got {shown(events)}")
+    if user_defined and tolerance is not None and not isinstance(getattr(integrator, "order", None), int):
+        raise InputError(
+            f"{type(integrator).__name__} needs an attribute order, of its error, to follow a tolerance; give a step"
+        )
+    at = None if save_at is None else _rows_at(save_at)
+    return MotionSettings(duration, step, integrator, save_every, tolerance, at, events)
+
+
+def planned(model: Model, settings: MotionSettings, in_memory: bool) -> MotionPlan:
+    """Return the plan of a motion; in_memory: whether all rows are kept there.
+
+    Raises InputError for what the model, or the memory, does not allow.
+    """
+    system, step = system_of(model, static=False), settings.step
+    refuse_frame(system, "simulate")
+    rows_at = settings.duration / _PARTS if step is None else step
+    rule = require_rule(settings.integrator, rows_at) if is_scheme(settings.integrator) else ()
+    require_memory(model.size if in_memory else 0, settings.duration, rows_at, settings.save_every)
+    announce_compilation()
+    times = rows_at * np.arange(int(np.ceil(settings.duration / rows_at - 1e-9)) + 1)
+    acting = functions_of_time(system)
+    parts = stretches(times, [function for function in acting if function.amplitude])
+    ends = np.concatenate([times[:1], *(part.times[1:] for part in parts)])
+    return MotionPlan(system, settings, rule, rows_at, times, ends, parts, _wanted(settings, times), acting)
+
+
+def _rows_at(save_at: Sequence[float] | np.ndarray) -> tuple[float, ...]:
+    """Return the times of rows. Raises InputError unless they ascend."""
+    at = np.array(save_at, dtype=float)
+    if at.ndim != 1 or not len(at) or not np.isfinite(at).all() or np.any(np.diff(at) <= 0.0):
+        raise InputError(f"save_at must be times in ascending order, got {shown(save_at)}")
+    return tuple(at.tolist())
+
+
+def _wanted(settings: MotionSettings, times: np.ndarray) -> np.ndarray | None:
+    """Return the times (rows,) [s] at which states are wanted, None for all steps. Raises InputError."""
+    if settings.save_at is None:
+        if settings.tolerance is not None and settings.step is None:
+            if settings.save_every != 1:
+                raise InputError("save_every counts fixed steps; give a step or save_at for rows at given times")
+            return None
+        return np.unique(np.append(times[:: settings.save_every], times[-1]))
+    at, near = np.array(settings.save_at), 1e-9 * times[-1]
+    if at[0] < -near or at[-1] > times[-1] + near:
+        raise InputError(f"save_at must lie within the motion, from 0 to {times[-1]:g}, got {at[0]:g} to {at[-1]:g}")
+    if settings.save_every != 1:
+        raise InputError("save_every and save_at exclude each other")
+    return np.clip(at, 0.0, times[-1])

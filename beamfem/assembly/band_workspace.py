@@ -9,6 +9,7 @@ from beamfem.assembly.connector_equilibrium import ConnectedBalance
 from beamfem.assembly.equations import STATICS
 from beamfem.assembly.system import System
 from beamfem.kernels.records import aligned
+from beamfem.linalg.bordered import condensed_record
 
 _KEPT = 100_000  # entries of the largest tangent for which allocation is a noticeable part of a solve
 
@@ -20,12 +21,21 @@ class BandWorkspace:
         self.assembler = system.assembler(shared=True)
         self.assembler.weigh(STATICS)
         self.assembler.require("tangent", "prediction")
-        self.solver = own = system.newton_solver.copy()
+        self.solver, unknowns = system.newton_solver.copy(), system.unknowns
+        own = self.solver
         n, declared = (own.size,), own.shapes("right", "prescribed_step", "prescribed_force", "linear")
-        room = aligned({"p": n, "residual": n, "step": n, "rows": (own.unknown, own.width), **declared})
+        room = aligned({"p": n, "residual": n, "step": n, "rows": (unknowns.entries,), **declared})
         self.p, self.residual = room.pop("p"), room.pop("residual")
         own.fill(**room)
         self.assembler.place(self.p, own.step, own.step, self.residual, own.rows)
+        if unknowns.border_size:
+            own.bordered, own.border = (
+                1,
+                condensed_record(
+                    unknowns.banded, own.half, unknowns.reach, unknowns.border, len(system.connectors.multipliers)
+                ),
+            )
+            own.border.rows, own.border.entries = own.rows, own.rows[unknowns.entries - unknowns.border_size**2 :]
         self._connected = None
         if system.called.items:
             self._connected = ConnectedBalance(system, self.assembler, self.p, self.residual, own.rows)

@@ -31,12 +31,18 @@ def _fields(unknowns: Unknowns, rotated: tuple[np.ndarray, np.ndarray], scale: n
     }
 
 
-def newton_solver(unknowns: Unknowns, rotated: tuple[np.ndarray, np.ndarray], scale: np.ndarray) -> NewtonSolver:
+def newton_solver(
+    unknowns: Unknowns, rotated: tuple[np.ndarray, np.ndarray], scale: np.ndarray, multipliers: np.ndarray
+) -> NewtonSolver:
     """Return the solver of Newton's iteration without workspace.
 
-    rotated: equation numbers (nt,) and normals (nt, 2) of inclined rollers; scale (n,): scale of the coordinates.
+    rotated: equation numbers (nt,) and normals (nt, 2) of inclined rollers; scale (n,): scale of the coordinates;
+    multipliers: numbers (k,) of those whose rows are no forces.
     """
     fields = _fields(unknowns, rotated, scale)
+    if len(multipliers):
+        fields["scale"] = scale.copy()
+        fields["scale"][multipliers] = 0.0
     return NewtonSolver(routines=_newton_routines(fields["half"]), **fields)
 
 

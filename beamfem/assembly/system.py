@@ -193,7 +193,7 @@ class System:
     @shared_table
     def newton_solver(self) -> NewtonSolver:
         """The solver of Newton's iteration without workspace."""
-        return newton_solver(self.unknowns, self.rotated, self.scale)
+        return newton_solver(self.unknowns, self.rotated, self.scale, self.connectors.multipliers)
 
     @shared_table
     def motion_solver(self) -> MotionSolver:
@@ -345,8 +345,10 @@ class System:
     def unknowns(self) -> Unknowns:
         """The order of the coordinates that are not prescribed."""
         connectors, joined = self.connectors, bool(self.model.shared_joints)
-        border = 0 if self.static else None if self.inclined else layout.WIDEST_BORDER
         coupled, multipliers = [item.all for item in connectors.items], connectors.multipliers.tolist()
+        border: int | None = layout.WIDEST_BORDER if multipliers or not self.static else 0
+        if self.inclined:
+            border = 0 if self.static else None
         known = np.concatenate((self.prescribed_dofs, self.history.numbers))
         constrained = [*self.prescribed_dofs.tolist(), *(dof for dof, _ in self.inclined)] if self.static else []
         order = self.blocks, self.model.size, known, joined, layout.Couplings(coupled, multipliers, border)

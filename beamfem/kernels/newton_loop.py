@@ -51,6 +51,20 @@ def _negative(unknown, signs):
     return negative
 
 
+@inlined
+def _largest_gap(solver, residual):
+    """Return the largest movement that a condition is away from being met, with its gradients of the last tangent."""
+    border, free, scale = solver.border, solver.free_dofs, solver.scale
+    edge, m, gap = border.edge, border.edge + border.conditions, 0.0
+    for i in range(border.conditions):
+        gradients = at(border.entries, (edge + i) * m)
+        moved = 0.0
+        for j in range(edge):
+            moved += abs(gradients[j]) * scale[free[border.numbers[j]]]
+        gap = _larger_of(gap, residual[free[border.unknown + i]] / moved)
+    return gap
+
+
 @routine()
 def iterate(system: System, solver: NewtonSolver) -> int:
     """Iterate from p (n,), changed in place; return 1 if every tangent could be factorised without pivots, else 0.
@@ -71,7 +85,7 @@ def iterate(system: System, solver: NewtonSolver) -> int:
         solver.inverse_scale,
     )
     prescribed_step, prescribed_force = solver.prescribed_step, solver.prescribed_force
-    linear, in_a_row, reach = solver.linear, solver.first_free, solver.reach
+    linear, in_a_row, reach, border = solver.linear, solver.first_free, solver.reach, solver.border
     residual, p, groups = system.residual, system.p, system.groups
     first, done = True, False
     while True:
@@ -92,9 +106,14 @@ def iterate(system: System, solver: NewtonSolver) -> int:
         if rollers > 0:
             call.constrain_normals(unknown, half, rollers, rows, first_of, normal)
             call.rotate_in(rollers, first_of, normal, right)
-        if not call.factor(unknown, unknown, half, 1, reach, rows, right, step) > solver.pivot_ratio:
-            return 0
-        solver.negative_pivots = _negative(unknown, step)
+        if solver.bordered != 0:
+            if not call.factor_condensed(border) > solver.pivot_ratio:
+                return 0
+            solver.negative_pivots = border.negative
+        else:
+            if not call.factor(unknown, unknown, half, 1, reach, rows, right, step) > solver.pivot_ratio:
+                return 0
+            solver.negative_pivots = _negative(unknown, step)
         if solver.iterations == 1:
             solver.negative_pivots_after_first = solver.negative_pivots
         if solver.required_negative_pivots >= 0 and solver.negative_pivots != solver.required_negative_pivots:
@@ -104,7 +123,10 @@ def iterate(system: System, solver: NewtonSolver) -> int:
             if solver.iterations == 1:
                 for i in range(n):
                     linear[i] = p[i]
-        call.solve_upper(unknown, unknown, half, rows, right)
+        if solver.bordered != 0:
+            call.solve_condensed(border, right)
+        else:
+            call.solve_upper(unknown, unknown, half, rows, right)
         if rollers > 0:
             call.rotate_back(rollers, first_of, normal, right)
         for i in range(n):
@@ -141,6 +163,7 @@ def iterate(system: System, solver: NewtonSolver) -> int:
     if rollers > 0:
         call.rotate_in(rollers, first_of, normal, right)
     solver.unbalanced = _largest_product(unknown, right, step)
+    solver.gap = _largest_gap(solver, residual) if solver.bordered != 0 else 0.0
     solver.jacobian = 1.0
     for group in range(system.group_count):
         solver.jacobian = min(solver.jacobian, call.smallest_jacobian(groups[group]))
@@ -163,6 +186,9 @@ def count_after_step(system: System, solver: NewtonSolver) -> int:
     call.balance(system)
     if rollers > 0:
         call.constrain_normals(unknown, half, rollers, rows, solver.roller_first, solver.roller_normal)
+    if solver.bordered != 0:
+        border = solver.border
+        return border.negative if call.factor_condensed(border) > solver.pivot_ratio else -1
     signs = solver.step
     if not call.factor(unknown, unknown, half, 0, reach, rows, right, signs) > solver.pivot_ratio:
         return -1

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from beamfem.kernels.record import Solver
+from beamfem.kernels.record import Border, Solver
 from beamfem.kernels.records import Reals, Record, calls
 
 STALLED = 0.25  # of the correction before: a larger one no longer decreases, and if it is small it is round-off
@@ -20,6 +20,8 @@ class NewtonRoutines(Record):
     factor = calls("band:ANY.factor")
     solve_upper = calls("band:ANY.solve_upper")
     take_step = calls("newton_loop:take_step")
+    factor_condensed = calls("condensation:factor_condensed")
+    solve_condensed = calls("condensation:solve_condensed")
 
 
 class NewtonSolver(Solver):
@@ -29,6 +31,8 @@ class NewtonSolver(Solver):
     prescribed_step: Annotated[Reals, "size"]
     prescribed_force: Annotated[Reals, "size"]
     linear: Annotated[Reals, "size"]
+    bordered: int  # whether the band has a border
+    border: Border
 
     # limits
     tolerance: float  # of a correction
@@ -48,6 +52,7 @@ class NewtonSolver(Solver):
     unbalanced: float
     force: float
     jacobian: float
+    gap: float  # largest movement that a condition is away from being met
     negative_pivots: int  # of the last tangent
     first_correction: float  # its size
     negative_pivots_after_first: int  # those of the second tangent, which has the resultants of a linear step

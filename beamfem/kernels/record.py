@@ -217,6 +217,27 @@ class System(Record):
     add_parts = calls("connection_passes:add_parts")
 
 
+class Border(Record):
+    """A band (n, n) and the entries beside it, see `condensation`: of t unknowns, and of k multipliers behind it."""
+
+    unknown: int  # n
+    half: int
+    rows: Reals  # (n, 2 half + 1)
+    reach: Slots
+    edge: int  # t
+    numbers: Annotated[Wholes, "edge"]
+    conditions: int  # k
+    entries: Reals  # (t + k, t + k)
+    negative: int  # eigenvalues for motions that satisfy the conditions
+    signs: Annotated[Reals, "unknown"]
+    columns: Annotated[Reals, "edge", "unknown"]
+    beside: Reals  # (t, 2 half + 1)
+    condensed: Reals  # (t + k, t + k)
+    sizes: Reals  # (3, t + k)
+    factor = calls("bidirectional_lu:ANY.factor")
+    solve = calls("bidirectional_lu:ANY.solve")
+
+
 class Solver(Record):
     """The unknown coordinates and the linear equations for them, which are a band."""
 

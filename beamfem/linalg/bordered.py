@@ -8,8 +8,20 @@ import numpy as np
 from scipy.linalg.lapack import dgetrf, dgetrs
 from scipy.sparse import coo_array, csc_array, csr_array
 
+from beamfem.kernels import record
+from beamfem.kernels.bidirectional_lu import bidirectional_lu
+from beamfem.kernels.condensation import factor_condensed, solve_condensed
+from beamfem.kernels.records import aligned
 from beamfem.linalg.lapack import LinAlgError
-from beamfem.linalg.tangent import UNROTATED, BandTangent, Factorised, Rotated, SparseTangent, Tangent
+from beamfem.linalg.tangent import (
+    SMALLEST_PIVOT,
+    UNROTATED,
+    BandTangent,
+    Factorised,
+    Rotated,
+    SparseTangent,
+    Tangent,
+)
 from beamfem.precision.saddle import SaddleTangent
 
 
@@ -66,15 +78,53 @@ class BorderedFactors:
         rest[:] = coupled[len(numbers) :]
 
 
+def condensed_record(size: int, half: int, reach: np.ndarray, numbers: np.ndarray, multipliers: int) -> record.Border:
+    """Return the workspace to factor a band (n, n) with a border; `rows` and `entries` are to be set.
+
+    numbers (t,), multipliers: see `Border`.
+    """
+    routines, t, m = bidirectional_lu(half, True), len(numbers), len(numbers) + multipliers
+    own = record.Border(unknown=size, half=half, reach=reach, edge=t, conditions=multipliers)
+    own.fill(numbers=np.ascontiguousarray(numbers), factor=routines.factor, solve=routines.solve)
+    room = {"signs": (size,), "columns": (t, size), "beside": (t, 2 * half + 1), "condensed": (m, m), "sizes": (3, m)}
+    own.fill(**aligned(room))
+    return own
+
+
+@dataclass(frozen=True)
+class CondensedFactors(Factorised):
+    """Factors of a band with a border, see `kernels.condensation`."""
+
+    border: record.Border
+
+    @property
+    def negative_pivots(self) -> int:
+        """Number of negative eigenvalues for motions that satisfy the conditions."""
+        return self.border.negative
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """Return x (n + k,) with A x = right. Raises LinAlgError."""
+        x = right.copy()
+        solve_condensed(self.border, x)
+        if not np.isfinite(x).all():
+            raise LinAlgError("the tangent is singular")
+        return x
+
+
 @dataclass(frozen=True)
 class BorderedTangent(Tangent):
-    """A band matrix with a border, which other solvers than that of time steps take as a sparse matrix."""
+    """A band matrix with a border; where pivots are tiny, it is taken as a sparse matrix."""
 
     band: BandTangent
     border: Border
 
     def factorised(self, rotated: Rotated) -> Factorised:
         """Return the factors. Raises LinAlgError."""
+        rows, reach = self.band.rows.copy(), np.ascontiguousarray(self.band.reach)
+        own = condensed_record(len(rows), rows.shape[1] // 2, reach, self.border.numbers, self.border.multipliers)
+        own.rows, own.entries = rows, np.ascontiguousarray(self.border.entries)
+        if not len(rotated[0]) and factor_condensed(own) > SMALLEST_PIVOT:
+            return CondensedFactors(own)
         whole, multipliers = SparseTangent(self._whole()), self.border.multipliers
         return (SaddleTangent(whole, multipliers) if multipliers else whole).factorised(rotated)
 

@@ -184,10 +184,10 @@ def test_conditions_of_motions_are_independent_of_time_and_each_other():
     with pytest.raises(bf.InputError, match="conditions of Growing depend on time"):
         bf.simulate(growing, 0.1, 1e-3)
     twice = bf.Model(model.beams, model.supports, connectors=2 * [*model.connectors[:1]])
-    with pytest.raises(bf.BeamfemError):
+    with pytest.raises(bf.InputError, match=r"conditions of connectors \(RigidLink at .* are redundant"):
         bf.simulate(twice, 0.1, 1e-3)
     held = [bf.Clamp(end) for own in model.beams for end in (own.start, own.end)]
-    with pytest.raises(bf.InputError, match=r"conditions of connectors \(RigidLink\) are redundant"):
+    with pytest.raises(bf.InputError, match=r"conditions of connectors \(RigidLink at .* are redundant"):
         bf.simulate(bf.Model(model.beams, held, connectors=model.connectors[:1]), 0.1, 1e-3)
 
 
@@ -196,7 +196,7 @@ def test_conditions_that_say_the_same_twice_are_refused_in_statics():
     slack = bf.Model([left, right], model.supports, model.loads, connectors=[*model.connectors, *model.connectors])
     held = bf.Model([left, right], [*model.supports, bf.Pin(left.end), bf.Pin(right.end)], connectors=model.connectors)
     for wrong in (slack, held):
-        with pytest.raises(bf.InputError, match=r"conditions of connectors \(RigidLink\) are redundant"):
+        with pytest.raises(bf.InputError, match=r"conditions of connectors \(RigidLink at .* are redundant"):
             bf.solve_static(wrong)
     normal = np.array([np.cos(0.4), np.sin(0.4)])
     roller = bf.Roller(left.end, tuple(normal))

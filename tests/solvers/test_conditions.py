@@ -154,3 +154,19 @@ def test_a_state_carried_to_another_model_keeps_its_tensions():
     copy = bf.Model(model.beams, model.supports, model.loads, connectors=[link])
     here, there = (bf.solve_modes(each, 2, about=rest[-1]).frequencies for each in (model, copy))
     np.testing.assert_allclose(there, here, rtol=1e-9)
+
+
+def test_redundant_conditions_are_named_with_the_parts_that_cause_them():
+    """Two hinges of conditions at one place and a link between clamps, beside a link that is needed."""
+    square = bf.Rectangle(0.01, 0.01)
+    one, two, three = (bf.Beam(bf.Line((x, 0), (x, 1)), 2, bf.CRBF(3), square, STEEL) for x in (0.0, 0.5, 0.5))
+    clamps = [bf.Clamp(one.start), bf.Clamp(two.start)]
+    needed, twice = bf.Link(one.end, two.end), [HingeOfConditions(two.at(0.5), three.at(0.5))] * 2
+    with pytest.raises(bf.InputError) as caught:
+        bf.solve_static(bf.Model([one, two, three], [*clamps, bf.Clamp(three.start)], connectors=[needed, *twice]))
+    assert "connectors (HingeOfConditions at (0.5, 0.5) and (0.5, 0.5)) are redundant" in str(caught.value)
+    held = bf.Link(one.start, two.start)
+    for solve in (bf.solve_static, lambda model: bf.simulate(model, 0.01, 1e-3), bf.linearise):
+        with pytest.raises(bf.InputError) as caught:
+            solve(bf.Model([one, two], clamps, connectors=[needed, held]))
+        assert "connectors (Link at (0, 0) and (0.5, 0)) are redundant" in str(caught.value)

@@ -12,8 +12,10 @@ _DEPENDENT = 1e-10  # of a condition of unit size: its part that is independent 
 _ROUND_OFF = 1e-14  # of the largest entry of a basis
 
 
-def independent_motions(system: System, tangent: csr_array) -> tuple[np.ndarray, csr_array]:
-    """Return the independent coordinates (m,) of the unknowns and a basis T (unknown, m), x = T x[independent].
+def independent_motions(system: System, p: np.ndarray, tangent: csr_array) -> tuple[np.ndarray, csr_array]:
+    """Return the independent coordinates (m,) of the unknowns in a state p (n,), and a basis T (unknown, m).
+
+    They are x = T x[independent].
 
     The conditions G x = 0 are those of multipliers, the last rows of the tangent [K, G^T; G, 0], and of inclined
     rollers. They are solved for as many coordinates, which pivoting selects. Multipliers have zero rows. Raises
@@ -30,7 +32,7 @@ def independent_motions(system: System, tangent: csr_array) -> tuple[np.ndarray,
     conditions = np.vstack([rows, rollers])
     constrained = np.flatnonzero(conditions.any(axis=0))
     scale = system.scale[system.free_dofs[constrained]]
-    solved, free, solution = _solved_for(conditions[:, constrained] * scale, system)
+    solved, free, solution = _solved_for(conditions[:, constrained] * scale, system, p)
     solution *= scale[solved][:, None] / scale[free]
     dependents, drivers = constrained[solved], constrained[free]
     independent = np.setdiff1d(np.arange(size), dependents)
@@ -42,7 +44,7 @@ def independent_motions(system: System, tangent: csr_array) -> tuple[np.ndarray,
     return independent, csr_array(coo_array((entries, places), shape=(unknown, len(independent))))
 
 
-def _solved_for(conditions: np.ndarray, system: System) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _solved_for(conditions: np.ndarray, system: System, p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the columns that conditions (k, n) are solved for, the others, and the solution (k, n - k) X with x = X y.
 
     Raises InputError if conditions are redundant.
@@ -52,7 +54,7 @@ def _solved_for(conditions: np.ndarray, system: System) -> tuple[np.ndarray, np.
     triangle, order = qr(conditions / np.where(sizes > 0.0, sizes, 1.0), mode="r", pivoting=True)
     diagonal = np.abs(np.diagonal(triangle))
     if len(diagonal) < count or np.any(diagonal <= _DEPENDENT):
-        raise InputError(dependent(system))
+        raise InputError(dependent(system, p))
     solution = -solve_triangular(triangle[:, :count], triangle[:, count:])
     solution[np.abs(solution) <= _ROUND_OFF * np.abs(solution).max(initial=0.0)] = 0.0
     return order[:count], order[count:], solution

@@ -10,7 +10,7 @@ from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.precision.saddle import SaddleTangent
-from beamfem.solve.start.mechanisms import dependent
+from beamfem.solve.start.mechanisms import dependent, require_independent
 
 _MET = 1e-8  # of the model, or of the largest velocity
 _SHORT = 1e-4  # of the model: step of a difference along the motion
@@ -18,6 +18,7 @@ _SHORT = 1e-4  # of the model: step of a difference along the motion
 
 def require_met(system: System, p: np.ndarray, v: np.ndarray, duration: float) -> None:
     """Raise InputError if the start p, p' (n,) of a motion does not satisfy the conditions of connectors."""
+    require_independent(system, p)
     gaps, rates = system.connectors.conditions(p, v)
     fastest = float(np.max(np.abs(v) * np.where(system.positions, 1.0, system.extent), initial=0.0))
     fastest += system.extent / duration
@@ -77,7 +78,7 @@ def _with_conditions(system: System, p: np.ndarray, mass: Tangent, right: np.nda
     try:
         return whole.solve(right, system.rotated)
     except LinAlgError as error:
-        raise InputError(dependent(system)) from error
+        raise InputError(dependent(system, p)) from error
 
 
 def _change_of_rates(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:

@@ -19,7 +19,7 @@ from beamfem.io.motion_file import MotionFile, created
 from beamfem.io.results_hdf5 import load
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.model.model import Model
-from beamfem.progress import progress
+from beamfem.progress import kept, progress
 from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import warned
 from beamfem.results.status import Statistics, Status
@@ -37,7 +37,6 @@ from beamfem.solve.motion.saved_rows import SavedRows
 from beamfem.solve.motion.start_acceleration import initial_acceleration
 from beamfem.solve.motion.time_marching import Failure, Record, cutter_of
 from beamfem.solve.motion.user_integrators import Memory
-from beamfem.solve.start.partial_results import kept
 from beamfem.validation import positive
 
 _OWN = (GeneralizedAlpha, Gauss, EnergyMomentum)  # whose modules have to be loaded to find an integrator by its name

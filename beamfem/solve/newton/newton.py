@@ -359,7 +359,7 @@ class BandProblem:
     def balance(self) -> Balance:
         space, found = self.space, self.space.solver
         force = max(found.force, self.load)
-        return Balance(space.p, space.residual, found.unbalanced, force, found.jacobian <= 0.0)
+        return Balance(space.p, space.residual, found.unbalanced, force, found.jacobian <= 0.0, found.gap)
 
     def after_first(self) -> tuple[float, int]:
         found = self.space.solver

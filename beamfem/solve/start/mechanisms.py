@@ -8,11 +8,12 @@ from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import ArpackError, eigsh
 
-from beamfem.assembly.equations import linearise_at_rest
+from beamfem.assembly.connectors import Connector
+from beamfem.assembly.equations import STATICS
 from beamfem.assembly.rigid_velocity import RigidVelocity, set_rigid_rates
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, FreeMotionError, InputError
-from beamfem.linalg.lapack import qr
+from beamfem.linalg.lapack import qr, solve_triangular
 from beamfem.model.beam import Point, beam_in_words
 from beamfem.model.missing_joints import Pair, in_words, unjoined_ends
 from beamfem.model.model import Model
@@ -229,25 +230,54 @@ def describe(translation: np.ndarray, turn: float, origin: np.ndarray, reach: fl
 
 
 _DEPENDENT = 1e-10  # of a condition of unit size: its part that is independent of all others
+_SHARE = 1e-6  # of another condition in one that depends on it
+_INDEPENDENT = "independent"
 
 
 def require_independent(system: System, p: np.ndarray) -> None:
     """Raise InputError if conditions of connectors, supports and joints are redundant in a state p (n,)."""
-    multipliers = len(system.connectors.multipliers)
-    if multipliers == 0:
+    reference = p is system.reference
+    if not len(system.connectors.multipliers) or (reference and _INDEPENDENT in system.tables):
         return
-    tangent = linearise_at_rest(system, p, 0.0)[1].sparse(system.rotated)
-    scale = system.scale[system.free_dofs][:-multipliers]
-    rows = (tangent[-multipliers:, :-multipliers].toarray() * scale).T
-    sizes = np.linalg.norm(rows, axis=0)
-    diagonal = np.abs(np.diagonal(qr(rows / np.where(sizes > 0.0, sizes, 1.0), mode="r", pivoting=True)[0]))
-    if len(diagonal) < multipliers or np.any(diagonal <= _DEPENDENT):
-        raise InputError(dependent(system))
+    if redundant(system, p):
+        raise InputError(dependent(system, p))
+    if reference:
+        system.tables[_INDEPENDENT] = True
 
 
-def dependent(system: System) -> str:
-    """Return the message that conditions of connectors are linearly dependent."""
-    names = ", ".join(sorted({item.name for item in system.connectors.items if len(item.own)}))
+def redundant(system: System, p: np.ndarray) -> list[Connector]:
+    """Return the connectors whose conditions depend on each other, or on supports and joints, in a state p (n,)."""
+    zeros, items = np.zeros(len(p)), [item for item in system.connectors.items if len(item.multipliers)]
+    rows, owners = [], []
+    for item in items:
+        first, count = len(item.dofs), len(item.multipliers)
+        tangent = item.tangent((p, zeros, zeros), 0.0, np.zeros(2), STATICS)[first : first + count, :first]
+        gradients = np.zeros((count, len(p)))
+        np.add.at(gradients.T, item.dofs, (tangent * system.scale[item.dofs]).T)
+        rows.append(gradients)
+        owners += [item] * count
+    free = np.vstack(rows)[:, system.free_dofs]
+    for first, normal in zip(*system.rotated, strict=True):
+        free[:, first : first + 2] -= np.outer(free[:, first : first + 2] @ normal, normal)
+    sizes = np.linalg.norm(free, axis=1)
+    held = sizes <= _DEPENDENT * np.linalg.norm(np.vstack(rows), axis=1)
+    conditions = np.where(held, 0.0, free.T) / np.where(held, 1.0, sizes)
+    triangle, order = qr(conditions, mode="r", pivoting=True)
+    rank = int(np.count_nonzero(np.abs(np.diagonal(triangle)) > _DEPENDENT))
+    if rank == len(owners):
+        return []
+    involved = order[rank:].tolist()
+    if rank > 0:  # LAPACK refuses empty matrices
+        shares = np.abs(solve_triangular(triangle[:rank, :rank], triangle[:rank, rank:])).max(axis=1)
+        involved += order[:rank][shares > _SHARE].tolist()
+    return [item for item in items if any(owners[number] is item for number in involved)]
+
+
+def dependent(system: System, p: np.ndarray) -> str:
+    """Return the message that conditions of connectors are linearly dependent in a state p (n,)."""
+    found = redundant(system, p) or [item for item in system.connectors.items if len(item.multipliers)]
+    places = (" and ".join("({:g}, {:g})".format(*point.reference) for point in item.given.points) for item in found)
+    names = ", ".join(dict.fromkeys(f"{item.name} at {place}" for item, place in zip(found, places, strict=True)))
     return (
         f"conditions of connectors ({names}) are redundant, among themselves or with supports and joints: their "
         "multipliers are not unique; leave out those that are not needed"

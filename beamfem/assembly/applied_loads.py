@@ -6,12 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.assembly.equation_numbering import Unknowns
-from beamfem.assembly.model_coordinates import COORDINATES
 from beamfem.cached_properties import cached_property
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, length_rule, r_slots
-from beamfem.kernels.block import PointLoads, Springs
+from beamfem.kernels.block import PointLoads
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import jacobians, length_points, reference_axis, scales
 from beamfem.model.beam import Beam
@@ -59,28 +57,6 @@ def body_loads(model: Model, time: float, static: bool) -> np.ndarray:
         if line.even:
             result[model.number_of(line.beam), 2:] += forces_of(line, np.zeros(1))[0] * factor(line, time, static)
     return result
-
-
-_NONE = Springs(np.empty(0, dtype=np.int64), np.empty(0), np.empty(0), np.empty(0, dtype=np.int64))
-
-
-def grounded_springs(model: Model, unknowns: Unknowns, reference: np.ndarray) -> Springs:
-    """Return the springs of a model, which are unstressed at the coordinates `reference` (n,)."""
-    dofs, stiffness = [], []
-    for support in model.point_supports:
-        if springs := support.springs():
-            mesh = model.mesh_of(support.point)
-            coordinates = mesh.coordinates_of(mesh.node_at(support.point.fraction))
-            for direction, value in springs.items():
-                dofs.append(coordinates[COORDINATES[direction]])
-                stiffness.append(value)
-    if not dofs:
-        return _NONE
-    where = np.array(dofs, dtype=np.int64)
-    free = unknowns.free[where]
-    positions = free.copy()
-    positions[free >= 0] = unknowns.diagonal(free[free >= 0])
-    return Springs(where, np.array(stiffness, dtype=float), reference[where], positions)
 
 
 def pressures_have_potential(model: Model, prescribed: set[int]) -> bool:

@@ -11,7 +11,6 @@ from beamfem.assembly.callbacks import Deferred
 from beamfem.assembly.element_group import ElementGroup
 from beamfem.assembly.scratch_memory import Scratch, new
 from beamfem.kernels import element_passes, model_passes, node_passes, record
-from beamfem.kernels.block import Springs
 from beamfem.kernels.connection_passes import add_parts
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.records import aligned
@@ -40,21 +39,11 @@ class Work:
 
 
 class Equations:
-    """Groups of elements, springs and parts at points in the form that compiled code expects, without workspace."""
+    """Groups of elements and parts at points in the form that compiled code expects, without workspace."""
 
-    def __init__(
-        self, groups: Sequence[ElementGroup], springs: Springs, size: int, parts: Sequence[record.Parts] = ()
-    ) -> None:
+    def __init__(self, groups: Sequence[ElementGroup], size: int, parts: Sequence[record.Parts] = ()) -> None:
         self.groups, self.size = tuple(groups), size
-        self.record = record.System(
-            size=size,
-            group_count=len(self.groups),
-            springs=len(springs.dof),
-            spring_dof=np.ascontiguousarray(springs.dof, dtype=np.int64),
-            spring_stiffness=np.ascontiguousarray(springs.stiffness, dtype=float),
-            spring_rest=np.ascontiguousarray(springs.rest, dtype=float),
-            spring_place=np.ascontiguousarray(springs.place, dtype=np.int64),
-        )
+        self.record = record.System(size=size, group_count=len(self.groups))
         if parts:
             self.record.fill(part_kinds=len(parts), parts=parts, add_parts=add_parts)
 

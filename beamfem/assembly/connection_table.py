@@ -2,38 +2,74 @@
 
 from collections import defaultdict
 from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 
 from beamfem.assembly.connectors import Connector
 from beamfem.kernels.record import Parts
-from beamfem.physics.compiled_connections import passes_of
+from beamfem.parts.at_points import ANALYTIC
+from beamfem.physics.compiled_connections import in_python, passes_of
 from beamfem.physics.connections import Connection
 
 
-def records_of(parts: Iterable[tuple[Connector, np.ndarray]]) -> list[Parts]:
-    """Return the records of compiled parts, each given with the positions (n, n) of its tangent's entries, or -1."""
+class Alike(NamedTuple):
+    """Parts of one kind: numbers (n, u) of coordinates and unknowns, history (n, h), and data (n, k).
+
+    places (n, u, u): positions of the entries of their tangents in the matrix, -1 for none.
+    """
+
+    connection: Connection
+    numbers: np.ndarray
+    data: np.ndarray
+    history: np.ndarray
+    places: np.ndarray
+
+    @property
+    def record(self) -> Parts:
+        """The record that compiled code takes."""
+        coordinates, (force, tangent) = self.connection.points * self.connection.coordinates, passes_of(self.connection)
+        return Parts(
+            count=len(self.numbers),
+            coordinates=coordinates,
+            per_point=self.connection.coordinates,
+            multipliers=self.numbers.shape[1] - coordinates,
+            unknowns=self.numbers.shape[1],
+            data_size=self.data.shape[1],
+            history_size=self.history.shape[1],
+            force=force,
+            tangent=tangent,
+            **{name: np.ascontiguousarray(getattr(self, name)) for name in ("numbers", "data", "history", "places")},
+        )
+
+    def forces(self, p: np.ndarray) -> np.ndarray:
+        """Return the resisting forces (..., n, u) at rest in states p (..., n); none may be of rotations."""
+        q = np.moveaxis(p[..., self.numbers], -1, 0)
+        out, still = np.empty_like(q), np.zeros_like(q)
+        in_python(self.connection)(q, still, still, (), (), self.data.T, (0.0, 0.0), out)
+        return np.moveaxis(out, 0, -1)
+
+    def potential(self, p: np.ndarray) -> np.ndarray:
+        """Return the potential (...) [J] in states p (..., n)."""
+        q = np.moveaxis(p[..., self.numbers], -1, 0)
+        points = list(q.reshape(self.connection.points, self.connection.coordinates, *q.shape[1:]))
+        assert self.connection.potential is not None
+        return np.asarray(self.connection.potential(points, self.data.T, (0.0, 0.0), ANALYTIC).sum(axis=-1))
+
+
+def alike(parts: Iterable[tuple[Connector, np.ndarray]]) -> list[Alike]:
+    """Return compiled parts by kind, each given with the positions (u, u) of its tangent's entries, or -1."""
     kinds: defaultdict[Connection, list[tuple[Connector, np.ndarray]]] = defaultdict(list)
     for item, places in parts:
         assert item.compiled is not None
         kinds[item.compiled].append((item, places))
-    records = []
-    for connection, alike in kinds.items():
-        first, (force, tangent) = alike[0][0], passes_of(connection)
-        record = Parts(
-            count=len(alike),
-            coordinates=len(first.dofs),
-            per_point=first.per_point,
-            multipliers=len(first.own),
-            unknowns=len(first.all),
-            numbers=np.array([item.all for item, _ in alike], dtype=np.int64),
-            data_size=len(first.data),
-            data=np.array([item.data for item, _ in alike], dtype=float),
-            history_size=len(first.memory),
-            history=np.array([item.memory for item, _ in alike], dtype=np.int64),
-            places=np.array([places for _, places in alike], dtype=np.int64),
-            force=force,
-            tangent=tangent,
+    return [
+        Alike(
+            connection,
+            np.array([item.all for item, _ in some], dtype=np.int64),
+            np.array([item.data for item, _ in some], dtype=float),
+            np.array([item.memory for item, _ in some], dtype=np.int64),
+            np.array([places for _, places in some], dtype=np.int64),
         )
-        records.append(record)
-    return records
+        for connection, some in kinds.items()
+    ]

@@ -6,9 +6,7 @@ import numpy as np
 
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.element_group import ElementGroup, make_group
-from beamfem.kernels.block import Block, Layout, PointLoads, Springs
-
-_NO_SPRINGS = Springs(np.empty(0, dtype=np.int64), np.empty(0), np.empty(0), np.empty(0, dtype=np.int64))
+from beamfem.kernels.block import Block, Layout, PointLoads
 
 
 def free_group(block: Block, size: int) -> ElementGroup:
@@ -30,7 +28,7 @@ def resultants(
 
     imposing (k,): factors of the loads that impose strains.
     """
-    assembler, result = Assembler(Equations((group,), _NO_SPRINGS, len(p))), []
+    assembler, result = Assembler(Equations((group,), len(p))), []
     assembler.impose(imposing)
     for step in steps:
         assembler.predict(p, np.ascontiguousarray(step))
@@ -45,7 +43,7 @@ def elastic_forces(
 
     imposing (steps, k): factors of the loads that impose strains.
     """
-    assembler = Assembler(Equations((free_group(block, p.shape[1]),), _NO_SPRINGS, p.shape[1]))
+    assembler = Assembler(Equations((free_group(block, p.shape[1]),), p.shape[1]))
     size = 2 * block.scale.shape[1] // block.node.shape[1]
     e, acceleration, force = np.empty((3, len(p), len(block.dof), size))
     for step in range(len(p)):

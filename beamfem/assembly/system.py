@@ -13,12 +13,11 @@ from beamfem.assembly.applied_loads import (
     LoadsAt,
     body_loads,
     build_actions,
-    grounded_springs,
     pressures_have_potential,
 )
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.blocks import build_block
-from beamfem.assembly.connection_table import records_of
+from beamfem.assembly.connection_table import Alike, alike
 from beamfem.assembly.connectors import Connectors, connectors_of
 from beamfem.assembly.element_group import make_group
 from beamfem.assembly.equation_numbering import Unknowns
@@ -27,6 +26,7 @@ from beamfem.assembly.model_coordinates import (
     PrescribedCoordinate,
     inclined_rollers,
     prescribed_coordinates,
+    springs_to_ground,
     stress_free,
 )
 from beamfem.assembly.rotating_vectors import rotating_vectors
@@ -34,12 +34,13 @@ from beamfem.assembly.solver_table import motion_solver, newton_solver
 from beamfem.assembly.strain_rates import StrainRates, strain_rates
 from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
-from beamfem.kernels.block import Block, Layout, PointLoads, Springs
+from beamfem.kernels.block import Block, Layout, PointLoads
 from beamfem.kernels.motion_record import MotionSolver
 from beamfem.kernels.newton_record import NewtonSolver
 from beamfem.kernels.record import Parts
 from beamfem.model.load_base import factor
 from beamfem.model.model import Model
+from beamfem.physics.connections import COORDINATE_SPRING
 from beamfem.precision.roundoff_bounds import residual_errors, stress_errors
 from beamfem.validation import shown
 
@@ -156,15 +157,16 @@ class System:
     def equations_of(self, blocks: Sequence[Block]) -> Equations:
         """Return the equations with other blocks in place of those of the system."""
         groups = [make_group(*parts) for parts in zip(blocks, self.layouts, self.point_loads, strict=True)]
-        return Equations(groups, self.springs, self.model.size, self._parts)
+        return Equations(groups, self.model.size, self._parts)
 
     @shared_table
     def _parts(self) -> list[Parts]:
         """The parts at points that compiled code evaluates."""
-        if not any(self._inside):
-            return []
-        places = zip(self.connectors.items, self.unknowns.coupled, self._inside, strict=True)
-        return records_of((item, own) for item, own, inside in places if inside)
+        found = [self.springs] if len(self.springs.numbers) else []
+        if any(self._inside):
+            places = zip(self.connectors.items, self.unknowns.coupled, self._inside, strict=True)
+            found += alike((item, own) for item, own, inside in places if inside)
+        return [each.record for each in found]
 
     @shared_table
     def _inside(self) -> tuple[bool, ...]:
@@ -204,7 +206,8 @@ class System:
     def residual_errors(self) -> np.ndarray:
         """Residual (2, n) per unit relative error: in positions of 1 m [1/m], and in directions."""
         vectors = [element.field.vectors for element in self.model.groups]
-        errors = residual_errors(self.blocks, vectors, self.springs, self.point_loads, self.model.size)
+        errors = residual_errors(self.blocks, vectors, self.point_loads, self.model.size)
+        np.add.at(errors[0], self.springs.numbers[:, 0], self.springs.data[:, 0])
         return errors + self.connectors.errors
 
     @shared_table
@@ -278,9 +281,14 @@ class System:
         return self.proportional and not self.moved
 
     @shared_table
-    def springs(self) -> Springs:
-        """Springs of single coordinates to the ground."""
-        return grounded_springs(self.model, self.unknowns, self.reference)
+    def springs(self) -> Alike:
+        """Springs of single coordinates to the ground, unstressed in the reference."""
+        dofs, stiffness = springs_to_ground(self.model)
+        free, data = self.unknowns.free[dofs], np.column_stack([stiffness, self.reference[dofs]])
+        places = free.copy()
+        places[free >= 0] = self.unknowns.diagonal(free[free >= 0])
+        none = np.empty((len(dofs), 0), dtype=np.int64)
+        return Alike(COORDINATE_SPRING, dofs[:, None], data, none, places[:, None, None])
 
     def body(self, time: float) -> np.ndarray:
         """Return acceleration [m/s^2] and load per length [N/m] of each beam (beams, 4) at a time."""

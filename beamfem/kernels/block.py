@@ -136,12 +136,3 @@ class Layout(NamedTuple):
     free: np.ndarray  # (n,) number of a coordinate among the unknowns, -1 if it is prescribed
     half_width: int  # half-bandwidth, -1 for a sparse matrix
     slot: np.ndarray  # (ne, npe, npe) position in the data of a CSC matrix, empty for a band
-
-
-class Springs(NamedTuple):
-    """Springs of single coordinates to the ground."""
-
-    dof: np.ndarray  # (ns,) coordinate
-    stiffness: np.ndarray  # (ns,) [N/m] or [N m/rad]
-    rest: np.ndarray  # (ns,) value of the coordinate at which the spring is at rest
-    place: np.ndarray  # (ns,) position of the diagonal entry in the matrix, -1 for a prescribed coordinate

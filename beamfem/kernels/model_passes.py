@@ -30,23 +30,6 @@ def add_group(group, system):
 
 
 @inlined
-def add_springs(system):
-    """Add the forces of springs to the ground to the residual and, if needed, their stiffness to the matrix."""
-    p, dof, factor = system.p, system.spring_dof, system.weight_p
-    residual, matrix, stiffness, rest, place = (
-        system.residual,
-        system.matrix,
-        system.spring_stiffness,
-        system.spring_rest,
-        system.spring_place,
-    )
-    for i in range(system.springs):
-        residual[dof[i]] += stiffness[i] * (p[dof[i]] - rest[i])
-        if system.tangent != 0 and place[i] >= 0:
-            matrix[place[i]] += factor * stiffness[i]
-
-
-@inlined
 def add_parts_at_points(system):
     """Add the forces of masses, springs and the like, see `connection_passes`, and their tangents."""
     if system.part_kinds > 0:
@@ -60,7 +43,6 @@ def balance(system: System) -> None:
     clear(system)
     for group in range(system.group_count):
         add_group(system.groups[group], system)
-    add_springs(system)
     add_parts_at_points(system)
 
 

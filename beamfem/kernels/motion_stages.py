@@ -27,7 +27,6 @@ def assemble(system: System, solver: MotionSolver) -> None:
                 call.keep_directions(group, node, solver.node_stride, kept)
             call.rotations_since(group, node, solver.node_stride, kept, rotations)
         node += group.nodes
-    model_passes.add_springs(system)
     model_passes.add_parts_at_points(system)
 
 

@@ -207,11 +207,6 @@ class System(Record):
     moving: int
     rated: int  # whether strain rates matter
     loaded: int
-    springs: int
-    spring_dof: Annotated[Wholes, "springs"]
-    spring_stiffness: Annotated[Reals, "springs"]
-    spring_rest: Annotated[Reals, "springs"]
-    spring_place: Annotated[Wholes, "springs"]
     part_kinds: int
     parts: Table[Parts]
     add_parts = calls("connection_passes:add_parts")

@@ -15,7 +15,7 @@ from beamfem.physics.compiled_connections import in_python
 from beamfem.physics.connections import Connection, Functions
 from beamfem.validation import convert, vector
 
-_ANALYTIC = Functions(np.sqrt, np.cos, np.sin, lambda x: x if np.real(x) > 0.0 else 0.0 * x)  # of complex numbers too
+ANALYTIC = Functions(np.sqrt, np.cos, np.sin, lambda x: x if np.real(x) > 0.0 else 0.0 * x)  # of complex numbers too
 
 
 class PartAtPoints:
@@ -77,7 +77,7 @@ class PartAtPoints:
         if connection.remember is None:
             return ()
         q, v = (list(map(tuple, x[:, : connection.coordinates])) for x in (at.q, at.v))
-        return connection.remember(q, v, self._data(at), _ANALYTIC)
+        return connection.remember(q, v, self._data(at), ANALYTIC)
 
     def shapes(self) -> tuple[ConnectorShape, ...]:
         """Return the shapes to draw; without any, a dashed line connects its points."""
@@ -101,8 +101,8 @@ class PartAtPoints:
         """Return the kinetic and the potential energy [J]."""
         connection, data = self.connection, self._data(at)
         q, v = (list(map(tuple, x[:, : connection.coordinates])) for x in (at.q, at.v))
-        kinetic = connection.kinetic(q, v, data, _ANALYTIC) if connection.kinetic else 0.0
-        potential = connection.potential(q, data, at.gravity, _ANALYTIC) if connection.potential else 0.0
+        kinetic = connection.kinetic(q, v, data, ANALYTIC) if connection.kinetic else 0.0
+        potential = connection.potential(q, data, at.gravity, ANALYTIC) if connection.potential else 0.0
         return kinetic, potential
 
 

@@ -34,7 +34,7 @@ class Connection(NamedTuple):
     points : int
         Number m of its points.
     coordinates : int
-        Number of coordinates of a point: 2, x and y [m], or 3, with the rotation [rad].
+        Number of coordinates of a point: 2, x and y [m], 3, with the rotation [rad], or 1, any of them.
     data : tuple of str
         Names of the numbers that a part has, see `PartAtPoints.data`.
     kinetic : callable, optional
@@ -137,6 +137,12 @@ def _grounded_potential(q: list[Vector], data: Vector, gravity: Vector, f: Funct
 
 def _grounded_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
     return _spring_dissipation(_to_ground(q, data), [v[0], (0, 0)], data, f)
+
+
+def _coordinate_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
+    """Return k (q - q0)^2 / 2."""
+    change = q[0][0] - data[1]
+    return data[0] * change * change / 2
 
 
 def _torsion_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
@@ -295,6 +301,7 @@ SPRING = Connection("spring", 2, 2, _SPRING, None, _spring_potential, _spring_di
 GROUNDED_SPRING = Connection(
     "grounded_spring", 1, 2, (*_SPRING, "x", "y"), None, _grounded_potential, _grounded_dissipation
 )
+COORDINATE_SPRING = Connection("coordinate_spring", 1, 1, ("stiffness", "rest"), None, _coordinate_potential)
 TORSION_SPRING = Connection(
     "torsion_spring", 2, 3, ("stiffness", "damping"), None, _torsion_potential, _torsion_dissipation
 )
@@ -316,5 +323,5 @@ HINGE_FRICTION = Connection(
 )
 _LIMITS = ("low", "high", "stiffness", "damping")
 HINGE_STOP = Connection("hinge_stop", 2, 3, _LIMITS, None, _limits_potential, _limits_dissipation)
-_SPRINGS = SPRING, GROUNDED_SPRING, TORSION_SPRING, CABLE, GROUNDED_CABLE, BUSHING
+_SPRINGS = SPRING, GROUNDED_SPRING, COORDINATE_SPRING, TORSION_SPRING, CABLE, GROUNDED_CABLE, BUSHING
 CONNECTIONS = MASS, BODY, *_SPRINGS, LINK, SLIDER, GEAR, MOTOR, DRAG, STOP, ROUGH_STOP, HINGE_FRICTION, HINGE_STOP

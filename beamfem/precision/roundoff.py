@@ -160,7 +160,7 @@ def load_size(system: System, loads: LoadsAt) -> float:
 
 def _acting(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: float) -> float:
     """Return the largest force times the size of the model, or moment [N m], of loads, supports and connections."""
-    prescribed, springs = system.prescribed_dofs, system.springs
+    prescribed = system.prescribed_dofs
     reactions = float(np.max(np.abs(unbalanced[prescribed] * system.scale[prescribed]), initial=0.0))
     for dof, normal in system.inclined:
         reactions = max(reactions, system.extent * abs(float(normal @ unbalanced[dof : dof + 2])))
@@ -168,7 +168,7 @@ def _acting(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: 
     system.connectors.add_forces(connected, (p, zeros, zeros), load_factor)
     connected[system.connectors.multipliers] = 0.0
     reactions = max(reactions, float(np.max(np.abs(connected * system.scale), initial=0.0)))
-    sprung = np.abs(springs.stiffness * (p[springs.dof] - springs.rest)) * system.scale[springs.dof]
+    sprung = np.abs(system.springs.forces(p)) * system.scale[system.springs.numbers]
     return max(load_size(system, system.loads_at(load_factor)), reactions, float(sprung.max(initial=0.0)))
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beamfem.element.coordinates import labels
-from beamfem.kernels.block import ELASTIC_LINE, SHEAR_RIGID, STRETCH, Block, PointLoads, Springs
+from beamfem.kernels.block import ELASTIC_LINE, SHEAR_RIGID, STRETCH, Block, PointLoads
 from beamfem.physics.measures import MEASURES, evaluate
 
 _COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted
@@ -20,7 +20,6 @@ _COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted
 def residual_errors(
     blocks: Sequence[Block],
     vectors: Sequence[tuple[str, ...]],
-    springs: Springs,
     points: Sequence[PointLoads],
     size: int,
 ) -> np.ndarray:
@@ -42,8 +41,6 @@ def residual_errors(
             # contributions of nodes that share a coordinate add up
             for total, contribution in zip(result, values, strict=True):
                 total += np.bincount(entries.dofs, contribution, size)
-    if len(springs.dof):
-        np.add.at(result[0], springs.dof, springs.stiffness)
     return result
 
 

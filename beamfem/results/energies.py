@@ -141,8 +141,7 @@ def _of_frame(solution: Solution) -> np.ndarray:
 
 
 def _of_supports(solution: Solution, displaced: Displacements) -> np.ndarray:
-    springs = loading(solution)[0].springs
-    result = 0.5 * (solution.p[:, springs.dof] - springs.rest) ** 2 @ springs.stiffness
+    result = loading(solution)[0].springs.potential(solution.p)
     for support in solution.model.supports:
         result += support.energy(displaced)
     return np.asarray(result)

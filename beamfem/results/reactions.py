@@ -53,7 +53,7 @@ def _of_some(solution: Solution, dof: int, prescribed: bool, stiffness: float) -
     moved = solution.p[:, dof] - system.reference[dof] + solution.remainders[:, dof]
     if not prescribed:
         return np.asarray(-stiffness * moved)
-    others = float(system.springs.stiffness[system.springs.dof == dof].sum()) - stiffness
+    others = float(system.springs.data[system.springs.numbers[:, 0] == dof, 0].sum()) - stiffness
     return np.asarray(solution.support_forces[:, dof] + others * moved)
 
 
@@ -62,13 +62,12 @@ def support_forces(solution: Solution) -> np.ndarray:
     system, times = loading(solution)
     prescribed = np.zeros(solution.model.size, dtype=bool)
     prescribed[[*system.prescribed_dofs, *(dof + axis for dof, _ in system.inclined for axis in (0, 1))]] = True
-    springs = system.springs
 
     def forces(p: np.ndarray) -> np.ndarray:
         result = np.zeros(p.shape)
         for row, at in enumerate(times):
             result[row] = np.where(prescribed, residual(system, p[row], solution.v[row], solution.a[row], at), 0.0)
-            np.subtract.at(result[row], springs.dof, springs.stiffness * (p[row, springs.dof] - springs.rest))
+            np.subtract.at(result[row], system.springs.numbers, system.springs.forces(p[row]))
         return result
 
     return exactly(solution, forces)

@@ -256,6 +256,22 @@ def grounded_spring_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out
 
 
 @routine("rrrrrrrr")
+def coordinate_spring_force(q, v, a, own, turned, data, gravity, out):
+    """Fill the force of `COORDINATE_SPRING`."""
+    q0 = q[0]
+    stiffness = data[0]
+    rest = data[1]
+    out[0] = stiffness * (q0 - rest)
+
+
+@routine("rrrrrrrdddr")
+def coordinate_spring_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
+    """Fill ck df/dq + cv df/dv + ca df/da of `COORDINATE_SPRING`, row by row."""
+    stiffness = data[0]
+    out[0] = ck * stiffness
+
+
+@routine("rrrrrrrr")
 def torsion_spring_force(q, v, a, own, turned, data, gravity, out):
     """Fill the force of `TORSION_SPRING`."""
     q2 = q[2]

@@ -151,7 +151,7 @@ def _unfelt_turns(system: System, gaps: np.ndarray) -> np.ndarray:
 
     The section stays where it is: a crank may go on with a function that begins at 0 again.
     """
-    felt = np.concatenate([system.springs.dof, *(item.all for item in system.connectors.items)])
+    felt = np.concatenate([system.springs.numbers[:, 0], *(item.all for item in system.connectors.items)])
     rotations = np.array([item.rotation for item in system.prescribed], dtype=bool)
     unfelt = ~np.isin(system.prescribed_dofs, felt)
     return np.where(rotations & unfelt, 2.0 * np.pi * np.round(gaps / (2.0 * np.pi)), 0.0)

@@ -195,7 +195,7 @@ def _vertices(beam: Beam, fractions: Iterable[float]) -> np.ndarray:
     An end of the beam's elements that is very close to one of `fractions` is moved there instead, because the element
     in between would be too short for accurate strains.
     """
-    elements = beam.elements
+    elements = beam.element_count if beam.elements == "auto" else beam.elements
     assert not isinstance(elements, str)
     grid = np.linspace(0.0, 1.0, elements + 1) if isinstance(elements, int) else np.array(elements, dtype=float)
     near = 1e-9 * np.diff(grid).min()

@@ -13,7 +13,7 @@ from beamfem.curves import BSpline, Curve, Line
 from beamfem.curves.curve import numbers
 from beamfem.damping import Damping
 from beamfem.element.coordinates import ShearFree
-from beamfem.element.element import Element
+from beamfem.element.element import CRBF, Element
 from beamfem.element.fields import Cubic
 from beamfem.element.forces import Structural
 from beamfem.errors import InputError
@@ -82,6 +82,8 @@ def retardation_time(section: CrossSection, material: Material | None) -> float:
 Tapered = Callable[[float], CrossSection]
 _SAMPLES = 32
 _ENDS = 1e-9  # of the length: tolerance of the ends of a mesh
+_ELEMENT = CRBF(order=4)
+_FIRST_ELEMENTS = 2  # of a beam whose mesh is refined to an accuracy
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,12 +97,13 @@ class Beam:
     ----------
     curve : Curve
         Axis of the beam in the reference.
-    elements : int, sequence of float, MeshLine or "knots"
+    elements : int, sequence of float, MeshLine, "auto" or "knots", default "auto"
         Number of equal elements; or the fractions of the arc length from 0 to 1 at which elements end; or a mesh of
-        scikit-fem over the arc length [m] from the start; or "knots" for one cubic element per knot span of a cubic
-        BSpline, which it represents exactly.
-    element : Element
-        Kind of the elements, such as `CRBF(order=3)`.
+        scikit-fem over the arc length [m] from the start; or "auto" for a mesh that analyses refine to an accuracy, by
+        default 1e-4, see `solve_static`; or "knots" for one cubic element per knot span of a cubic BSpline, which it
+        represents exactly.
+    element : Element, default CRBF(order=4)
+        Kind of the elements.
     section : Section or callable
         A section, or a function of the arc length [m] from the start that returns one.
     material : Material, optional
@@ -124,9 +127,9 @@ class Beam:
     """
 
     curve: Curve
-    elements: int | Sequence[float] | np.ndarray | MeshLine1 | Literal["knots"]
-    element: Element
-    section: CrossSection | Tapered
+    elements: int | Sequence[float] | np.ndarray | MeshLine1 | Literal["auto", "knots"] = "auto"
+    element: Element = _ELEMENT
+    section: CrossSection | Tapered | None = None
     material: Material | None = None
     name: str | None = None
     damping: Damping | None = None
@@ -137,7 +140,8 @@ class Beam:
         if isinstance(self.elements, MeshLine1):
             object.__setattr__(self, "elements", _fractions_of(self.elements, self.curve.length))
         elif isinstance(self.elements, str):
-            _check_knots(self.elements, self.curve, self.element)
+            if self.elements != "auto":
+                _check_knots(self.elements, self.curve, self.element)
         elif isinstance(self.elements, int | float | np.generic) or getattr(self.elements, "ndim", 1) == 0:
             object.__setattr__(self, "elements", count("elements", self.elements))
         else:
@@ -250,6 +254,8 @@ class Beam:
     @property
     def element_count(self) -> int:
         """Number of elements, before supports and loads divide any of them."""
+        if self.elements == "auto":
+            return _FIRST_ELEMENTS
         if isinstance(self.elements, str):
             return len(cast(BSpline, self.curve).breaks) - 1
         return self.elements if isinstance(self.elements, int) else len(self.elements) - 1
@@ -370,7 +376,7 @@ def _fractions(values: Sequence[float] | np.ndarray) -> tuple[float, ...]:
     try:
         ends = numbers("elements", values)
     except InputError as error:
-        raise InputError(f'elements must be a whole number, a list of fractions or "knots": {error}') from None
+        raise InputError(f'elements must be a whole number, a list of fractions, "auto" or "knots": {error}') from None
     if len(ends) < 2 or ends[0] != 0.0 or ends[-1] != 1.0 or np.any(np.diff(ends) <= 0.0):
         raise InputError(
             f"elements as a list must rise from 0 to 1, the fractions where elements end, got {shown(ends)}"
@@ -397,7 +403,7 @@ def _fractions_of(mesh: MeshLine1, length: float) -> tuple[float, ...]:
 def _check_knots(elements: str, curve: Curve, element: Element) -> None:
     """Raise InputError if elements, curve and element do not fit a mesh of knot spans."""
     if elements != "knots":
-        raise InputError(f'elements must be a number, a list of fractions or "knots", got {elements!r}')
+        raise InputError(f'elements must be a number, a list of fractions, "auto" or "knots", got {elements!r}')
     if not isinstance(curve, BSpline):
         raise InputError(f'elements="knots" needs a BSpline as curve, got a {type(curve).__name__}')
     curve.hermite()

@@ -175,6 +175,18 @@ class Model:
         _share(self, model)
         return model
 
+    def meshed(self, like: Any) -> "Model":
+        """Return the model with the elements of a result, such as one that is refined to an accuracy.
+
+        like: a state or solution of this model, whose beams it has with other elements; the new model takes the points
+        and beams of both. Raises InputError for a result of another model.
+
+        >>> finer = model.meshed(bf.solve_static(model, accuracy=1e-6))
+        """
+        from beamfem.solve.accuracy.error_estimate import meshed
+
+        return meshed(self, like)
+
     def __getstate__(self) -> dict[str, object]:
         """Return the fields only: cached meshes refer to beams by identity, so copies rebuild theirs."""
         return {name: getattr(self, name) for name in self.__dataclass_fields__}

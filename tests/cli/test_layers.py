@@ -78,7 +78,7 @@ LAYERS = (
 # what a method may import inside: what meshes, draws and writes the object, and some analyses of it
 INSIDE_METHODS = ("mesh", "view", "io", "io/results_hdf5")
 ANALYSES = {
-    "model/model.py": ("beamfem.results.imperfection",),
+    "model/model.py": ("beamfem.results.imperfection", "beamfem.solve.accuracy.error_estimate"),
     "results/solution.py": ("beamfem.solve.stability.stability", "beamfem.solve.accuracy.error_estimate"),
 }
 # classes of data: their methods import what computes results from them, and for type checkers what it returns

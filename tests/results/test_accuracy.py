@@ -87,3 +87,95 @@ def test_elements_that_lock_and_bad_accuracies_are_refused():
         bf.solve_static(model, accuracy=1e-3)
     with pytest.raises(bf.InputError, match="accuracy must be"):
         bf.solve_static(model, accuracy=0.0)
+
+
+def auto(**parts):
+    return bf.Beam(bf.Line((0, 0), (1, 0)), section=SECTION, material=STEEL, **parts)
+
+
+def test_beams_without_elements_are_meshed_to_four_digits(tmp_path):
+    beam = auto()
+    solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], bent(beam)))
+    fine_beam, fine = model_of(bf.CRBF(8), 20, bent)
+    exact = bf.solve_static(fine).displacement(fine_beam.end)[-1]
+    assert np.linalg.norm(solution.displacement(beam.end)[-1] - exact) < 1e-4
+    assert solution.error() < 1e-4
+    solution.save(tmp_path / "arm.h5")
+    loaded = bf.load(tmp_path / "arm.h5")
+    assert loaded.displacement(loaded.model.beams[0].end)[-1] == pytest.approx(solution.displacement(beam.end)[-1])
+
+
+@pytest.mark.parametrize("accuracy", [1e-4, 1e-8])
+def test_frequencies_are_as_accurate_as_asked_for(accuracy):
+    beam = auto()
+    found = bf.solve_modes(bf.Model([beam], [bf.Clamp(beam.start)]), 4, accuracy=accuracy)
+    fine_beam, fine = model_of(bf.CRBF(8), 8, lambda beam: [])
+    exact = bf.solve_modes(fine, 4).frequencies
+    assert found.frequencies == pytest.approx(exact, rel=1.2 * accuracy)
+
+
+@pytest.mark.parametrize("accuracy", [None, 1e-7])
+def test_critical_loads_are_as_accurate_as_asked_for(accuracy):
+    beam = auto()
+    column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1.0, 0.0))])
+    found = bf.solve_buckling(column, 2, accuracy=accuracy)
+    fine_beam, fine = model_of(bf.CRBF(8), 8, lambda beam: [bf.PointForce(beam.end, (-1.0, 0.0))])
+    assert found.load_factors == pytest.approx(bf.solve_buckling(fine, 2).load_factors, rel=1.2 * (accuracy or 1e-4))
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-5])
+def test_limit_points_are_as_accurate_as_asked_for(accuracy):
+    """Lee's frame; near its limit points displacements at a given load have errors without bound."""
+    section, material = bf.Section(area=6.0, second_moment=2.0), bf.Material(7.2e6, 0.3, 2.7e-5)
+
+    def limits(elements, accuracy=None):
+        column = bf.Beam(bf.Line((0, 0), (0, 120)), elements, bf.CRBF(4), section, material)
+        bar = bf.Beam(bf.Line((0, 120), (120, 120)), elements, bf.CRBF(4), section, material)
+        held, joined = [bf.Pin(column.start), bf.Pin(bar.end)], [bf.Rigid(column.end, bar.start)]
+        frame = bf.Model([column, bar], held, [bf.PointForce(bar.at(0.2), (0, -1.0))], joined, units="N, cm")
+
+        def far(state):
+            return state.displacement(bar.at(0.2))[1] < -95.0
+
+        path = bf.trace_equilibrium(frame, until=far, accuracy=accuracy)
+        return path, frame, [point.load_factor for point in path.limit_points]
+
+    _, _, exact = limits(12)
+    path, frame, found = limits("auto", accuracy)
+    assert found == pytest.approx(exact, abs=2.0 * accuracy * exact[0])
+    again = bf.trace_equilibrium(frame.meshed(path), until=exact[0] / 2.0)
+    assert again.model.beams[0].elements == path.model.beams[0].elements
+
+
+def test_motions_are_as_accurate_as_asked_for():
+    material, section = bf.Material(0.7e6, 0.3, 5540.0), bf.Section(1.6e-3, 8.533e-6)
+
+    def tip(elements, accuracy=None):
+        arm = bf.Beam(bf.Line((0, 0), (1.2, 0)), elements, section=section, material=material)
+        model = bf.Model([arm], [bf.Pin(arm.start)], [bf.Gravity((0, -9.81))])
+        return bf.simulate(model, 0.2, 1e-3, save_every=20, accuracy=accuracy).position(arm.end)
+
+    errors = np.linalg.norm(tip("auto", 1e-5) - tip(16), axis=1)
+    assert errors.max() < 1.2 * 2e-5  # of the diameter of the circle of its reach
+
+
+def test_a_state_to_start_from_keeps_its_mesh():
+    beam = auto()
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, EI))])
+    bent_state = bf.solve_static(model)
+    about = bf.solve_modes(model, 2, about=bent_state)
+    assert about.model.beams[0].elements == bent_state.model.beams[0].elements
+    let_go = bf.simulate(model.with_loads([]), 0.01, 1e-3, start=bent_state)
+    assert let_go.displacement(beam.end)[0] == pytest.approx(bent_state.displacement(beam.end)[-1])
+    with pytest.raises(bf.InputError, match="a state to start from keeps its mesh"):
+        bf.solve_modes(model, 2, about=bent_state, accuracy=1e-4)
+
+
+def test_only_results_of_the_same_beams_have_its_mesh():
+    _, model = model_of(bf.CRBF(3), 4, bent)
+    other, _ = model_of(bf.CRBF(3), 4, bent)
+    solution = bf.solve_static(model)
+    with pytest.raises(bf.InputError, match="meshed takes a result of this model"):
+        bf.Model([other]).meshed(solution)
+    with pytest.raises(bf.InputError, match="meshed takes a state or a solution"):
+        model.meshed(model)

@@ -1,7 +1,8 @@
-"""Meshes refined until the estimated error of a static solution is small enough."""
+"""Meshes refined until the estimated error of a result is small enough."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -13,7 +14,8 @@ from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 from beamfem.results.locking import locking
-from beamfem.results.solution import Solution
+from beamfem.results.solution import Solution, State
+from beamfem.results.status import Finding
 from beamfem.solve.accuracy.error_estimate import (
     Quantity,
     enriched_row,
@@ -23,7 +25,9 @@ from beamfem.solve.accuracy.error_estimate import (
     of_order,
     remeshed,
 )
+from beamfem.validation import positive
 
+_DEFAULT = 1e-4  # accuracy of beams whose elements are "auto"
 _MOST_MESHES = 16
 # orders below are raised first, by so much at a time, and up to the highest one where most elements would be divided
 _RAISED, _STEP = 4, 2
@@ -31,38 +35,91 @@ _MOST_PARTS = 4  # of an element from one mesh to the next: far from the limit i
 _SAFETY = 2.0  # by how much the next mesh is to fall below the accuracy
 
 
-def solved_to_accuracy(
-    model: Model, accuracy: float, quantity: Quantity, solve: Callable[[Model], Solution]
-) -> Solution:
-    """Return the solution on the first mesh whose estimated error of the last row is below an accuracy [-].
+_Result = TypeVar("_Result")
+Shares = list[np.ndarray] | None
+
+
+def prepared(model: Model, accuracy: float | None, start: State | Solution | None = None) -> tuple[Model, float | None]:
+    """Return a model and the accuracy [-] that its mesh is to be refined to, None for the mesh as it is.
+
+    It is that which is asked for, or the default for beams whose elements are "auto"; these have the mesh of a state to
+    start from if there is one. Raises InputError.
+    """
+    if accuracy is not None and start is not None:
+        raise InputError("an accuracy needs a mesh that may change, but a state to start from keeps its mesh")
+    system_of(model, static=True)  # refuses what is not a model
+    automatic = any(beam.elements == "auto" for beam in model.beams)
+    if start is not None:
+        return model.meshed(start) if automatic and isinstance(start, State | Solution) else model, None
+    if accuracy is None:
+        return model, _DEFAULT if automatic else None
+    return model, positive("accuracy", accuracy)
+
+
+def refined_until(
+    model: Model,
+    accuracy: float,
+    attempt: Callable[[Model], tuple[_Result | None, float, Shares]],
+    most: int = _MOST_MESHES,
+) -> _Result:
+    """Return the result on the first mesh whose estimated error is at most an accuracy [-].
+
+    attempt: returns the result on a mesh, None if it is far too coarse, its relative error, and the shares (ne,) of the
+    elements of each beam in it, see `error_shares`, or None for equal ones; most: number of meshes to try. Raises
+    ConvergenceError, whose `solution` is the last result, if none of them is fine enough.
+    """
+    # a result lists its elements, and has beams with numbers of them to be saved
+    model = remeshed(model, [_listed(mesh) for mesh in model.meshes])
+    iterations = 0
+    for number in range(1, most + 1):
+        result, error, shares = attempt(model)
+        elements = sum(mesh.elements for mesh in model.meshes)
+        if isinstance(result, Solution):
+            iterations += result.iterations
+            mesh = f"mesh {number}, of {elements} elements"
+            ended = f"{result.statistics.ended}; the estimated error is {error:.2g} on {mesh}"
+            statistics = replace(result.statistics, ended=ended, iterations=iterations)
+            result = replace(result, statistics=statistics)
+        if error <= accuracy:
+            assert result is not None
+            return result
+        even = [np.full(mesh.elements, 1.0 / elements) for mesh in model.meshes]
+        model = refined(model, even if shares is None else shares, _SAFETY * error / accuracy)
+    raise ConvergenceError(
+        f"the estimated error is {error:.2g} after {most} meshes, more than the accuracy {accuracy:g} asked for",
+        result if isinstance(result, Solution) else None,
+    )
+
+
+def _listed(mesh: BeamMesh) -> Beam:
+    beam = mesh.beam
+    return (
+        beam
+        if beam.elements == "knots"
+        else replace(beam, elements=tuple((mesh.vertices / mesh.vertices[-1]).tolist()))
+    )
+
+
+def require_unlocked(findings: Iterable[Finding]) -> None:
+    """Raise InputError if one of the findings is that elements lock, since their error does not show."""
+    found = [finding.sentence for finding in findings if finding.kind is LockingWarning]
+    if found:
+        raise InputError(f"an accuracy cannot be had with these elements: {found[0]}")
+
+
+def static_attempt(solution: Solution, quantity: Quantity) -> tuple[Solution, float, Shares]:
+    """Return a static solution, the estimated error [-] of its last row, and the shares of the elements in it.
 
     The error is relative to the size of the model or, with a quantity, to its largest value. Raises InputError for
-    elements that lock, since their error does not show, and ConvergenceError if no mesh is fine enough.
+    elements that lock.
     """
-    iterations = 0
-    for number in range(1, _MOST_MESHES + 1):
-        solution = solve(model)
-        iterations += solution.iterations
-        found = [finding.sentence for finding in solution.computed(locking) if finding.kind is LockingWarning]
-        if found:
-            raise InputError(f"an accuracy cannot be had with these elements: {found[0]}")
-        try:
-            off = _relative_error(solution, quantity)
-        except ConvergenceError:  # too far from the finer mesh to say how far
-            model = refined(model, [np.ones(mesh.elements) for mesh in model.meshes], np.inf)
-            continue
-        if off <= accuracy:
-            statistics = solution.statistics
-            elements = sum(mesh.elements for mesh in model.meshes)
-            ended = f"{statistics.ended}; the estimated error is {off:.2g} on mesh {number}, of {elements} elements"
-            return replace(solution, statistics=replace(statistics, ended=ended, iterations=iterations))
-        last = len(solution) - 1
-        shares = error_shares(solution[last], enriched_row(solution, last))
-        model = refined(model, shares, _SAFETY * off / accuracy)
-    raise ConvergenceError(
-        f"the estimated error is {off:.2g} after {_MOST_MESHES} meshes, more than the accuracy {accuracy:g} asked for",
-        solution,
-    )
+    require_unlocked(solution.computed(locking))
+    last = len(solution) - 1
+    try:
+        error = _relative_error(solution, quantity)
+    except ConvergenceError:  # too far from the finer mesh to say how far
+        return solution, np.inf, None
+    return solution, error, error_shares(solution[last], enriched_row(solution, last))
 
 
 def _relative_error(solution: Solution, quantity: Quantity) -> float:

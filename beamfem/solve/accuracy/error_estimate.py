@@ -75,6 +75,18 @@ def remeshed(model: Model, beams: Sequence[Beam]) -> EnrichedModel:
     return result
 
 
+def meshed(model: Model, like: State | Solution) -> Model:
+    """Return a model with the elements of a result, see `Model.meshed`."""
+    if not isinstance(like, State | Solution):
+        raise InputError(f"meshed takes a state or a solution of the model, got {shown(like)}")
+    own, others = model.beams, like.model.beams
+    if len(own) != len(others) or any(a.curve is not b.curve for a, b in zip(own, others, strict=True)):
+        raise InputError("meshed takes a result of this model, whose beams are on the same curves")
+    return remeshed(
+        model, [replace(a, elements=b.elements, element=b.element) for a, b in zip(own, others, strict=True)]
+    )
+
+
 def _enriched(mesh: BeamMesh) -> Beam:
     beam = mesh.beam
     field = beam.element.field

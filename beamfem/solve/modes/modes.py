@@ -1,5 +1,6 @@
 """Free vibration about a state."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from typing import Any
@@ -18,8 +19,9 @@ from beamfem.precision.roundoff import LOSES
 from beamfem.results.locking import stiffness_locking
 from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import may_lock, warn_of
-from beamfem.results.status import Statistics, Status, counted
-from beamfem.solve.accuracy.error_estimate import enriched_state
+from beamfem.results.status import Finding, Statistics, Status, counted
+from beamfem.solve.accuracy.adapted_mesh import Shares, prepared, refined_until, require_unlocked
+from beamfem.solve.accuracy.error_estimate import enriched, enriched_state
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.modes.participation import participation
 from beamfem.solve.modes.pencil import WRONG, Pencil, lowest_pairs
@@ -284,7 +286,9 @@ class Modes:
         return plot_modes(self, path, most=most)
 
 
-def solve_modes(model: Model, count: int = 10, about: State | Solution | None = None) -> Modes:
+def solve_modes(
+    model: Model, count: int = 10, about: State | Solution | None = None, *, accuracy: float | None = None
+) -> Modes:
     """Find the lowest modes of vibration, K phi = omega^2 M phi, including those of rigid motions.
 
     K is the tangent stiffness with the loads at the load factor of the state, and M the mass matrix, both in that
@@ -301,13 +305,16 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
         Static equilibrium to vibrate about, whose loads and stresses are then taken into account (prestress, gravity):
         a state, or a solution for its last state; it may come from a model with other supports. By default the
         reference at load factor 0.
+    accuracy : float, [-], optional
+        Refine the mesh, as `solve_static` does, until the estimated relative error of every frequency, see
+        `Modes.error`, is at most this number.
 
     Raises
     ------
     InputError
-        For an invalid argument, or a state that is not in equilibrium.
+        For an invalid argument, or a state that is not in equilibrium; for an accuracy and elements that lock.
     ConvergenceError
-        If modes were missed.
+        If modes were missed, or no mesh reaches the accuracy.
 
     Examples
     --------
@@ -315,6 +322,27 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     array([ 20.85, 129.12])
     """
     whole_number("count", count)
+    model, accuracy = prepared(model, accuracy, about)
+    if accuracy is not None:
+        return refined_until(model, accuracy, lambda model: _attempt(model, count))
+    modes, findings = _modes(model, count, about)
+    warn_of(findings)
+    return modes
+
+
+def _attempt(model: Model, count: int) -> tuple[Modes | None, float, Shares]:
+    """Return the modes about the reference, and the largest relative error of their frequencies that is estimated."""
+    if len(system_of(model, static=True).free_dofs) < 2 * count:
+        return None, np.inf, None
+    modes, findings = _modes(model, count, None)
+    require_unlocked(findings)
+    finer = _modes(enriched(model), count, None)[0].frequencies
+    elastic = finer > 0.0
+    return modes, float(np.max(np.abs(modes.frequencies - finer)[elastic] / finer[elastic], initial=0.0)), None
+
+
+def _modes(model: Model, count: int, about: State | Solution | None) -> tuple[Modes, Sequence[Finding]]:
+    """Return the modes, and warnings of them."""
     system = system_of(model, static=True)
     refuse_dampers(system)
     p, load_factor = resting_state(system, about)
@@ -338,9 +366,8 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     rest_state = State(p, np.zeros_like(p), np.zeros_like(p), load_factor, model)
     frequencies = rates.imag / (2.0 * np.pi)
     modes = Modes(model, rest_state, frequencies, rates.real, upright(shapes), words[:count])
-    if may_lock(system, rest_state.p):
-        warn_of(stiffness_locking(rest_state, modes._elastic_shapes, 0.5, "a frequency"))
-    return modes
+    locks = may_lock(system, rest_state.p)
+    return modes, stiffness_locking(rest_state, modes._elastic_shapes, 0.5, "a frequency") if locks else ()
 
 
 def _general(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from os import PathLike
+from typing import Any
 
 import numpy as np
 
@@ -17,12 +18,14 @@ from beamfem.results.full_turns import first_turns
 from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import warned
 from beamfem.results.status import Statistics, Status
+from beamfem.solve.accuracy.adapted_mesh import prepared, refined_until
 from beamfem.solve.motion.constraints import impact, require_met, stopped_by_conditions
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.error_control import march_to_tolerance
 from beamfem.solve.motion.events import Event
 from beamfem.solve.motion.initial_velocity import put_onto_supports, require_on_supports, start_velocity
 from beamfem.solve.motion.integrators import Scheme
+from beamfem.solve.motion.motion_error import MOST_MESHES, motion_attempt
 from beamfem.solve.motion.motion_plan import planned, settings_of
 from beamfem.solve.motion.period_error import detuned
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
@@ -47,6 +50,7 @@ def simulate(
     save_at: Sequence[float] | np.ndarray | None = None,
     events: Sequence[Event] = (),
     file: str | PathLike[str] | None = None,
+    accuracy: float | None = None,
 ) -> Solution:
     """Integrate the equations of motion over time, with a fixed step, or with steps that follow a tolerance.
 
@@ -81,7 +85,9 @@ def simulate(
         Times of the rows, ascending, between the ends of steps as well.
     events : sequence of Event, optional
         Functions of the state whose crossings of zero are recorded in the `events` of the solution, or end the motion.
-
+    accuracy : float, [-], optional
+        Refine the mesh, as `solve_static` does, until positions are off by at most this number times the size of the
+        model, by an estimate of the error of the mesh alone; each mesh costs two motions.
     file : path, optional
         HDF5 file for the rows, which then need no memory while the motion runs; `resume` goes on with it where it was
         interrupted, and `load` reads it at any time. It is for motions of any length: they are divided into sections
@@ -100,7 +106,6 @@ def simulate(
     ConvergenceError
         If a step does not converge, however short; its `solution` has all states so far. Any other exception during the
         solve, such as KeyboardInterrupt, carries the states so far as its `solution` too.
-
     FileError
         If the file cannot be written; it then holds the motion up to where it could.
 
@@ -117,6 +122,18 @@ def simulate(
     >>> round(float(motion.displacement(beam.end)[-1, 1]), 4)
     -0.0569
     """
+    model, accuracy = prepared(model, accuracy, last_state(start))
+    if accuracy is not None:
+        if file is not None:
+            raise InputError(
+                "a motion in a file has one mesh; find it first, by model.meshed(simulate(model, ..., accuracy=...))"
+            )
+        others: dict[str, Any] = {"tolerance": tolerance, "save_at": save_at, "events": events}
+
+        def solve(model: Model) -> Solution:
+            return simulate(model, duration, step, integrator, None, velocity, save_every, **others)
+
+        return _told(refined_until(model, accuracy, lambda model: motion_attempt(model, solve), MOST_MESHES))
     settings = settings_of(duration, step, integrator, save_every, tolerance, save_at, events)
     plan = planned(model, settings, in_memory=file is None)
     system, times, parts, acting = plan.system, plan.times, plan.parts, plan.acting
@@ -179,11 +196,16 @@ def simulate(
         raise InputError("the motion has ended before the first time of save_at")
     if saved is not None:
         return warned(solution)
-    for sentence in solution.computed(energy_warnings):
-        warn(sentence, EnergyWarning)
     sentences = detuned(solution, system, acting)
     if sentences:
         solution = replace(solution, statistics=replace(solution.statistics, warnings=sentences))
+    return _told(solution)
+
+
+def _told(solution: Solution) -> Solution:
+    """Return a motion that has just been found, after warnings of what is wrong with it."""
+    for sentence in solution.computed(energy_warnings):
+        warn(sentence, EnergyWarning)
     return warned(solution)
 
 

@@ -18,10 +18,12 @@ from beamfem.results.full_turns import first_turns
 from beamfem.results.path import Bifurcation, Path, PathState
 from beamfem.results.solution_checks import advice, warned
 from beamfem.results.status import Statistics, Status
+from beamfem.solve.accuracy.adapted_mesh import prepared, refined_until
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 from beamfem.solve.continuation.steps import Refused, Step, longest_step, take_step, too_small
 from beamfem.solve.newton.newton import Newton, require_newton
+from beamfem.solve.paths.path_error import path_attempt
 from beamfem.solve.start.functions_of_time import SAME, Jump, functions_of_time, jumps_between, kinks_between
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.start_checks import refuse_memory
@@ -199,6 +201,7 @@ def trace_equilibrium(
     step: float | None = None,
     points: int = 500,
     newton: Newton | None = None,
+    accuracy: float | None = None,
 ) -> Path:
     """Trace the equilibrium path from load factor 0, past limit points, or a branch from a bifurcation.
 
@@ -224,16 +227,19 @@ def trace_equilibrium(
         Largest number of points.
     newton : Newton, optional
         Tolerances of the iteration.
+    accuracy : float, [-], optional
+        Refine the mesh, as `solve_static` does, until displacements are off by at most this number times the size of
+        the model, and load factors by this number times the largest one, at every point of the path.
 
     Raises
     ------
     InputError
-        Before the solve, for invalid arguments.
+        Before the solve, for invalid arguments; for an accuracy and elements that lock.
     FreeMotionError
         If the model can move without resistance, and loads with scale=False do not stiffen it.
     ConvergenceError
-        If the path cannot be continued; its `solution` has the path so far. Any other exception during the solve, such
-        as one of `until` or KeyboardInterrupt, carries `solution` too.
+        If the path cannot be continued, or no mesh reaches the accuracy; its `solution` has the path so far. Any other
+        exception during the solve, such as one of `until` or KeyboardInterrupt, carries `solution` too.
 
     Warns
     -----
@@ -264,6 +270,25 @@ def trace_equilibrium(
     if direction is None:
         direction = -1 if start is None and isinstance(until, float) and until < 0.0 else 1
     newton = require_newton(newton, Newton(iterations=_ITERATIONS))
+    model, accuracy = prepared(model, accuracy, start)
+
+    def trace(model: Model) -> Path:
+        return _traced(model, until, start, direction, step, points, newton)
+
+    if accuracy is None:
+        return warned(trace(model))
+    return warned(refined_until(model, accuracy, lambda model: path_attempt(trace(model))))
+
+
+def _traced(
+    model: Model,
+    until: Until,
+    start: Bifurcation | None,
+    direction: int,
+    step: float | None,
+    points: int,
+    newton: Newton,
+) -> Path:
     system = system_of(model, static=True)
     refuse_memory(system, "trace_equilibrium")
     if nothing_acts(system):
@@ -310,7 +335,7 @@ def trace_equilibrium(
             report(len(record.rows))
         else:
             record.end("the path has reached the end that was asked for")
-    return warned(record.path())
+    return record.path()
 
 
 def _require_load(system: System) -> None:

@@ -1,5 +1,6 @@
 """Buckling: load factors at which the tangent of a loaded structure becomes singular."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from typing import Any
@@ -15,6 +16,7 @@ from beamfem.results.locking import stiffness_locking
 from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import advice, may_lock, warn_of
 from beamfem.results.status import Finding, Statistics, Status
+from beamfem.solve.accuracy.adapted_mesh import Shares, prepared, refined_until, require_unlocked
 from beamfem.solve.accuracy.error_estimate import enriched, enriched_state
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.stability.linearised import linear_reach, linear_solution, linearised_loads
@@ -186,7 +188,9 @@ class Buckling:
         return plot_buckling(self, path, most=most)
 
 
-def solve_buckling(model: Model, count: int = 1, about: State | Solution | None = None) -> Buckling:
+def solve_buckling(
+    model: Model, count: int = 1, about: State | Solution | None = None, *, accuracy: float | None = None
+) -> Buckling:
     """Find the first points of the loading path at which the tangent stiffness is singular.
 
     The true equilibria are followed up to their largest load factor, and negative pivots of the tangent are counted, so
@@ -202,15 +206,20 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         Number of critical points.
     about : State or Solution, optional
         Stable equilibrium to start from, a solution for its last state; by default the equilibrium at load factor 0.
+    accuracy : float, [-], optional
+        Refine the mesh, as `solve_static` does, until the estimated relative error of every critical load factor, see
+        `Buckling.error`, is at most this number.
 
     Raises
     ------
     InputError
-        If no load factor is critical, or the loads do nothing or follow the beam.
+        If no load factor is critical, or the loads do nothing or follow the beam; for an accuracy and elements that
+        lock.
     FreeMotionError
         If the model can move without resistance.
     ConvergenceError
-        If the path was lost before the first critical point; its `solution` has the equilibria found.
+        If the path was lost before the first critical point; its `solution` has the equilibria found. If no mesh
+        reaches the accuracy.
 
     Warns
     -----
@@ -226,6 +235,33 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     539.2
     """
     whole_number("count", count)
+    model, accuracy = prepared(model, accuracy, about)
+    if accuracy is None:
+        buckling, findings = _buckling(model, count, about)
+    else:
+        buckling, findings = refined_until(model, accuracy, lambda model: _attempt(model, count))
+    warn_of(findings)
+    return buckling
+
+
+_Judged = tuple[Buckling, Sequence[Finding]]
+
+
+def _attempt(model: Model, count: int) -> tuple[_Judged | None, float, Shares]:
+    """Return the critical points, and the largest relative error of their load factors that is estimated."""
+    if len(system_of(model, static=True).free_dofs) < 2 * count:
+        return None, np.inf, None
+    buckling, findings = _buckling(model, count, None)
+    require_unlocked(findings)
+    finer = _buckling(enriched(model), count, None)[0].load_factors
+    if len(finer) != len(buckling):
+        return None, np.inf, None
+    error = float(np.max(np.abs(buckling.load_factors - finer) / np.abs(finer), initial=0.0))
+    return (buckling, findings), error, None
+
+
+def _buckling(model: Model, count: int, about: State | Solution | None) -> _Judged:
+    """Return the critical points, and warnings of them."""
     system = system_of(model, static=True)
     refuse_memory(system, "solve_buckling")
     require_support(system)
@@ -256,7 +292,6 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     if may_lock(system, p) and shapes:
         at_start = State(p, np.zeros_like(p), np.zeros_like(p), load_factor, model)
         found += stiffness_locking(at_start, np.array(shapes), 1.0, "a critical load factor")
-    warn_of(found)
     return Buckling(
         model,
         np.array([point.load_factor for point in criticals]),
@@ -269,7 +304,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         status,
         tuple(finding.sentence for finding in found),
         last_state(about, "about"),
-    )
+    ), found
 
 
 def _criticals(path: LoadingPath, count: int, farthest: float) -> tuple[list[Critical], str, Status]:

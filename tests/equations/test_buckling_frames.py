@@ -13,9 +13,10 @@ from scipy.sparse.linalg import ArpackNoConvergence
 import beamfem as bf
 from beamfem.assembly.system import system_of
 from beamfem.linalg import eigenpairs
+from beamfem.solve.continuation.steps import Refused
 from beamfem.solve.modes.pencil import Pencil
-from beamfem.solve.stability import linearised
-from beamfem.solve.stability.loading_path import LoadingPath, PathLostError, size_of
+from beamfem.solve.stability import buckling, linearised
+from beamfem.solve.stability.linearised import size_of
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 STRIP = bf.Rectangle(0.02, 0.01)
@@ -158,10 +159,7 @@ def test_the_size_of_a_model_does_not_depend_on_how_it_is_divided():
 
 
 def test_a_path_that_is_lost_at_once_hands_back_its_start_as_stopped(monkeypatch):
-    def lost(path, point):
-        raise PathLostError("the tangent is singular")
-
-    monkeypatch.setattr(LoadingPath, "advance", lost)
+    monkeypatch.setattr(buckling, "take_step", lambda *_, **__: Refused("the tangent is singular", 1))
     with pytest.raises(bf.ConvergenceError, match="lost before any load factor") as caught:
         bf.solve_buckling(portal([0.5], [EI]))
     assert caught.value.solution.status is bf.Status.STOPPED

@@ -1,4 +1,4 @@
-"""Critical points within a step of a path: curves given by a formula, and columns whose buckling loads are known."""
+"""Critical points within a step of a path: columns whose buckling loads are known."""
 
 from types import SimpleNamespace
 
@@ -13,65 +13,9 @@ from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import System
 from beamfem.results.status import Statistics
 from beamfem.solve.continuation import bifurcations as found_by
-from beamfem.solve.continuation.continuation import PathPoint, begin
+from beamfem.solve.continuation.continuation import begin
 from beamfem.solve.continuation.critical_points import Segment
 from beamfem.solve.newton.newton import Newton
-from beamfem.solve.stability import path_critical_points as critical
-from beamfem.solve.stability.loading_path import PathLostError
-from beamfem.solve.stability.path_critical_points import BIFURCATION, Critical, Search, Zero, _between, smooth
-
-
-class Curve:
-    """A load factor given over one coordinate, as a loading path; `aside`: by how much its inside lies elsewhere."""
-
-    line, start = SimpleNamespace(dot=np.dot, length=np.linalg.norm), None
-
-    def __init__(self, coefficients, aside=0.0):
-        self.load, self.aside = np.polynomial.Polynomial(coefficients), aside
-
-    def at(self, x):
-        tangent = np.array([1.0, self.load.deriv()(x)])
-        return PathPoint(np.array([x, self.load(x)]), tangent / np.linalg.norm(tangent), None)
-
-    def normal(self, before, after):
-        return np.array([1.0, 0.0])
-
-    def corrected(self, start, base, normal, like):
-        return self.at(start[0] + self.aside)
-
-
-@pytest.mark.parametrize(
-    ("coefficients", "inside"),
-    [
-        ((0.0, 1.0, -0.9, 1.0), 0.3),  # the slope is least where 6 x = 1.8
-        ((0.0, 1.0, -2.91, 1.0), 0.5),  # at 0.97, next to the end
-        ((0.0, 1.0, 1.5, 1.0), 0.5),  # at -0.5, outside
-        ((0.0, 2.0), 0.5),
-    ],
-)
-def test_a_step_is_looked_at_where_its_slope_differs_most_or_half_way(coefficients, inside):
-    path = Curve(coefficients)
-    assert _between(path, path.at(0.0), path.at(1.0)).y[0] == pytest.approx(inside, abs=1e-12)
-
-
-@pytest.mark.parametrize(("aside", "refused"), [(0.01, False), (0.2, True)])
-def test_a_step_whose_inside_is_not_what_its_ends_foretell_is_refused(aside, refused):
-    path = Curve((0.0, 1.0, 1.5, 1.0), aside)
-    ends = path.at(0.0), path.at(1.0)
-    if refused:
-        with pytest.raises(PathLostError, match="turns too sharply"):
-            _between(path, *ends)
-    else:
-        assert _between(path, *ends).y[0] == pytest.approx(0.5 + aside)
-
-
-@pytest.mark.parametrize("x", [-0.3, 0.0, 0.4, 1.0, 1.2])
-def test_a_path_is_foretold_by_the_cubic_through_its_ends_and_by_its_tangents_beyond(x):
-    path = Curve((0.2, 2.0, 1.5, 1.0))
-    ends = path.at(0.0), path.at(1.0)
-    beside = np.clip(x, 0.0, 1.0)
-    expected = [x, path.load(beside) + (x - beside) * path.load.deriv()(beside)]
-    assert smooth(path, path.normal(*ends), ends, x) == pytest.approx(expected, abs=1e-12)
 
 
 def test_softness_of_a_change_is_its_product_with_the_inverse_of_the_tangent():
@@ -86,51 +30,6 @@ def test_softness_of_a_change_is_its_product_with_the_inverse_of_the_tangent():
     assert line.softness(start.factors, change) == pytest.approx(right @ np.linalg.solve(tangent, right), rel=1e-9)
 
 
-class Interpolated:
-    """A window in which stiffness vanishes at known places (k,)."""
-
-    def __init__(self, centre, radius, places):
-        self.centre, self.radius, self.places = centre, radius, places
-        self.alike, self.points = True, [None]
-
-    def zeros(self, reach):
-        return [Zero(at, 0) for at in self.places if abs(at - self.centre) <= reach]
-
-
-@pytest.fixture
-def searched(monkeypatch):
-    """Return a function that makes the search in a step from 0 to 1 with stiffness that vanishes at places (k,)."""
-
-    def make(*places):
-        path = Curve((0.0, 2.0))
-        about = SimpleNamespace(about=lambda path, normal, ends, centre, radius: Interpolated(centre, radius, places))
-        monkeypatch.setattr(critical, "Window", about)
-        return Search(path, path.at(0.0), path.at(1.0))
-
-    return make
-
-
-@pytest.mark.parametrize("place", [0.4, 0.5, 0.51, 0.6])
-def test_a_window_is_moved_to_the_critical_point_on_either_side_of_it(searched, place):
-    window, zeros = searched(0.5)._centred(place, 0.2)
-    assert abs(window.centre - 0.5) <= 0.03
-    assert [zero.at for zero in zeros] == [0.5]
-
-
-def test_a_critical_point_far_from_the_centre_is_left_to_a_window_of_its_own(searched, monkeypatch):
-    """At 0.5 and 0.6 of a step: in the widest window of 0.2 the second lies too far out to be interpolated well."""
-    read = []
-
-    def reads(search, window, zeros):
-        read.append([zero.at for zero in zeros])
-        return [Critical(BIFURCATION, zero.at, np.zeros(1), np.zeros(1), np.inf) for zero in zeros]
-
-    monkeypatch.setattr(Search, "_read", reads)
-    found, _, _ = searched(0.5, 0.6).located(0.49)
-    assert [one.load_factor for one in found] == [0.5]
-    assert all(zeros == [0.5] for zeros in read)
-
-
 def test_a_part_of_a_step_whose_tangent_is_singular_at_an_end_is_halved(monkeypatch):
     """Buckling loads (pi / 2)^2 (1, 9, 25) of a thin column; only parts shorter than 0.3 of the step can be solved."""
     _, model = cantilever(1000, (0.0, -1.0))
@@ -141,11 +40,11 @@ def test_a_part_of_a_step_whose_tangent_is_singular_at_an_end_is_halved(monkeypa
     segment = Segment(line, start, line.linearised(far, start.tangent))
     together, parts = found_by._together, []
 
-    def singular(segment, start, end, change):
+    def singular(segment, start, end, change, distance):
         parts.append((start, end))
         if end - start > 0.3:
             raise LinAlgError
-        return together(segment, start, end, change)
+        return together(segment, start, end, change, distance)
 
     monkeypatch.setattr(found_by, "_together", singular)
     loads = [found.y[-1] for found in found_by.bifurcations(segment, [])]
@@ -160,7 +59,7 @@ def test_what_lies_before_and_behind_a_turning_point_is_listed_in_the_order_of_t
         return found_by.Crossing(x, np.zeros(1), np.zeros(1), np.zeros(1))
 
     monkeypatch.setattr(found_by, "turning_point", lambda segment, x: crossing(x))
-    monkeypatch.setattr(found_by, "_search", lambda segment, start, end: iter([crossing(0.5 * (start + end))]))
+    monkeypatch.setattr(found_by, "_search", lambda _, start, end, distance: iter([crossing(0.5 * (start + end))]))
     line = SimpleNamespace(dot=np.dot, length=np.linalg.norm)
     ends = {
         "symmetric": True,

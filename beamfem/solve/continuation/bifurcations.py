@@ -44,12 +44,15 @@ def condensed(line: Continuation, point: PathPoint, directions: np.ndarray) -> C
     shapes = np.zeros(directions.shape)
     shapes[:, free] = stiffness @ moved
     if line.system.symmetric:
-        stiffness = stiffness_of_modes(line.system, point.y[:-1], point.load_factor, shapes[:, :-1])
+        p, correction = point.y[:-1], np.zeros(len(point.y) - 1)
+        correction[free] = -point.factors.solve(residual_at_rest(line.system, p, point.load_factor)[free])
+        stiffness = stiffness_of_modes(line.system, p, point.load_factor, shapes[:, :-1], correction)
     return Condensed(stiffness, shapes)
 
 
 _IMPERFECT = 1e-9  # deviation of a path that still counts as a bifurcation: lengths of the model, radians
 _LEFT = 4.0  # factor on the deviation that unbalanced forces can explain
+_LEFT_ASIDE = 30.0  # the same along a mode, whose stiffness has a round-off of its own
 _RESOLVED = 1e-2  # of the distance of samples: closer bifurcations may be one
 _ONE = 1e-7  # of the distance of samples: closer bifurcations are one, whatever the counts say
 _WIDTH = 1e-3  # of the distance of samples: step of differences of interpolated values
@@ -174,7 +177,7 @@ def _require_crossing(samples: Samples, x: float, mode: np.ndarray, rate: float)
     aside = [line.dot(mode, y) for y in samples.y]
     bend = np.linalg.lstsq(basis, np.array(aside))[0][-1]
     unbalanced = max(abs(mode[:-1] @ residual_at_rest(line.system, y[:-1], float(y[-1]))) for y in samples.y)
-    if abs(bend) > max(_IMPERFECT, _LEFT * unbalanced / (abs(rate) * samples.distance)):
+    if abs(bend) > max(_IMPERFECT, _LEFT_ASIDE * unbalanced / (abs(rate) * samples.distance)):
         raise SegmentLostError("the step leads to another path")
 
 
@@ -250,7 +253,7 @@ _SHARPEST = 1.0  # [rad] per segment: turn of the tangent beside a limit point; 
 _REAL = 1e-6  # of an eigenvalue: imaginary part that is round-off
 _WINDOW = 0.1  # of a segment: around a limit point that coincides with a bifurcation
 _JUMP = 1e-3  # of a segment: points further apart than this at nearly equal fractions lie on two paths
-_DISTANCE = 5e-3  # of the searched part of a segment: least distance of samples from a bifurcation
+DISTANCE = 5e-3  # of the searched part of a segment: least distance of samples from a bifurcation
 _TOGETHER = 4.0  # of the distance: bifurcations closer than this are located together
 _SHARPNESS = 1e-5  # of a segment: shorter parts are not divided further
 _CLEAR = 0.02  # of a segment: in shorter parts, condensed stiffness and pivot counts must agree
@@ -259,12 +262,12 @@ _SETTLED = 3  # trials after which the roots must converge
 _GRID = np.linspace(-1.0, 1.0, 65) ** 3  # where the signs of interpolated stiffnesses are evaluated
 
 
-def bifurcations(segment: Segment, limits: list[float]) -> list[Crossing]:
+def bifurcations(segment: Segment, limits: list[float], distance: float = DISTANCE) -> list[Crossing]:
     """Return the bifurcations of a segment in order, including those at which the load factor has an extremum.
 
     There the tangent is singular and another path crosses. Several modes that lose their stiffness at one point count
-    as several bifurcations. limits: fractions of the limit points, each of which changes the sign of one pivot. Raises
-    SegmentLostError.
+    as several bifurcations. limits: fractions of the limit points, each of which changes the sign of one pivot;
+    distance: of samples from a bifurcation, of the searched part of the segment. Raises SegmentLostError.
     """
     extrema = sorted([*limits, *segment.turned])
     result = [turning_point(segment, x) for x in segment.turned]
@@ -278,12 +281,12 @@ def bifurcations(segment: Segment, limits: list[float]) -> list[Crossing]:
                 raise SegmentLostError("several paths cross where the load factor turns")
             low = max(x - _WINDOW, start)
             high = min(x + _WINDOW, 0.5 * (x + extrema[i + 1]) if i + 1 < len(extrema) else 1.0)
-            result += without_limit(segment, x, list(_search(segment, low, high)))
+            result += without_limit(segment, x, list(_search(segment, low, high, distance)))
         if start < low:
-            result += require_no_limit(segment, _search(segment, start, low))
+            result += require_no_limit(segment, _search(segment, start, low, distance))
         start = high
     if start < 1.0:
-        result += require_no_limit(segment, _search(segment, start, 1.0))
+        result += require_no_limit(segment, _search(segment, start, 1.0, distance))
     if limits or result:
         _require_no_hidden_pair(segment, len(limits) + len(result))
     return sorted(result, key=lambda crossing: crossing.fraction)
@@ -328,13 +331,13 @@ def _require_no_corner(segment: Segment, fractions: list[float]) -> None:
             raise SegmentLostError("the step leads to another path")
 
 
-def _search(segment: Segment, start: float, end: float) -> Iterator[Crossing]:
+def _search(segment: Segment, start: float, end: float, distance: float) -> Iterator[Crossing]:
     _require_one_path(segment, start, end)
     change = segment.change(start, end)
     if change == 0:
         return
     try:
-        found = _together(segment, start, end, change)
+        found = _together(segment, start, end, change, distance * (end - start))
     except LinAlgError as error:
         if end - start < _CLEAR:
             raise SegmentLostError("the tangent is singular at the ends of every part") from error
@@ -344,8 +347,8 @@ def _search(segment: Segment, start: float, end: float) -> Iterator[Crossing]:
     elif end - start < _SHARPNESS:
         raise SegmentLostError("the tangent is singular at several points that cannot be distinguished")
     else:
-        yield from _search(segment, start, found)
-        yield from _search(segment, found, end)
+        yield from _search(segment, start, found, distance)
+        yield from _search(segment, found, end, distance)
 
 
 def _require_one_path(segment: Segment, start: float, end: float) -> None:
@@ -356,9 +359,9 @@ def _require_one_path(segment: Segment, start: float, end: float) -> None:
         raise SegmentLostError("the step leads to another path")
 
 
-def _together(segment: Segment, start: float, end: float, change: int) -> list[Crossing] | float:
+def _together(segment: Segment, start: float, end: float, change: int, distance: float) -> list[Crossing] | float:
     """Return the bifurcations between two fractions if they are close together, else a fraction at which to divide."""
-    line, middle, distance = segment.line, 0.5 * (start + end), _DISTANCE * (end - start)
+    line, middle = segment.line, 0.5 * (start + end)
     directions = _softer(segment, start, end, abs(change))
     known = {x: condensed(line, segment.at(x), directions) for x in (start, end)}
     fractions = np.array([start, end])
@@ -423,7 +426,9 @@ def _roots(known: dict[float, Condensed], fractions: np.ndarray, within: tuple[f
     stiffness = np.array([known[x].stiffness for x in fractions.tolist()])
 
     def eigenvalues(x: float | np.ndarray) -> np.ndarray:
-        return np.asarray(np.linalg.eigvalsh(np.tensordot(interpolation_weights(fractions, x), stiffness, axes=1)))
+        # not by BLAS, which rounds one matrix differently from many
+        weights = interpolation_weights(fractions, x)
+        return np.asarray(np.linalg.eigvalsh(np.einsum("...k,kij->...ij", weights, stiffness)))
 
     centre = 0.5 * (fractions[0] + fractions[-1])
     reach = np.where(_GRID < 0.0, centre - within[0], within[1] - centre)

@@ -72,10 +72,13 @@ class Segment:
 
         It is interpolated if more than the load factor is critical, so that no equilibrium can be solved for.
         """
-        if x in self.found:
-            return self.found[x].y
+        return self.found[x].y if x in self.found else self.interpolated(x)[0]
+
+    def interpolated(self, x: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return y (n + 1,) and the tangent (n + 1,) at a fraction from those beside it. Raises SegmentLostError."""
         fractions = self.beside(x, x, _DISTANCE, 0.0, 1.0)
-        return np.asarray(interpolation_weights(fractions, x) @ [self.at(at).y for at in fractions.tolist()])
+        weights, points = interpolation_weights(fractions, x), [self.at(at) for at in fractions.tolist()]
+        return weights @ [point.y for point in points], weights @ [point.tangent for point in points]
 
     def balanced(self, y: np.ndarray, modes: Sequence[np.ndarray]) -> np.ndarray:
         """Return an interpolated y (n + 1,), better balanced in directions orthogonal to its critical modes (k, n + 1).

@@ -96,10 +96,13 @@ def too_small(line: Continuation, point: PathPoint, size: float) -> bool:
     return size < _SMALLEST * max(1.0, abs(point.load_factor) / line.load_scale)
 
 
-def take_step(line: Continuation, point: PathPoint, size: float, to: float | None = None) -> Step | Refused:
+def take_step(
+    line: Continuation, point: PathPoint, size: float, to: float | None = None, strict: bool = True
+) -> Step | Refused:
     """Return the step of a given length from a point with its critical points, or the reason of its rejection.
 
-    to: load factor at the end of the step, if it is given.
+    to: load factor at the end of the step, if it is given; strict: whether to refuse a step whose iteration passed
+    states with other counts of negative pivots than its ends.
     """
     change = size * point.tangent
     farthest = _FARTHEST * size
@@ -118,7 +121,7 @@ def take_step(line: Continuation, point: PathPoint, size: float, to: float | Non
         return Refused("the tangent is singular", corrected.iterations)
     if _may_hide_pair(line, point, new) and size > _PAIR * longest_step(line, point):
         return Refused("the tangent may be singular at an even number of points within the step", corrected.iterations)
-    if _crosses_over(line, (point, new), corrected):
+    if strict and _crosses_over(line, (point, new), corrected):
         return Refused("another path lies between the start and the end of the step", corrected.iterations)
     turn = float(np.arccos(min(line.dot(new.tangent, point.tangent), 1.0)))
     if turn > _LARGEST_TURN:

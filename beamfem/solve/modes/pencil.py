@@ -213,21 +213,21 @@ WRONG = 1e-5  # of vectors: largest acceptable error by round-off of the tangent
 _SOLVES = 2  # for vectors with noticeable round-off: each reduces their error to about a hundredth
 
 
-def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | None = None) -> Pairs:
+def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:
     """Return the lowest lambda (m,) [1/s^2], ascending, and vectors (unknown, m), of a symmetric pencil, m >= count.
 
-    rigid (unknown, r): M-orthonormal vectors with lambda = 0, which the result does not contain; shift: below all
-    eigenvalues, if one is known. Raises ConvergenceError if some were missed.
+    rigid (unknown, r): M-orthonormal vectors with lambda = 0, which the result does not contain. Raises
+    ConvergenceError if some were missed.
     """
     n, available = pencil.mass.shape[0], pencil.size - rigid.shape[1]
     if count == 0:
         return nothing_known(n)
-    start = pencil.shift(rigid.shape[1]) if shift is None else shift
+    start = pencil.shift(rigid.shape[1])
     factors = pencil.shifted(start).factorised(pencil.system.rotated)
     lost = pencil.lost(start, factors)
     if lost > LOSES:
         pencil.system.proven.add(Proven.LOSES_DIGITS)
-        start = pencil.shift(rigid.shape[1]) if shift is None else shift
+        start = pencil.shift(rigid.shape[1])
         factors = pencil.shifted(start).factorised(pencil.system.rotated)
     wanted = min(count + _SPARE, available)
     known = rigid

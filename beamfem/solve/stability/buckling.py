@@ -1,11 +1,14 @@
 """Buckling: load factors at which the tangent of a loaded structure becomes singular."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, field
+from itertools import pairwise
 from os import PathLike
 from typing import Any
 
 import numpy as np
+from scipy.linalg import LinAlgError
 
 from beamfem.assembly.system import system_of
 from beamfem.errors import ConvergenceError, InputError, RoundOffWarning
@@ -18,10 +21,19 @@ from beamfem.results.solution_checks import advice, may_lock, warn_of
 from beamfem.results.status import Finding, Statistics, Status
 from beamfem.solve.accuracy.adapted_mesh import Shares, prepared, refined_until, require_unlocked
 from beamfem.solve.accuracy.error_estimate import enriched, enriched_state
+from beamfem.solve.continuation.bifurcations import DISTANCE, Crossing, bifurcations, condensed
+from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
+from beamfem.solve.continuation.critical_points import Segment, SegmentLostError, interpolation_weights
+from beamfem.solve.continuation.steps import Refused, Step, longest_step, take_step, too_small
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
-from beamfem.solve.stability.linearised import linear_reach, linear_solution, linearised_loads
-from beamfem.solve.stability.loading_path import InvertedError, LoadingPath, PathLostError
-from beamfem.solve.stability.path_critical_points import LIMIT_POINT, Critical, critical_points
+from beamfem.solve.newton.newton import Newton, Termination
+from beamfem.solve.stability.linearised import (
+    largest_displacement,
+    linear_reach,
+    linear_solution,
+    linearised_loads,
+    size_of,
+)
 from beamfem.solve.stability.stability import stable_start
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.start_checks import refuse_memory
@@ -33,7 +45,14 @@ from beamfem.validation import number_below, positive, squared
 _LARGEST_MOVEMENT = 2.0  # of the model, as if it were turned over: the path is followed no further
 _LARGEST_LOAD = 300.0  # times the load factors of linear analysis: the path is followed no further
 _MOST_POINTS = 300
+BIFURCATION, LIMIT_POINT = "bifurcation", "limit point"
 _SHOWN = 6  # critical points in a text
+_FIRST_STEP = 0.02
+_ITERATIONS = 15
+_MODES = 3  # softest ones, of which one may lose its stiffness and gain it again
+_KEPT = 0.3  # of the least stiffness of a mode at the points of a step: with less in between it may lose it
+_GRID = np.linspace(0.0, 1.0, 65)
+_DISTANCES = 0.5, 2.0, 0.8  # of the usual one
 _UNCERTAIN = 1e-4  # of a load factor: a larger uncertainty gives a warning
 
 
@@ -270,13 +289,14 @@ def _buckling(model: Model, count: int, about: State | Solution | None) -> _Judg
         raise InputError(f"count is {count}, but this model has only {unknown} unknown coordinates")
     with digits_for("critical load factors"):
         p, load_factor = stable_start(system, about)
-        path = LoadingPath(system, p, load_factor)
+        line, start = begin(system, p, load_factor, Newton(iterations=_ITERATIONS))
         linear = linear_solution(system, p, load_factor)
         linearised = np.empty(0) if linear is None else linearised_loads(system, p, load_factor, linear, count)
     reach = 1.0 if linear is None else linear_reach(system, linear, linearised - load_factor)
-    farthest = load_factor + _LARGEST_LOAD * reach
+    path = _LoadingPath(line, [start], count, load_factor + _LARGEST_LOAD * reach)
     with digits_for("critical load factors"):
-        criticals, ended, status = _criticals(path, count, farthest)
+        ended, status = path.follow()
+    criticals = path.criticals
     if not criticals and path.lost:
         raise ConvergenceError(
             f"the loading path was lost before any load factor was critical: {ended}"
@@ -307,48 +327,160 @@ def _buckling(model: Model, count: int, about: State | Solution | None) -> _Judg
     ), found
 
 
-def _criticals(path: LoadingPath, count: int, farthest: float) -> tuple[list[Critical], str, Status]:
-    """Return the first `count` critical points up to the first limit point, why there are no more, and the status."""
-    criticals: list[Critical] = []
-    current = path.start
-    while len(path.points) < _MOST_POINTS:
-        try:
-            following = path.advance(current)
-            more, current = critical_points(path, current, following)
-        except PathLostError as error:
-            if path.shorten(current):
-                continue
-            if isinstance(error, InvertedError):
-                path.lost = False
-                beyond = f"beyond load factor {current.load_factor:.6g} the beam would be turned inside out"
-                return criticals, beyond, Status.STOPPED
-            return criticals, str(error), Status.STOPPED
-        except ConvergenceError as error:
-            path.lost = True
-            return criticals, str(error), Status.STOPPED
-        current = path.add(current)
-        for point in more:
-            # what a step happens to find beyond the limits depends on its length
-            beyond = _beyond(path, point.p, point.load_factor, farthest)
-            if beyond or len(criticals) == count:
-                break
-            criticals.append(point)
-            if point.kind == LIMIT_POINT:
-                return criticals, "the path has its largest load factor there", Status.COMPLETED
-        else:
-            beyond = _beyond(path, current.y[:-1], current.load_factor, farthest)
-        if len(criticals) == count:
-            return criticals, f"the requested number, {count}, was found", Status.COMPLETED
-        if beyond:
-            return criticals, beyond, Status.STOPPED
-    return criticals, f"the {_MOST_POINTS} points of the path are used up", Status.STOPPED
+@dataclass(frozen=True, eq=False)
+class _Critical:
+    """A singular point of a loading path: kind, load factor, state p (n,), mode (n,), and relative error."""
+
+    kind: str
+    load_factor: float
+    p: np.ndarray
+    mode: np.ndarray
+    uncertainty: float
 
 
-def _beyond(path: LoadingPath, p: np.ndarray, load_factor: float, farthest: float) -> str:
-    """Return which limit of the search a state p (n,) is beyond, nothing if none."""
-    if path.moved(p) > _LARGEST_MOVEMENT:
-        return f"the search goes no further than a movement by {_LARGEST_MOVEMENT:g} times the size of the model"
-    if load_factor > farthest:
-        times = f"{_LARGEST_LOAD:g} times the load factors of linear analysis"
-        return f"the search goes no further than {times}, {farthest:.6g}"
-    return ""
+@dataclass(eq=False)
+class _LoadingPath:
+    """The path through the first of its points towards larger load factors, up to its first limit point.
+
+    count: number of critical points that are sought; farthest: largest load factor.
+    """
+
+    line: Continuation
+    points: list[PathPoint]
+    count: int
+    farthest: float
+    criticals: list[_Critical] = field(default_factory=list)
+    lost: bool = False
+
+    def follow(self) -> tuple[str, Status]:
+        """Find critical points in the order of the path; return why there are no more, and the status."""
+        size = _FIRST_STEP
+        while len(self.points) < _MOST_POINTS:
+            point = self.points[-1]
+            taken = self._step(point, size)
+            if isinstance(taken, Refused):
+                self.lost = taken.reason != Termination.INVERTED.value
+                where = f"beyond load factor {point.load_factor:.6g}"
+                inverted = f"{where} the beam would be turned inside out"
+                lost = f"{where} no step along the path is accepted: {taken.reason}"
+                return lost if self.lost else inverted, Status.STOPPED
+            step, criticals = taken
+            after = step.segment.after
+            for critical in criticals:
+                # what a step happens to find beyond the limits depends on its length
+                beyond = self._beyond(critical.p, critical.load_factor)
+                if beyond or len(self.criticals) == self.count:
+                    break
+                self.criticals.append(critical)
+                if critical.kind == LIMIT_POINT:
+                    return "the path has its largest load factor there", Status.COMPLETED
+            else:
+                beyond = self._beyond(after.y[:-1], after.load_factor)
+            self.line, point = self.line.rescaled(after)
+            self.points.append(point)
+            size = step.next_size * self.line.length(after.tangent)
+            if len(self.criticals) == self.count:
+                return f"the requested number, {self.count}, was found", Status.COMPLETED
+            if beyond:
+                return beyond, Status.STOPPED
+        return f"the {_MOST_POINTS} points of the path are used up", Status.STOPPED
+
+    def _step(self, point: PathPoint, size: float) -> tuple[Step, list[_Critical]] | Refused:
+        """Return the longest accepted step from a point with its critical points, or why the last one was refused."""
+        size = min(size, longest_step(self.line, point))
+        while True:
+            outcome = take_step(self.line, point, size, strict=False)
+            if isinstance(outcome, Step):
+                try:
+                    return outcome, [each for part in _parts(outcome) for each in _critical_points(part)]
+                except SegmentLostError as error:
+                    outcome = Refused(str(error), outcome.iterations)
+            size *= 0.5
+            if too_small(self.line, point, size):
+                return outcome
+
+    def _beyond(self, p: np.ndarray, load_factor: float) -> str:
+        """Return which limit of the search a state p (n,) is beyond, nothing if none."""
+        system = self.line.system
+        if largest_displacement(system, p - self.points[0].y[:-1]) > _LARGEST_MOVEMENT * size_of(system):
+            return f"the search goes no further than a movement by {_LARGEST_MOVEMENT:g} times the size of the model"
+        if load_factor > self.farthest:
+            times = f"{_LARGEST_LOAD:g} times the load factors of linear analysis"
+            return f"the search goes no further than {times}, {self.farthest:.6g}"
+        return ""
+
+    def solution(self) -> Solution:
+        """Return the points found, as a solution."""
+        rows = np.array([point.y for point in self.points])
+        p, none = rows[:, :-1], np.zeros((len(rows), rows.shape[1] - 1))
+        ended = "the equilibria that were found on the loading path"
+        statistics = Statistics(0, len(rows) - 1, 0, ended, Status.STOPPED)
+        model = self.line.system.model
+        return Solution(model, True, rows[:, -1], p, none, none.copy(), statistics)
+
+
+_Part = tuple[Segment, list[float], list[Crossing]]
+
+
+def _parts(step: Step) -> list[_Part]:
+    """Return the segments of a step, divided where a mode loses its stiffness and gains it again, and what is on them.
+
+    Raises SegmentLostError.
+    """
+    segment = step.segment
+    counts = [end.negative_pivots for end in (segment.before, segment.after)]
+    inside = (segment.at(x) for x in (0.5, _softest_place(segment)) if x is not None)
+    hidden = [point for point in inside if not min(counts) <= point.negative_pivots <= max(counts)]
+    if not hidden:
+        return [(segment, step.limits, step.crossings)]
+    ends = segment.before, hidden[0], segment.after
+    halves = [Segment(segment.line, *pair) for pair in pairwise(ends)]
+    limits = [half.limit_points() for half in halves]
+    return [(half, own, bifurcations(half, own)) for half, own in zip(halves, limits, strict=True)]
+
+
+def _softest_place(segment: Segment) -> float | None:
+    """Return the fraction where by parabolas through three points a mode keeps the least fraction of its stiffness.
+
+    None if all modes keep more of it than a fraction, or round-off hides the stiffnesses. Raises SegmentLostError.
+    """
+    at = np.array([0.0, 0.5, 1.0])
+    try:
+        modes = segment.line.softest_modes(segment.before.factors, _MODES)
+        stiffness = [condensed(segment.line, segment.at(x), modes).stiffness for x in at.tolist()]
+        eigenvalues = np.linalg.eigvalsh(np.array(stiffness))
+    except LinAlgError:
+        return None
+    steady = eigenvalues[:, (eigenvalues > 0.0).all(axis=0) | (eigenvalues < 0.0).all(axis=0)]
+    if not steady.size:
+        return None
+    least = steady[np.abs(steady).argmin(axis=0), np.arange(steady.shape[1])]
+    kept = interpolation_weights(at, _GRID) @ (steady / least)
+    return float(_GRID[kept.min(axis=1).argmin()]) if kept.min() <= _KEPT else None
+
+
+def _critical_points(part: _Part) -> list[_Critical]:
+    """Return the critical points of a part of a path in order, a bifurcation at a limit point before it.
+
+    Their uncertainty is the change of the result with the distance of the points between which is interpolated.
+    """
+    (segment, limits, crossings), again = part, list[float]()
+    for factor in _DISTANCES if crossings else ():
+        with suppress(SegmentLostError):
+            again = [float(other.y[-1]) for other in bifurcations(segment, limits, factor * DISTANCE)]
+        if len(again) == len(crossings):
+            break
+    else:
+        again = [segment.before.load_factor] * len(crossings)
+    found = []
+    for crossing, other in zip(crossings, again, strict=True):
+        y, mode = crossing.y, crossing.mode[:-1]
+        found.append((crossing.fraction, _Critical(BIFURCATION, float(y[-1]), y[:-1], mode, _change(y[-1], other))))
+    for x in limits:
+        y, (beside, tangent) = segment.critical(x), segment.interpolated(x)
+        found.append((x, _Critical(LIMIT_POINT, float(y[-1]), y[:-1], tangent[:-1], _change(y[-1], beside[-1]))))
+    return [critical for _, critical in sorted(found, key=lambda row: (row[0], row[1].kind == LIMIT_POINT))]
+
+
+def _change(load_factor: float, other: float) -> float:
+    return abs(other / load_factor - 1.0) if load_factor != 0.0 else np.inf

@@ -12,17 +12,48 @@ from beamfem.assembly.equations import STATICS, linearise_at_rest, load_change, 
 from beamfem.assembly.stress_resultants import free_group, resultants
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
+from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS
 from beamfem.linalg.eigenpairs import MOST_RESTARTS, Pairs, first_that_works, first_vector, lanczos_vectors, repeated
 from beamfem.linalg.lapack import eig, eigh, qr
 from beamfem.linalg.tangent import UNROTATED, Factorised
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes, weak_stiffness
 from beamfem.solve.modes.pencil import is_symmetric
-from beamfem.solve.stability.loading_path import largest_movement
 from beamfem.solve.start.functions_of_time import functions_of_time
 
 _WIDTH = 1e-4  # of the load factor: loads with amplitudes are differentiated over it
 _NO_SLOPE = 1e-6  # of the change of the loads further on: a smaller slope is an error of the difference
 _ROUND_OFF = 1e-10  # of the largest stiffness of a connector
+
+
+def size_of(system: System) -> float:
+    """Return twice the largest distance [m] of a node from the centre of all beams, the length of a straight one.
+
+    `System.extent` is no measure of results: it is the length of the longest beam, and halves are shorter.
+    """
+    chains = [mesh.position for mesh in system.model.meshes]
+    steps = np.concatenate([np.diff(chain, axis=0) for chain in chains])
+    middles = np.concatenate([0.5 * (chain[1:] + chain[:-1]) for chain in chains])
+    lengths = np.hypot(*steps.T)
+    centre = lengths @ middles / lengths.sum()
+    return 2.0 * float(np.hypot(*(np.concatenate(chains) - centre).T).max())
+
+
+def largest_displacement(system: System, change: np.ndarray) -> float:
+    """Return the largest displacement [m] of a node by a change (n,)."""
+    places = np.concatenate([block.dof[:, :2] for block in system.blocks])
+    return float(np.hypot(*change[places.T]).max())
+
+
+def largest_movement(system: System, change: np.ndarray) -> float:
+    """Return the largest component of a change (n,): displacements in sizes of the model, gradients, angles [rad]."""
+    padded = np.append(change, 0.0)
+    largest = largest_displacement(system, change) / size_of(system)
+    for block in system.blocks:
+        plain = np.isin(block.node_kind, (GRADIENTS, ROTATED_GRADIENTS))
+        rotations, gradients = block.dof[~plain, 2:], block.dof[plain, 2:].reshape(-1, 2)
+        moved = np.hypot(*padded[gradients].T), np.abs(padded[rotations])
+        largest = max(largest, *(float(values.max(initial=0.0)) for values in moved))
+    return largest
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from beamfem.element.forces import ContinuumMechanics, ElasticLine, Forces, Spli
 from beamfem.errors import InputError
 from beamfem.kernels import block
 from beamfem.quadrature import gauss
-from beamfem.validation import flag, one_of, optional, shown, text
+from beamfem.validation import flag, of_package, one_of, optional, shown, text
 from beamfem.value_keys import by_value
 
 Integration = Literal["full", "reduced", "lobatto"]
@@ -112,7 +112,9 @@ class Element:
     @cached_property
     def _compared(self) -> tuple[Hashable, ...]:
         # classes derived by users may have data that the base classes do not compare
-        return by_value(self.field), by_value(self.coordinates), by_value(self.forces), self.integration, self.label
+        parts: tuple[Any, ...] = self.field, self.coordinates, self.forces
+        keys = (part if of_package(type(part)) else by_value(part) for part in parts)
+        return *keys, self.integration, self.label
 
     @property
     def name(self) -> str:

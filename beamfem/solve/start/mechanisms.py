@@ -106,13 +106,6 @@ class Conditions:
         shape = (max(self.count, 1), 3 * self.bodies)
         return csr_array(coo_array((value, (row.astype(int), column.astype(int))), shape=shape))
 
-    def dense(self) -> np.ndarray:
-        """Return the conditions as a dense array."""
-        result = np.zeros((max(self.count, 1), 3 * self.bodies))
-        for row, column, value in self.entries:
-            result[row, column] += value
-        return result
-
     def rates(self, p: np.ndarray, motion: np.ndarray) -> np.ndarray:
         """Return the change (n,) of the coordinates from the state p with a motion (3 bodies,)."""
         result = np.zeros(len(p))
@@ -125,10 +118,9 @@ class Conditions:
 
 def mechanisms(conditions: Conditions) -> np.ndarray:
     """Return an orthonormal basis (m, 3 bodies) of the motions that satisfy all conditions."""
-    size = 3 * conditions.bodies
+    size, rows = 3 * conditions.bodies, conditions.matrix()
     if conditions.bodies <= _DENSE_BODIES:
-        return _null_space(conditions.dense())
-    rows = conditions.matrix()
+        return _null_space(rows.toarray())
     wanted = _FIRST_FEW
     while 2 * wanted < size:
         start = np.random.default_rng(1).standard_normal(size)
@@ -141,7 +133,7 @@ def mechanisms(conditions: Conditions) -> np.ndarray:
         if values.max() >= NEGLIGIBLE:
             return np.asarray(vectors.T[values < NEGLIGIBLE])
         wanted *= 4
-    return _null_space(conditions.dense())
+    return _null_space(rows.toarray())
 
 
 def _null_space(rows: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Loads of a model at a time; forces, moments, springs and pressures in the form that the kernels expect."""
+"""Loads of a model at a time, and the stations of elements where they act."""
 
 from collections import defaultdict
 from dataclasses import dataclass, replace
@@ -9,7 +9,8 @@ import numpy as np
 from beamfem.cached_properties import cached_property
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, length_rule, r_slots
-from beamfem.kernels.block import PointLoads
+from beamfem.kernels.block import DEAD, FOLLOWING, GROUNDED, STRETCHING, Stations
+from beamfem.kernels.record import CONSTANTS
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import jacobians, length_points, reference_axis, scales
 from beamfem.model.beam import Beam
@@ -84,14 +85,14 @@ def pressures_have_potential(model: Model, prescribed: set[int]) -> bool:
 
 @dataclass(frozen=True)
 class Actions:
-    """Point loads of a block and their values at a time.
+    """Stations of a block and the values of their loads at a time.
 
     unit (nl, 3): force [N] and moment [N m] of each, without its factor; source (nl,): index of the load in `loads`, -1
     for springs; xi (nl,): position in the element; rule (nl,): number of Gauss points per element over which a load or
     foundation along a beam is distributed, 0 at a point.
     """
 
-    points: PointLoads
+    stations: Stations
     unit: np.ndarray
     source: np.ndarray
     xi: np.ndarray
@@ -103,8 +104,8 @@ class Actions:
     def _distributed(self) -> tuple[np.ndarray, np.ndarray]:
         """Distributed loads and foundations (m,), ordered by element, and their elements (m,)."""
         distributed = np.flatnonzero(self.rule > 0)
-        order = distributed[np.argsort(self.points.element[distributed], kind="stable")]
-        return order, self.points.element[order]
+        order = distributed[np.argsort(self.stations.element[distributed], kind="stable")]
+        return order, self.stations.element[order]
 
     @cached_property
     def _at_points(self) -> list[tuple[int, int]]:
@@ -165,7 +166,7 @@ class _Moving:
 
 
 def build_actions(model: Model, block: int) -> Actions:
-    """Return the point loads of a block; loads and foundations along beams act at Gauss points."""
+    """Return the stations of a block; those of loads and foundations along beams are Gauss points."""
     points, lines = model.point_loads, _lines(model)
     parts: list[dict[str, np.ndarray]] = []
     for number, load in enumerate(points):
@@ -173,7 +174,9 @@ def build_actions(model: Model, block: int) -> Actions:
         if mesh is not None:
             where, at = mesh.locate(load.point.fraction)
             unit = np.array([load.value])
-            parts.append(_part(mesh, np.array([where]), np.array([at]), unit, number, load.follower))
+            parts.append(
+                _part(mesh, np.array([where]), np.array([at]), unit, number, FOLLOWING if load.follower else DEAD)
+            )
     for number, line in enumerate(lines, len(points)):
         mesh = _mesh(model, line.beam, block)
         if mesh is not None:
@@ -182,8 +185,9 @@ def build_actions(model: Model, block: int) -> Actions:
         mesh = _mesh(model, foundation.beam, block)
         if mesh is not None:
             element, xi, weight = length_points(mesh)
-            part = _part(mesh, element, xi, np.zeros((len(xi), 3)), -1, False, len(xi) // mesh.elements)
-            part["spring"] = np.outer(weight, foundation.stiffness)
+            part = _part(mesh, element, xi, np.zeros((len(xi), 3)), -1, GROUNDED, len(xi) // mesh.elements)
+            place = mesh.position[mesh.node[element, 0]] + reference_axis(mesh, element, xi).r
+            part["constants"] = np.hstack([np.outer(weight, foundation.stiffness), place])
             parts.append(part)
     moving = []
     for wheel in model.moving_loads:
@@ -191,7 +195,7 @@ def build_actions(model: Model, block: int) -> Actions:
         if mesh is not None:
             element, xi, _ = length_points(mesh)
             moving.append(_Moving(wheel, mesh, sum(len(part["xi"]) for part in parts)))
-            parts.append(_part(mesh, element, xi, np.zeros((len(xi), 3)), -1, False, len(xi) // mesh.elements))
+            parts.append(_part(mesh, element, xi, np.zeros((len(xi), 3)), -1, DEAD, len(xi) // mesh.elements))
     if len(parts) == 1:
         joined = dict(parts[0])
     else:
@@ -200,7 +204,7 @@ def build_actions(model: Model, block: int) -> Actions:
             name: np.concatenate([values, *(part[name] for part in parts)]) for name, values in _empty(size).items()
         }
     values = {name: joined.pop(name) for name in ("unit", "source", "xi", "rule")}
-    return Actions(PointLoads(**joined), **values, loads=(*points, *lines), moving=tuple(moving))
+    return Actions(Stations(**joined), **values, loads=(*points, *lines), moving=tuple(moving))
 
 
 def _lines(model: Model) -> list[LineLoad]:
@@ -214,17 +218,16 @@ def _mesh(model: Model, beam: Beam, block: int) -> BeamMesh | None:
 
 
 def _line(mesh: BeamMesh, load: LineLoad, source: int) -> dict[str, np.ndarray]:
-    """Return the rows of the point loads for a load along a beam."""
+    """Return the stations of a load along a beam."""
     element, xi, weight = length_points(mesh)
     unit, rule = np.zeros((len(xi), 3)), len(xi) // mesh.elements
     unit[:, :2] = weight[:, None] * forces_of(load, mesh.arc_length(element, xi))
     if load.axes != "axis":
-        return _part(mesh, element, xi, unit, source, load.axes == "section", rule)
+        return _part(mesh, element, xi, unit, source, FOLLOWING if load.axes == "section" else DEAD, rule)
     # the forces are along and normal to r0', which therefore replaces the director
-    part = _part(mesh, element, xi, unit, source, True, rule)
+    part = _part(mesh, element, xi, unit, source, STRETCHING, rule)
     part["direction"] = _slope(mesh, element, xi) * scales(mesh.beam.element, mesh.lengths[element])
-    part["follows"] = np.tile([1.0, 0.0], (len(xi), 1))
-    part["stretches"] = np.ones(len(xi), dtype=bool)
+    part["constants"][:, 0] = 1.0
     return part
 
 
@@ -237,17 +240,14 @@ def _slope(mesh: BeamMesh, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
 
 
 def _empty(size: int) -> dict[str, np.ndarray]:
-    pair = np.zeros((0, 2))
     whole = np.zeros(0, dtype=np.int64)
     table = np.zeros((0, size))
     return {
         "element": whole,
         "position": table,
         "direction": table,
-        "follows": pair,
-        "stretches": np.zeros(0, dtype=bool),
-        "spring": pair,
-        "anchor": pair,
+        "kind": whole,
+        "constants": np.zeros((0, CONSTANTS)),
         "unit": np.zeros((0, 3)),
         "source": whole,
         "xi": np.zeros(0),
@@ -256,28 +256,26 @@ def _empty(size: int) -> dict[str, np.ndarray]:
 
 
 def _part(
-    mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, unit: np.ndarray, source: int, follower: bool, rule: int = 0
+    mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, unit: np.ndarray, source: int, kind: int, rule: int = 0
 ) -> dict[str, np.ndarray]:
-    """Return the rows of the point loads at points (element, xi) of a beam."""
+    """Return the stations (element, xi) of a beam."""
     element_type, count = mesh.beam.element, len(element)
     scale = scales(element_type, mesh.lengths[element])
     position, direction = _tables(element_type, xi)
     if element_type.forces.turns_with == "r_x":
         direction = _slope(mesh, element, xi)
-    # from the interpolated reference, not the curve: on a curved beam they differ by the interpolation error
-    reference = reference_axis(mesh, element, xi)
-    along = reference.r_s if element_type.forces.turns_with == "r_x" else reference.d
-    (follows, spring), none = np.zeros((2, count, 2)), np.zeros(count, dtype=bool)
-    if follower:
-        follows[:] = along / np.linalg.norm(along, axis=1, keepdims=True)
+    constants = np.zeros((count, CONSTANTS))
+    if kind == FOLLOWING:
+        # from the interpolated reference, not the curve: on a curved beam they differ by the interpolation error
+        reference = reference_axis(mesh, element, xi)
+        along = reference.r_s if element_type.forces.turns_with == "r_x" else reference.d
+        constants[:, :2] = along / np.linalg.norm(along, axis=1, keepdims=True)
     return {
         "element": mesh.first_element + element,
         "position": position * scale,
         "direction": direction * scale,
-        "follows": follows,
-        "stretches": none,
-        "spring": spring,
-        "anchor": mesh.position[mesh.node[element, 0]] + reference.r,
+        "kind": np.full(count, kind),
+        "constants": constants,
         "unit": unit,
         "source": np.full(count, source),
         "xi": xi,

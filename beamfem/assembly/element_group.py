@@ -19,10 +19,12 @@ from beamfem.kernels.block import (
     Imposed,
     Law,
     Layout,
-    PointLoads,
+    Stations,
 )
-from beamfem.kernels.record import LANES, ROW, Group
+from beamfem.kernels.record import LANES, ROW, Group, StationPasses
 from beamfem.kernels.simd import WIDTH
+from beamfem.physics.compiled_connections import passes_of
+from beamfem.physics.stations import STATIONS
 
 _CACHE = 400  # workspace rows times elements of a batch, in units of `LANES`, that fit into the cache of a core
 _SMALLEST = 16
@@ -43,7 +45,7 @@ class Sizes(NamedTuple):
 
 
 class Numbers(NamedTuple):
-    """Arrays of integers of a group, see `kernels.block`; free (n,): equation numbers; element: those with loads."""
+    """Arrays of integers of a group, see `kernels.block`; free (n,): equation numbers; element: those of stations."""
 
     node: np.ndarray
     kind: np.ndarray
@@ -70,7 +72,7 @@ class Structure:
     needs: Needs
 
 
-def structure_of(block: Block, layout: Layout, loads: PointLoads) -> Structure:
+def structure_of(block: Block, layout: Layout, stations: Stations) -> Structure:
     """Return the structure of a block; identical small blocks share one."""
     slots = block.scale.shape[1]
     _, points, measures = block.reference.shape
@@ -83,7 +85,7 @@ def structure_of(block: Block, layout: Layout, loads: PointLoads) -> Structure:
         layout.half_width,
     )
     numbers = Numbers(
-        block.node, block.kind, block.beam, block.node_kind, block.dof, block.home, layout.free, loads.element
+        block.node, block.kind, block.beam, block.node_kind, block.dof, block.home, layout.free, stations.element
     )
     if len(block.node) > _FEW or len(layout.free) > 10 * _FEW:
         return _structure(numbers, sizes, block.imposed is not None)
@@ -148,9 +150,9 @@ def _structure(given: Numbers, sizes: Sizes, imposed: bool) -> Structure:
         "number": number.T,
         "free": given.free,
         "home": given.home,
-        "load_element": given.element,
-        "load_place": offsets[given.element].T,
-        "load_number": number[given.element].T,
+        "station_element": given.element,
+        "station_place": offsets[given.element].T,
+        "station_number": number[given.element].T,
         "counted": np.arange(elements) if sizes.half_width < 0 else np.empty(0, dtype=np.int64),
     }
     record = Group(
@@ -174,7 +176,7 @@ def _structure(given: Numbers, sizes: Sizes, imposed: bool) -> Structure:
         node_rows=node_rows,
         chunk_count=-(-count // LANES),
         space_rows=used,
-        loads=len(given.element),
+        stations=len(given.element),
         **rows | sizes._asdict(),
         **{name: np.ascontiguousarray(values, dtype=np.int64) for name, values in arrays.items()},
     )
@@ -217,18 +219,18 @@ def _table_rows(slots: int, sizes: Sizes) -> dict[str, int]:
     return dict(zip((*lengths, "table_rows"), ends, strict=True))
 
 
-def _needs(kinds: tuple[int, ...], sizes: Sizes, loads: bool, imposed: bool) -> Needs:
+def _needs(kinds: tuple[int, ...], sizes: Sizes, stations: bool, imposed: bool) -> Needs:
     """Return the parts of `Routines` that each task needs, and the kinds of nodes with an angle."""
     angles = tuple(kind - ROTATION for kind in kinds if kind in (ROTATION, STRETCH, SHEAR_RIGID))
     rotated = ("rotated",) if ROTATED_GRADIENTS in kinds else ()
     rotates = bool(angles or rotated)
-    forces = ("forces", *(("angles",) if angles else ()), *rotated, *(("loads",) if loads else ()))
+    forces = ("forces", *(("angles",) if angles else ()), *rotated, *(("stations",) if stations else ()))
     forces += (*(("damping",) if sizes.damped else ()), *(("imposed",) if imposed else ()))
     tangent = ["tangent", "band" if sizes.half_width >= 0 else "sparse"]
     tangent += ["damping tangent"] if sizes.damped else []
     tangent += ["rotation tangent"] if rotates else []
-    tangent += ["load tangent"] if loads else []
-    tangent += ["rotation load tangent"] if loads and rotates else []
+    tangent += ["station tangent"] if stations else []
+    tangent += ["rotation station tangent"] if stations and rotates else []
     parts = {"forces": forces, "tangent": tuple(tangent), "mass": ("mass",), "prediction": ("prediction",)}
     return {task: (names, angles) for task, names in parts.items()}
 
@@ -276,9 +278,9 @@ def stored(block: Block, order: np.ndarray | None) -> Block:
     return block._replace(node=number[block.node], **reordered)
 
 
-def make_group(block: Block, layout: Layout, loads: PointLoads) -> ElementGroup:
+def make_group(block: Block, layout: Layout, stations: Stations) -> ElementGroup:
     """Return the group of a block."""
-    structure, element_routines = structure_of(block, layout, loads), _routines(block)
+    structure, element_routines = structure_of(block, layout, stations), _routines(block)
     classes, nodes = len(block.scale), block.node.shape[1]
     vectors, order = block.scale.shape[1] // nodes, structure.order
     upper = _UPPER[block.reference.shape[2]]
@@ -299,15 +301,15 @@ def make_group(block: Block, layout: Layout, loads: PointLoads) -> ElementGroup:
         "tables": np.concatenate(parts, axis=1),
         "director": block.director,
         "frame": np.concatenate((frame.T.ravel(), _PADDING)),
-        "position": loads.position.T,
-        "direction": loads.direction.T,
-        "follows": loads.follows.T,
-        "stretches": loads.stretches,
-        "spring": loads.spring.T,
-        "anchor": loads.anchor.T,
+        "position": stations.position.T,
+        "direction": stations.direction.T,
+        "constants": stations.constants,
     }
+    kinds, number = np.unique(stations.kind, return_inverse=True)
     record = structure.record.copy()
     record.fill(
+        station_kind=number,
+        kinds=[StationPasses(**passes_of(STATIONS[kind])._asdict()) for kind in kinds.tolist()],
         mass_damping=block.mass_damping,
         apart=not mixed.any(),
         law_points=block.history.shape[1],

@@ -6,7 +6,8 @@ import numpy as np
 
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.element_group import ElementGroup, make_group
-from beamfem.kernels.block import Block, Layout, PointLoads
+from beamfem.kernels.block import Block, Layout, Stations
+from beamfem.kernels.record import CONSTANTS
 
 
 def free_group(block: Block, size: int) -> ElementGroup:
@@ -15,10 +16,10 @@ def free_group(block: Block, size: int) -> ElementGroup:
     return make_group(block, Layout(np.arange(size), 0, none), no_loads(block))
 
 
-def no_loads(block: Block) -> PointLoads:
-    """Return the empty point loads of a block."""
-    table, pair = np.empty((0, block.scale.shape[1])), np.empty((0, 2))
-    return PointLoads(np.empty(0, dtype=np.int64), table, table, pair, np.empty(0, dtype=bool), pair, pair)
+def no_loads(block: Block) -> Stations:
+    """Return the stations of a block without loads."""
+    table, none = np.empty((0, block.scale.shape[1])), np.empty(0, dtype=np.int64)
+    return Stations(none, table, table, none, np.empty((0, CONSTANTS)))
 
 
 def resultants(

@@ -34,7 +34,7 @@ from beamfem.assembly.solver_table import motion_solver, newton_solver
 from beamfem.assembly.strain_rates import StrainRates, strain_rates
 from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
-from beamfem.kernels.block import Block, Layout, PointLoads
+from beamfem.kernels.block import FOLLOWING, Block, Layout, Stations
 from beamfem.kernels.motion_record import MotionSolver
 from beamfem.kernels.newton_record import NewtonSolver
 from beamfem.kernels.record import Parts
@@ -156,7 +156,7 @@ class System:
 
     def equations_of(self, blocks: Sequence[Block]) -> Equations:
         """Return the equations with other blocks in place of those of the system."""
-        groups = [make_group(*parts) for parts in zip(blocks, self.layouts, self.point_loads, strict=True)]
+        groups = [make_group(*parts) for parts in zip(blocks, self.layouts, self.stations, strict=True)]
         return Equations(groups, self.model.size, self._parts)
 
     @shared_table
@@ -206,7 +206,7 @@ class System:
     def residual_errors(self) -> np.ndarray:
         """Residual (2, n) per unit relative error: in positions of 1 m [1/m], and in directions."""
         vectors = [element.field.vectors for element in self.model.groups]
-        errors = residual_errors(self.blocks, vectors, self.point_loads, self.model.size)
+        errors = residual_errors(self.blocks, vectors, self.stations, self.model.size)
         np.add.at(errors[0], self.springs.numbers[:, 0], self.springs.data[:, 0])
         return errors + self.connectors.errors
 
@@ -226,7 +226,7 @@ class System:
 
     @cached_property
     def actions(self) -> tuple[Actions, ...]:
-        """Loads and springs at points of each block, with their values."""
+        """Stations of each block, with the values of loads."""
         return tuple(actions.of(self.model) for actions in self._unloaded_actions)
 
     @shared_table
@@ -236,9 +236,9 @@ class System:
         return tuple(replace(actions, loads=()) for actions in built)
 
     @shared_table
-    def point_loads(self) -> tuple[PointLoads, ...]:
-        """Loads and springs at points of each block, in the order of `point_values`."""
-        return tuple(actions.points for actions in self._unloaded_actions)
+    def stations(self) -> tuple[Stations, ...]:
+        """Stations of each block, in the order of `point_values`."""
+        return tuple(actions.stations for actions in self._unloaded_actions)
 
     def point_values(self, time: float) -> tuple[np.ndarray, ...]:
         """Return the forces and moments (nl, 3) [N, N, N m] of each block at a time."""
@@ -297,7 +297,7 @@ class System:
     @shared_table
     def symmetric(self) -> bool:
         """Whether the tangent is symmetric: no load follows the sections, and all else has a potential."""
-        following = any(loads.follows.any() and loads.follows[~loads.stretches].any() for loads in self.point_loads)
+        following = any((stations.kind == FOLLOWING).any() for stations in self.stations)
         directed = [dof for dof, _ in self.inclined]
         fixed = {*self.prescribed_dofs.tolist(), *directed}
         return not following and self.connectors.conservative and pressures_have_potential(self.model, fixed)

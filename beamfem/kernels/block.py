@@ -118,16 +118,21 @@ class Block(NamedTuple):
         return linear if self.law is None else self.law.linearised(strain, p[self.history], linear)[1]
 
 
-class PointLoads(NamedTuple):
-    """Forces, moments and springs to the ground at points of elements; values of forces are passed with each call."""
+# Kinds of stations, see `physics.stations`
+DEAD = 0
+FOLLOWING = 1
+STRETCHING = 2
+GROUNDED = 3
+
+
+class Stations(NamedTuple):
+    """Points of elements where forces act; values of forces are passed with each call."""
 
     element: np.ndarray  # (nl,) element
     position: np.ndarray  # (nl, nv) weights of the nodal vectors e_i in r0 = sum position_i e_i
     direction: np.ndarray  # (nl, nv) likewise for the vector that defines the direction of the section: d or r_x
-    follows: np.ndarray  # (nl, 2) unit vector of that direction in the reference for follower forces, else zero
-    stretches: np.ndarray  # (nl,) whether a follower force is proportional to the length of that vector (pressure)
-    spring: np.ndarray  # (nl, 2) stiffness against displacement [N/m]
-    anchor: np.ndarray  # (nl, 2) position of zero spring force [m]
+    kind: np.ndarray  # (nl,) DEAD, FOLLOWING, STRETCHING or GROUNDED
+    constants: np.ndarray  # (nl, 4): unit vector of that direction in the reference, or stiffness [N/m] and place [m]
 
 
 class Layout(NamedTuple):

@@ -120,7 +120,7 @@ def add_matrices(group: Group, system: System, first: int, count: int, k: Reals)
 
 @routine()
 def reduce_and_add(group: Group, system: System, first: int, count: int, x: Reals) -> None:
-    """Reduce the matrices (columns, rows, ROW) of a batch of loads in its workspace x, and add them to the model's."""
+    """Reduce the matrices (columns, rows, ROW) of a batch of stations in its workspace x; add them to the model's."""
     call = group.routines
     nodes, vectors, dependent, parameters, gathered = (
         group.nodes_per_element,
@@ -137,8 +137,8 @@ def reduce_and_add(group: Group, system: System, first: int, count: int, x: Real
         call.reduce_columns(nodes, size, dependent, parameters, count, gathered, transform, k, x)
         call.reduce_rows(nodes, size, dependent, parameters, count, gathered, transform, k, x)
     if half >= 0:
-        number = at(group.load_number, first)
-        call.add_to_band(nodes, size, coordinates, count, group.loads, number, half, k, matrix)
+        number = at(group.station_number, first)
+        call.add_to_band(nodes, size, coordinates, count, group.stations, number, half, k, matrix)
     else:
-        elements = at(group.load_element, first)
+        elements = at(group.station_element, first)
         call.add_to_sparse(nodes, size, coordinates, count, elements, group.slot, k, matrix)

@@ -24,8 +24,8 @@ def add_group(group, system):
     call = group.routines
     call.place_nodes(group, system, system.moving)
     call.add_elements(group, system)
-    if group.loads > 0:
-        call.add_loads(group, system)
+    if group.stations > 0:
+        call.add_stations(group, system)
     call.finish_nodes(group, system)
 
 

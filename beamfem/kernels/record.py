@@ -8,6 +8,7 @@ from typing import Annotated
 
 from beamfem.kernels.records import Reals, Record, Several, Slots, Table, Wholes, calls
 
+CONSTANTS = 4  # of a station
 LANES = 64
 ROW = 72  # longer than a batch, so that rows do not all map to the same cache sets
 
@@ -44,8 +45,8 @@ class GroupRoutines(Record):
     add_inertia = calls("inertia_forces:add_inertia", "forces")
     add_mass = calls("inertia_forces:add_mass", "mass")
     add_scaled = calls("inertia_forces:add_scaled", "mass")
-    reduce_columns = calls("reduction:reduce_columns", "rotation load tangent")
-    reduce_rows = calls("reduction:reduce_rows", "rotation load tangent")
+    reduce_columns = calls("reduction:reduce_columns", "rotation station tangent")
+    reduce_rows = calls("reduction:reduce_rows", "rotation station tangent")
     add_to_sparse = calls("reduction:add_to_sparse", "sparse")
     add_curvature = calls("reduction:add_curvature", "rotation tangent")
     add_to_band = calls("band_assembly:add_to_band", "band")
@@ -64,17 +65,24 @@ class GroupRoutines(Record):
     add_products = calls("rate_tangent:add_products", "damping tangent")
     add_rate_tangent = calls("rate_tangent:add_rate_tangent", "damping tangent")
     release = calls("imposed_strain_pass:release", "imposed")
-    add_loads = calls("point_loads:add_loads", "loads")
-    load_forces = calls("point_loads:load_forces", "loads")
+    add_stations = calls("station_passes:add_stations", "stations")
+    station_forces = calls("station_passes:station_forces", "stations")
     place_nodes = calls("node_passes:place_nodes", "forces")
     finish_nodes = calls("node_passes:finish_nodes", "forces")
     add_elements = calls("element_passes:add_elements", "forces")
     form_matrices = calls("element_matrices:form_matrices", "tangent")
     add_matrices = calls("element_matrices:add_matrices", "tangent")
-    reduce_and_add = calls("element_matrices:reduce_and_add", "load tangent")
+    reduce_and_add = calls("element_matrices:reduce_and_add", "station tangent")
     add_node_rates = calls("model_passes:add_node_rates", "prediction", "damping")
     rate_nodes = calls("model_passes:rate_nodes", "prediction", "damping")
     turn_nodes = calls("model_passes:turn_nodes", "damping tangent")
+
+
+class StationPasses(Record):
+    """The compiled functions of a kind of station."""
+
+    force = calls("generated.connection_forces:dead_force")
+    tangent = calls("generated.connection_forces:dead_tangent")
 
 
 class Group(Record):
@@ -152,19 +160,18 @@ class Group(Record):
     filled_class: int  # the class whose tables are in the workspace, or -1 - the first of several elements
     filled_count: int  # number of these elements
 
-    # forces, moments and springs at points
-    loads: int
-    load_element: Annotated[Wholes, "loads"]
-    position: Reals  # (slots, loads)
-    direction: Reals  # (slots, loads)
-    follows: Reals  # (2, loads)
-    stretches: Reals  # (loads,)
-    spring: Reals  # (2, loads)
-    anchor: Reals  # (2, loads)
-    load_place: Annotated[Wholes, "nodes_per_element", "loads"]
-    load_number: Wholes  # (nodes * coordinates, loads)
-    values: Reals  # (loads, 3): forces and moments [N, N, N m]
-    values_of_steps: Reals  # (steps or 1, loads, 3): those of the steps of a motion
+    # forces at stations of elements
+    stations: int
+    station_element: Annotated[Wholes, "stations"]
+    station_kind: Annotated[Wholes, "stations"]
+    kinds: Table[StationPasses]
+    position: Reals  # (slots, stations)
+    direction: Reals  # (slots, stations)
+    constants: Annotated[Reals, "stations", CONSTANTS]
+    station_place: Annotated[Wholes, "nodes_per_element", "stations"]
+    station_number: Wholes  # (nodes * coordinates, stations)
+    values: Reals  # (stations, 3): forces and moments [N, N, N m]
+    values_of_steps: Reals  # (steps or 1, stations, 3): those of the steps of a motion
 
 
 class Parts(Record):

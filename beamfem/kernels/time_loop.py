@@ -40,7 +40,7 @@ def _load(system, solver, step):
     system.body = at(solver.bodies, row * solver.body_size)
     for number in range(system.group_count):
         group = system.groups[number]
-        group.values = at(group.values_of_steps, 3 * row * group.loads)
+        group.values = at(group.values_of_steps, 3 * row * group.stations)
         if given(group.natural_of_steps):
             strains = group.elements * group.points * group.measures
             group.natural = at(group.natural_of_steps, row * strains)

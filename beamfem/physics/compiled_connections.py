@@ -15,7 +15,8 @@ from beamfem.kernels.compiling import Routine
 from beamfem.kernels.connection_passes import MOST, MOST_DATA
 from beamfem.kernels.generated import connection_forces
 from beamfem.kernels.pointers import address_of
-from beamfem.physics.connections import CONNECTIONS, Connection
+from beamfem.physics.connections import Connection
+from beamfem.physics.stations import GENERATED
 
 
 class Foreign:
@@ -41,7 +42,7 @@ class Passes(NamedTuple):
 @cache
 def passes_of(connection: Connection) -> Passes:
     """Return the compiled force and tangent. Raises InputError for energies that cannot be derived."""
-    if connection in CONNECTIONS:
+    if connection in GENERATED:
         return Passes(*(getattr(connection_forces, f"{connection.name}_{what}") for what in ("force", "tangent")))
     if not connection.name.isidentifier():
         raise InputError(f"the name of a Connection must be one word of letters, digits and _, got {connection.name!r}")

@@ -16,9 +16,9 @@ import sympy
 from beamfem.kernels import point
 from beamfem.kernels.record import ROW
 from beamfem.physics.connection_source import HEADER, Printer, connection_source
-from beamfem.physics.connections import CONNECTIONS
 from beamfem.physics.kinematics import KINDS, Kinematics
 from beamfem.physics.measures import MEASURES, Measure
+from beamfem.physics.stations import GENERATED
 
 FOLDER = Path(__file__).parents[1] / "kernels" / "generated"
 _AXIS = ("rx", "ry", "dx", "dy", "ex", "ey")
@@ -187,9 +187,9 @@ def sources() -> dict[str, str]:
     """Return the formatted source of all generated modules by file name."""
     measures = {f"{measure.__name__}_pass.py": measure_source(measure) for measure in MEASURES}
     modules = measures | {f"{kind.name}_node.py": kinematics_source(kind) for kind in KINDS}
-    title = "Forces and tangents of the parts at points in `beamfem.physics.connections`."
+    title = "Forces and tangents of parts at points and at stations, see `physics.connections` and `physics.stations`."
     notice = "Written by beamfem.physics.generate: do not edit."
-    functions = "\n\n".join(map(connection_source, CONNECTIONS))
+    functions = "\n\n".join(map(connection_source, GENERATED))
     modules["connection_forces.py"] = f'"""{title}\n\n{notice}\n"""\n\n{HEADER}{functions}'
     return {name: _formatted(source) for name, source in modules.items()}
 

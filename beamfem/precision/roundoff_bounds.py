@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beamfem.element.coordinates import labels
-from beamfem.kernels.block import ELASTIC_LINE, SHEAR_RIGID, STRETCH, Block, PointLoads
+from beamfem.kernels.block import ELASTIC_LINE, GROUNDED, SHEAR_RIGID, STRETCH, Block, Stations
 from beamfem.physics.measures import MEASURES, evaluate
 
 _COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted
@@ -20,7 +20,7 @@ _COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted
 def residual_errors(
     blocks: Sequence[Block],
     vectors: Sequence[tuple[str, ...]],
-    points: Sequence[PointLoads],
+    stations: Sequence[Stations],
     size: int,
 ) -> np.ndarray:
     """Return the residual (2, n) per unit relative error: in positions of 1 m [1/m], and in directions.
@@ -28,12 +28,11 @@ def residual_errors(
     vectors: names of the nodal vectors of each block.
     """
     result = np.zeros((2, size))
-    for block, names, loads in zip(blocks, vectors, points, strict=True):
+    for block, names, own in zip(blocks, vectors, stations, strict=True):
         nodes = _of_nodes(block, _of_slots(block, names))
-        if loads.spring.any():
-            for i in np.flatnonzero(loads.spring.any(axis=1)):
-                loaded = block.node[loads.element[i]]
-                nodes[0][loaded] += loads.spring[i].max() * np.abs(loads.position[i]).reshape(len(loaded), -1)
+        for i in np.flatnonzero(own.kind == GROUNDED):
+            held = block.node[own.element[i]]
+            nodes[0][held] += own.constants[i, :2].max() * np.abs(own.position[i]).reshape(len(held), -1)
         for entries in _entries(block, names):
             values = nodes[:, entries.nodes, entries.slots]
             if len(entries.turning):  # the angle turns r_x as well

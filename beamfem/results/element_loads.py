@@ -7,10 +7,11 @@ import numpy as np
 
 from beamfem.assembly.frame_inertia import seen_from_rest
 from beamfem.assembly.system import System
-from beamfem.element.coordinates import across
-from beamfem.element.fields import cross, d_slots, dot, r_slots
+from beamfem.element.fields import cross, d_slots, r_slots
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import inertia_points, length_points, scales
+from beamfem.physics.compiled_connections import in_python
+from beamfem.physics.stations import STATIONS
 from beamfem.quadrature import gauss
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
@@ -152,23 +153,24 @@ def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> A
 def _distributed(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
     """Return follower and varying loads along beams, and foundation springs, as evaluated by the kernels."""
     actions = rows.system.actions[mesh.block]
-    points, own = actions.points, mesh.in_block(elements)
+    stations, own = actions.stations, mesh.in_block(elements)
     order = np.argsort(own)
     chosen = actions.distributed_on(own[order])
     if not len(chosen):
         return _nothing(e)
-    element = order[np.searchsorted(own, points.element[chosen], sorter=order)]
-    position, direction = points.position[chosen], points.direction[chosen]
-    values = rows.values[mesh.block][:, chosen]
-    r, g, at_rest = _at(position, e, element), _at(direction, e, element), points.follows[chosen]
-    square = dot(g, g)[..., None]
-    follows = np.any(at_rest, axis=1, keepdims=True)
-    unit = np.where(points.stretches[chosen][:, None], 1.0, np.sqrt(square))
-    co, si = dot(g, at_rest)[..., None] / unit, cross(at_rest, g)[..., None] / unit
-    dead = values[..., :2]
-    force = np.where(follows, co * dead + si * across(dead), dead) - points.spring[chosen] * (r - points.anchor[chosen])
-    couple = values[..., 2:] * across(g) / square
-    return Acting(element, actions.xi[chosen], actions.rule[chosen], position, direction, force, couple)
+    element = order[np.searchsorted(own, stations.element[chosen], sorter=order)]
+    position, direction = stations.position[chosen], stations.direction[chosen]
+    values, forces = rows.values[mesh.block][:, chosen], np.empty((len(e), len(chosen), 4))
+    q = np.concatenate([_at(position, e, element), _at(direction, e, element)], axis=2)
+    for kind in np.unique(stations.kind[chosen]).tolist():
+        some = np.flatnonzero(stations.kind[chosen] == kind)
+        data = [*np.moveaxis(values[:, some], -1, 0), *stations.constants[chosen[some]].T]
+        out, at = np.empty((4, len(e), len(some))), np.moveaxis(q[:, some], -1, 0)
+        in_python(STATIONS[kind])(at, (), (), (), (), data, (), out)
+        forces[:, some] = -np.moveaxis(out, 0, -1)
+    return Acting(
+        element, actions.xi[chosen], actions.rule[chosen], position, direction, forces[..., :2], forces[..., 2:]
+    )
 
 
 def _nothing(e: np.ndarray) -> Acting:

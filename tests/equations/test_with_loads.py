@@ -128,7 +128,7 @@ def test_with_other_loads_a_model_is_a_fresh_one(before, after, mesh, tables, so
     assert all(one is other for one, other in zip(old.beams, new.beams, strict=True))
     assert (new.meshes is old.meshes) == mesh
     one, other = system_of(old, True), system_of(new, True)
-    for name in ("blocks", "unknowns", "equations", "reference", "newton_solver", "point_loads"):
+    for name in ("blocks", "unknowns", "equations", "reference", "newton_solver", "stations"):
         assert (getattr(one, name) is getattr(other, name)) == tables, name
 
 

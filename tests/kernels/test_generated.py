@@ -7,10 +7,12 @@ from beamfem.assembly.routines import MEASURE_PASSES
 from beamfem.element.fields import Axis
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, Structural
 from beamfem.kernels import point
-from beamfem.kernels.block import ELASTIC_LINE, GREEN_LAGRANGE, STRUCTURAL
+from beamfem.kernels.block import DEAD, ELASTIC_LINE, FOLLOWING, GREEN_LAGRANGE, GROUNDED, STRETCHING, STRUCTURAL
 from beamfem.kernels.record import ROW
 from beamfem.physics import generate
+from beamfem.physics.compiled_connections import in_python, passes_of
 from beamfem.physics.measures import MEASURES
+from beamfem.physics.stations import STATIONS
 from beamfem.precision.roundoff_bounds import depends
 
 
@@ -45,3 +47,29 @@ def test_compiled_strains_are_those_of_post_processing(number, forces, rng):
     MEASURE_PASSES[forces.code].strains(4, rows)
     expected = forces.strains(at)
     np.testing.assert_allclose(rows[point.STRAIN : point.STRAIN + expected.shape[1], :4].T, expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize("kind", [DEAD, FOLLOWING, STRETCHING, GROUNDED])
+def test_forces_at_a_station_are_those_of_a_rotated_vector_and_their_tangent_is_the_derivative(kind, rng):
+    """The force turns with g, from its direction u in the reference; the moment turns g, whatever the length of g."""
+    q, data = rng.uniform(0.5, 1.5, 4), rng.uniform(0.5, 1.5, 7)
+    x, y, gx, gy = q
+    data[3:5] /= 1.0 if kind == GROUNDED else np.hypot(*data[3:5])
+    passes, out, rows, none = passes_of(STATIONS[kind]), np.empty(4), np.empty((4, 4)), np.zeros(4)
+
+    def forces(at):
+        in_python(STATIONS[kind])(at, none, none, none, none, data, none, result := np.empty(4, dtype=complex))
+        return result
+
+    passes.force(q, none, none, none, none, data, none, out)
+    np.testing.assert_allclose(out, forces(q).real, rtol=1e-14)
+    passes.tangent(q, none, none, none, none, data, none, 2.0, 0.0, 0.0, rows)
+    columns = [2.0 * forces(q + 1e-30j * unit).imag / 1e-30 for unit in np.eye(4)]
+    np.testing.assert_allclose(rows, np.transpose(columns), rtol=1e-13, atol=1e-14)
+    force, g, u = complex(*data[:2]), complex(gx, gy), complex(*data[3:5])
+    turned = {DEAD: 1.0, FOLLOWING: g / u / abs(g), STRETCHING: g / u, GROUNDED: 0.0}[kind] * force
+    turned -= complex(data[3] * (x - data[5]), data[4] * (y - data[6])) if kind == GROUNDED else 0.0
+    assert complex(*out[:2]) == pytest.approx(-turned, rel=1e-13)
+    turning, length = gx * out[3] - gy * out[2], gx * out[2] + gy * out[3]
+    assert turning == pytest.approx(0.0 if kind == GROUNDED else -data[2], rel=1e-13)
+    assert length == pytest.approx(0.0, abs=1e-13)

@@ -1,4 +1,4 @@
-"""Forces and tangents of the parts at points in `beamfem.physics.connections`.
+"""Forces and tangents of parts at points and at stations, see `physics.connections` and `physics.stations`.
 
 Written by beamfem.physics.generate: do not edit.
 """
@@ -1356,3 +1356,212 @@ def hinge_stop_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
     out[33] = 0.0
     out[34] = 0.0
     out[35] = stiffness * (-x10 * (2.0 * damping * x12 * x7 - x9) - x11)
+
+
+@routine("rrrrrrrr")
+def dead_force(q, v, a, own, turned, data, gravity, out):
+    """Fill the force of `DEAD`."""
+    q2 = q[2]
+    q3 = q[3]
+    fx = data[0]
+    fy = data[1]
+    moment = data[2]
+    x0 = moment / ((q2 * q2) + (q3 * q3))
+    out[0] = -fx
+    out[1] = -fy
+    out[2] = q3 * x0
+    out[3] = -q2 * x0
+
+
+@routine("rrrrrrrdddr")
+def dead_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
+    """Fill ck df/dq + cv df/dv + ca df/da of `DEAD`, row by row."""
+    q2 = q[2]
+    q3 = q[3]
+    moment = data[2]
+    x0 = q2 * q2
+    x1 = q3 * q3
+    x2 = x0 + x1
+    x3 = ck * moment
+    x4 = 2.0 * q2 * q3 * x3 / (x2 * x2)
+    x5 = 1.0 / x2
+    x6 = 2.0 * x5
+    x7 = x3 * x5
+    out[0] = 0.0
+    out[1] = 0.0
+    out[2] = 0.0
+    out[3] = 0.0
+    out[4] = 0.0
+    out[5] = 0.0
+    out[6] = 0.0
+    out[7] = 0.0
+    out[8] = 0.0
+    out[9] = 0.0
+    out[10] = -x4
+    out[11] = -x7 * (x1 * x6 - 1.0)
+    out[12] = 0.0
+    out[13] = 0.0
+    out[14] = x7 * (x0 * x6 - 1.0)
+    out[15] = x4
+
+
+@routine("rrrrrrrr")
+def following_force(q, v, a, own, turned, data, gravity, out):
+    """Fill the force of `FOLLOWING`."""
+    q2 = q[2]
+    q3 = q[3]
+    fx = data[0]
+    fy = data[1]
+    moment = data[2]
+    ux = data[3]
+    uy = data[4]
+    x0 = (q2 * q2) + (q3 * q3)
+    x1 = 1.0 / math.sqrt(x0)
+    x2 = q2 * ux + q3 * uy
+    x3 = q2 * uy - q3 * ux
+    x4 = moment / x0
+    out[0] = -x1 * (fx * x2 + fy * x3)
+    out[1] = x1 * (fx * x3 - fy * x2)
+    out[2] = q3 * x4
+    out[3] = -q2 * x4
+
+
+@routine("rrrrrrrdddr")
+def following_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
+    """Fill ck df/dq + cv df/dv + ca df/da of `FOLLOWING`, row by row."""
+    q2 = q[2]
+    q3 = q[3]
+    fx = data[0]
+    fy = data[1]
+    moment = data[2]
+    ux = data[3]
+    uy = data[4]
+    x0 = q2 * q2
+    x1 = q3 * q3
+    x2 = x0 + x1
+    x3 = 1.0 / x2
+    x4 = q2 * x3
+    x5 = q2 * ux + q3 * uy
+    x6 = fx * x5
+    x7 = q2 * uy - q3 * ux
+    x8 = fy * x7
+    x9 = ck / math.sqrt(x2)
+    x10 = q3 * x3
+    x11 = -fx * uy + fy * ux
+    x12 = fx * x7
+    x13 = fy * x5
+    x14 = ck * moment
+    x15 = 2.0 * q2 * q3 * x14 / (x2 * x2)
+    x16 = 2.0 * x3
+    x17 = x14 * x3
+    out[0] = 0.0
+    out[1] = 0.0
+    out[2] = -x9 * (fx * ux + fy * uy - x4 * x6 - x4 * x8)
+    out[3] = x9 * (x10 * x6 + x10 * x8 + x11)
+    out[4] = 0.0
+    out[5] = 0.0
+    out[6] = -x9 * (x11 + x12 * x4 - x13 * x4)
+    out[7] = -x9 * (fx * ux + fy * uy + x10 * x12 - x10 * x13)
+    out[8] = 0.0
+    out[9] = 0.0
+    out[10] = -x15
+    out[11] = -x17 * (x1 * x16 - 1.0)
+    out[12] = 0.0
+    out[13] = 0.0
+    out[14] = x17 * (x0 * x16 - 1.0)
+    out[15] = x15
+
+
+@routine("rrrrrrrr")
+def stretching_force(q, v, a, own, turned, data, gravity, out):
+    """Fill the force of `STRETCHING`."""
+    q2 = q[2]
+    q3 = q[3]
+    fx = data[0]
+    fy = data[1]
+    moment = data[2]
+    ux = data[3]
+    uy = data[4]
+    x0 = q2 * ux + q3 * uy
+    x1 = q2 * uy - q3 * ux
+    x2 = moment / ((q2 * q2) + (q3 * q3))
+    out[0] = -fx * x0 - fy * x1
+    out[1] = fx * x1 - fy * x0
+    out[2] = q3 * x2
+    out[3] = -q2 * x2
+
+
+@routine("rrrrrrrdddr")
+def stretching_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
+    """Fill ck df/dq + cv df/dv + ca df/da of `STRETCHING`, row by row."""
+    q2 = q[2]
+    q3 = q[3]
+    fx = data[0]
+    fy = data[1]
+    moment = data[2]
+    ux = data[3]
+    uy = data[4]
+    x0 = -ck * (fx * ux + fy * uy)
+    x1 = ck * (fx * uy - fy * ux)
+    x2 = q2 * q2
+    x3 = q3 * q3
+    x4 = x2 + x3
+    x5 = ck * moment
+    x6 = 2.0 * q2 * q3 * x5 / (x4 * x4)
+    x7 = 1.0 / x4
+    x8 = 2.0 * x7
+    x9 = x5 * x7
+    out[0] = 0.0
+    out[1] = 0.0
+    out[2] = x0
+    out[3] = -x1
+    out[4] = 0.0
+    out[5] = 0.0
+    out[6] = x1
+    out[7] = x0
+    out[8] = 0.0
+    out[9] = 0.0
+    out[10] = -x6
+    out[11] = -x9 * (x3 * x8 - 1.0)
+    out[12] = 0.0
+    out[13] = 0.0
+    out[14] = x9 * (x2 * x8 - 1.0)
+    out[15] = x6
+
+
+@routine("rrrrrrrr")
+def grounded_force(q, v, a, own, turned, data, gravity, out):
+    """Fill the force of `GROUNDED`."""
+    q0 = q[0]
+    q1 = q[1]
+    kx = data[3]
+    ky = data[4]
+    x = data[5]
+    y = data[6]
+    out[0] = kx * (q0 - x)
+    out[1] = ky * (q1 - y)
+    out[2] = 0.0
+    out[3] = 0.0
+
+
+@routine("rrrrrrrdddr")
+def grounded_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
+    """Fill ck df/dq + cv df/dv + ca df/da of `GROUNDED`, row by row."""
+    kx = data[3]
+    ky = data[4]
+    out[0] = ck * kx
+    out[1] = 0.0
+    out[2] = 0.0
+    out[3] = 0.0
+    out[4] = 0.0
+    out[5] = ck * ky
+    out[6] = 0.0
+    out[7] = 0.0
+    out[8] = 0.0
+    out[9] = 0.0
+    out[10] = 0.0
+    out[11] = 0.0
+    out[12] = 0.0
+    out[13] = 0.0
+    out[14] = 0.0
+    out[15] = 0.0

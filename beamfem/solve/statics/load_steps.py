@@ -9,6 +9,7 @@ from scipy.linalg import LinAlgError
 from beamfem.assembly.equations import linearise_at_rest, load_slope, predicted_stresses
 from beamfem.assembly.system import Proven, System
 from beamfem.errors import ConvergenceError, LimitPointError
+from beamfem.kernels.block import FOLLOWING, STRETCHING
 from beamfem.precision.roundoff import ENOUGH, digits_of, largest_force
 from beamfem.progress import progress
 from beamfem.results.solution_checks import advice, may_turn_back, turned_back
@@ -141,7 +142,7 @@ def _constant_forces(system: System, load_factor: float) -> bool:
     if any(item.change(load_factor, system.static) for item in system.prescribed):
         return False
     if Proven.CONSTANT_LOADS not in system.proven:
-        follow = any(np.any(loads.follows) for loads in system.point_loads)
+        follow = any(np.isin(each.kind, (FOLLOWING, STRETCHING)).any() for each in system.stations)
         if follow or any(block.imposed is not None for block in system.blocks):
             return False
         system.proven.add(Proven.CONSTANT_LOADS)

@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 
 from beamfem.cached_properties import cached_property
-from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, length_rule, r_slots
-from beamfem.kernels.block import DEAD, FOLLOWING, GROUNDED, STRETCHING, Stations
+from beamfem.kernels.block import Stations
 from beamfem.kernels.record import CONSTANTS
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import jacobians, length_points, reference_axis, scales
 from beamfem.model.beam import Beam
 from beamfem.model.load_base import LineLoad, MovingLoad, PointLoad, factor, forces_of
 from beamfem.model.model import Model
+from beamfem.physics.stations import DEAD, FOLLOWING, GROUNDED, STRETCHING
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,43 +168,41 @@ class _Moving:
 def build_actions(model: Model, block: int) -> Actions:
     """Return the stations of a block; those of loads and foundations along beams are Gauss points."""
     points, lines = model.point_loads, _lines(model)
-    parts: list[dict[str, np.ndarray]] = []
+    size = len(model.groups[block].field.nodes) * len(model.groups[block].field.vectors)
+    table, whole = np.zeros((0, size)), np.zeros(0, dtype=np.int64)
+    none = whole, table, table, whole, np.zeros((0, CONSTANTS)), np.zeros((0, 3)), whole, np.zeros(0), whole
+    parts, moving = list[tuple[np.ndarray, ...]]([none]), list[_Moving]()
     for number, load in enumerate(points):
         mesh = _mesh(model, load.point.beam, block)
         if mesh is not None:
-            where, at = mesh.locate(load.point.fraction)
-            unit = np.array([load.value])
-            parts.append(
-                _part(mesh, np.array([where]), np.array([at]), unit, number, FOLLOWING if load.follower else DEAD)
-            )
+            element, at = mesh.locate(load.point.fraction)
+            kind = FOLLOWING if load.follower else DEAD
+            parts.append(_part(mesh, np.array([element]), np.array([at]), kind, np.array([load.value]), number, rule=0))
     for number, line in enumerate(lines, len(points)):
         mesh = _mesh(model, line.beam, block)
         if mesh is not None:
-            parts.append(_line(mesh, line, number))
+            where, xi, weight = length_points(mesh)
+            force = weight[:, None] * forces_of(line, mesh.arc_length(where, xi))
+            unit = np.column_stack([force, np.zeros(len(xi))])
+            parts.append(_part(mesh, where, xi, _KINDS[line.axes], unit, number))
     for foundation in model.line_supports:
         mesh = _mesh(model, foundation.beam, block)
         if mesh is not None:
-            element, xi, weight = length_points(mesh)
-            part = _part(mesh, element, xi, np.zeros((len(xi), 3)), -1, GROUNDED, len(xi) // mesh.elements)
-            place = mesh.position[mesh.node[element, 0]] + reference_axis(mesh, element, xi).r
-            part["constants"] = np.hstack([np.outer(weight, foundation.stiffness), place])
-            parts.append(part)
-    moving = []
+            where, xi, weight = length_points(mesh)
+            place = mesh.position[mesh.node[where, 0]] + reference_axis(mesh, where, xi).r
+            constants = np.hstack([np.outer(weight, foundation.stiffness), place])
+            parts.append(_part(mesh, where, xi, GROUNDED, constants=constants))
     for wheel in model.moving_loads:
         mesh = _mesh(model, wheel.beam, block)
         if mesh is not None:
-            element, xi, _ = length_points(mesh)
-            moving.append(_Moving(wheel, mesh, sum(len(part["xi"]) for part in parts)))
-            parts.append(_part(mesh, element, xi, np.zeros((len(xi), 3)), -1, DEAD, len(xi) // mesh.elements))
-    if len(parts) == 1:
-        joined = dict(parts[0])
-    else:
-        size = len(model.groups[block].field.nodes) * len(model.groups[block].field.vectors)
-        joined = {
-            name: np.concatenate([values, *(part[name] for part in parts)]) for name, values in _empty(size).items()
-        }
-    values = {name: joined.pop(name) for name in ("unit", "source", "xi", "rule")}
-    return Actions(Stations(**joined), **values, loads=(*points, *lines), moving=tuple(moving))
+            moving.append(_Moving(wheel, mesh, sum(len(part[0]) for part in parts)))
+            parts.append(_part(mesh, *length_points(mesh)[:2], DEAD))
+    joined = [np.concatenate(values) for values in zip(*parts, strict=True)]
+    unit, source, xi, rule = joined[5:]
+    return Actions(Stations(*joined[:5]), unit, source, xi, rule, (*points, *lines), tuple(moving))
+
+
+_KINDS = {"plane": DEAD, "section": FOLLOWING, "axis": STRETCHING}  # by the axes of a load along a beam
 
 
 def _lines(model: Model) -> list[LineLoad]:
@@ -217,20 +215,6 @@ def _mesh(model: Model, beam: Beam, block: int) -> BeamMesh | None:
     return mesh if mesh.block == block else None
 
 
-def _line(mesh: BeamMesh, load: LineLoad, source: int) -> dict[str, np.ndarray]:
-    """Return the stations of a load along a beam."""
-    element, xi, weight = length_points(mesh)
-    unit, rule = np.zeros((len(xi), 3)), len(xi) // mesh.elements
-    unit[:, :2] = weight[:, None] * forces_of(load, mesh.arc_length(element, xi))
-    if load.axes != "axis":
-        return _part(mesh, element, xi, unit, source, FOLLOWING if load.axes == "section" else DEAD, rule)
-    # the forces are along and normal to r0', which therefore replaces the director
-    part = _part(mesh, element, xi, unit, source, STRETCHING, rule)
-    part["direction"] = _slope(mesh, element, xi) * scales(mesh.beam.element, mesh.lengths[element])
-    part["constants"][:, 0] = 1.0
-    return part
-
-
 def _slope(mesh: BeamMesh, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
     """Return the table (n, nv) that gives r0' at points from the scaled nodal vectors."""
     field = mesh.beam.element.field
@@ -239,53 +223,41 @@ def _slope(mesh: BeamMesh, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
     return table
 
 
-def _empty(size: int) -> dict[str, np.ndarray]:
-    whole = np.zeros(0, dtype=np.int64)
-    table = np.zeros((0, size))
-    return {
-        "element": whole,
-        "position": table,
-        "direction": table,
-        "kind": whole,
-        "constants": np.zeros((0, CONSTANTS)),
-        "unit": np.zeros((0, 3)),
-        "source": whole,
-        "xi": np.zeros(0),
-        "rule": whole,
-    }
-
-
 def _part(
-    mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, unit: np.ndarray, source: int, kind: int, rule: int = 0
-) -> dict[str, np.ndarray]:
-    """Return the stations (element, xi) of a beam."""
+    mesh: BeamMesh,
+    element: np.ndarray,
+    xi: np.ndarray,
+    kind: int,
+    unit: np.ndarray | None = None,
+    source: int = -1,
+    constants: np.ndarray | None = None,
+    rule: int | None = None,
+) -> tuple[np.ndarray, ...]:
+    """Return the fields of `Stations` and then of `Actions` for points (element, xi) of a beam; rule: all Gauss points.
+
+    A force in the axes of the centreline is along and normal to r0', which replaces the director.
+    """
     element_type, count = mesh.beam.element, len(element)
-    scale = scales(element_type, mesh.lengths[element])
-    position, direction = _tables(element_type, xi)
-    if element_type.forces.turns_with == "r_x":
-        direction = _slope(mesh, element, xi)
-    constants = np.zeros((count, CONSTANTS))
+    position, direction = shape_tables(mesh, element, xi)
+    if element_type.forces.turns_with == "r_x" or kind == STRETCHING:
+        direction = _slope(mesh, element, xi) * scales(element_type, mesh.lengths[element])
+    if constants is None:
+        constants = np.zeros((count, CONSTANTS))
+        constants[:, 0] = kind == STRETCHING
     if kind == FOLLOWING:
         # from the interpolated reference, not the curve: on a curved beam they differ by the interpolation error
         reference = reference_axis(mesh, element, xi)
         along = reference.r_s if element_type.forces.turns_with == "r_x" else reference.d
         constants[:, :2] = along / np.linalg.norm(along, axis=1, keepdims=True)
-    return {
-        "element": mesh.first_element + element,
-        "position": position * scale,
-        "direction": direction * scale,
-        "kind": np.full(count, kind),
-        "constants": constants,
-        "unit": unit,
-        "source": np.full(count, source),
-        "xi": xi,
-        "rule": np.full(count, rule),
-    }
+    stations = mesh.first_element + element, position, direction, np.full(count, kind), constants
+    rule = len(xi) // mesh.elements if rule is None else rule
+    unit = np.zeros((count, 3)) if unit is None else unit
+    return *stations, unit, np.full(count, source), xi, np.full(count, rule)
 
 
-def _tables(element: Element, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the tables (n, nv) that give r0 and d at points from the scaled nodal vectors."""
-    field = element.field
-    position, direction = np.zeros((2, len(xi), len(field.nodes) * len(field.vectors)))
-    position[:, r_slots(field)], direction[:, d_slots(field)] = field.centreline(xi), field.director(xi)
-    return position, direction
+def shape_tables(mesh: BeamMesh, element: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the tables (m, nv) that give r0 and d at points (element, xi) of a beam from its nodal vectors."""
+    field, scale = mesh.beam.element.field, scales(mesh.beam.element, mesh.lengths[element])
+    position, director = np.zeros_like(scale), np.zeros_like(scale)
+    position[:, r_slots(field)], director[:, d_slots(field)] = field.centreline(xi), field.director(xi)
+    return position * scale, director * scale

@@ -7,10 +7,13 @@ from typing import NamedTuple
 import numpy as np
 
 from beamfem.assembly.connectors import Connector
+from beamfem.assembly.equation_numbering import Unknowns
+from beamfem.assembly.model_coordinates import COORDINATES
 from beamfem.kernels.record import Parts
+from beamfem.model.model import Model
 from beamfem.parts.at_points import ANALYTIC
 from beamfem.physics.compiled_connections import in_python, passes_of
-from beamfem.physics.connections import Connection
+from beamfem.physics.connections import COORDINATE_SPRING, Connection
 
 
 class Alike(NamedTuple):
@@ -55,6 +58,21 @@ class Alike(NamedTuple):
         points = list(q.reshape(self.connection.points, self.connection.coordinates, *q.shape[1:]))
         assert self.connection.potential is not None
         return np.asarray(self.connection.potential(points, self.data.T, (0.0, 0.0), ANALYTIC).sum(axis=-1))
+
+
+def springs_to_ground(model: Model, unknowns: Unknowns, reference: np.ndarray) -> Alike:
+    """Return the springs of supports, which are unstressed at the coordinates `reference` (n,)."""
+    found = []
+    for support in model.point_supports:
+        if springs := support.springs():
+            mesh = model.mesh_of(support.point)
+            dofs = mesh.coordinates_of(mesh.node_at(support.point.fraction))
+            found += [(dofs[COORDINATES[direction]], stiffness) for direction, stiffness in springs.items()]
+    numbers, stiffness = (np.array([row[i] for row in found], dtype=kind) for i, kind in enumerate((np.int64, float)))
+    places = unknowns.free[numbers]
+    places[places >= 0] = unknowns.diagonal(places[places >= 0])
+    data, none = np.column_stack([stiffness, reference[numbers]]), np.empty((len(found), 0), dtype=np.int64)
+    return Alike(COORDINATE_SPRING, numbers[:, None], data, none, places[:, None, None])
 
 
 def alike(parts: Iterable[tuple[Connector, np.ndarray]]) -> list[Alike]:

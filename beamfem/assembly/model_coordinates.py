@@ -116,17 +116,6 @@ def prescribed_coordinates(model: Model) -> tuple[PrescribedCoordinate, ...]:
     return tuple(coordinates[dof] for dof in sorted(coordinates))
 
 
-def springs_to_ground(model: Model) -> tuple[np.ndarray, np.ndarray]:
-    """Return the coordinates (n,) that supports hold by springs, and their stiffness (n,) [N/m, N m/rad]."""
-    found = []
-    for support in model.point_supports:
-        if springs := support.springs():
-            mesh = model.mesh_of(support.point)
-            dofs = mesh.coordinates_of(mesh.node_at(support.point.fraction))
-            found += [(dofs[COORDINATES[direction]], stiffness) for direction, stiffness in springs.items()]
-    return np.array([dof for dof, _ in found], dtype=np.int64), np.array([value for _, value in found], dtype=float)
-
-
 def inclined_rollers(model: Model, prescribed: set[int]) -> tuple[tuple[int, np.ndarray], ...]:
     """Return first coordinate of r and unit normal of each roller not along x or y. Raises InputError."""
     rollers = []

@@ -17,7 +17,7 @@ from beamfem.assembly.applied_loads import (
 )
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.blocks import build_block
-from beamfem.assembly.connection_table import Alike, alike
+from beamfem.assembly.connection_table import Alike, alike, springs_to_ground
 from beamfem.assembly.connectors import Connectors, connectors_of
 from beamfem.assembly.element_group import make_group
 from beamfem.assembly.equation_numbering import Unknowns
@@ -26,7 +26,6 @@ from beamfem.assembly.model_coordinates import (
     PrescribedCoordinate,
     inclined_rollers,
     prescribed_coordinates,
-    springs_to_ground,
     stress_free,
 )
 from beamfem.assembly.rotating_vectors import rotating_vectors
@@ -34,13 +33,13 @@ from beamfem.assembly.solver_table import motion_solver, newton_solver
 from beamfem.assembly.strain_rates import StrainRates, strain_rates
 from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
-from beamfem.kernels.block import FOLLOWING, Block, Layout, Stations
+from beamfem.kernels.block import Block, Layout, Stations
 from beamfem.kernels.motion_record import MotionSolver
 from beamfem.kernels.newton_record import NewtonSolver
 from beamfem.kernels.record import Parts
 from beamfem.model.load_base import factor
 from beamfem.model.model import Model
-from beamfem.physics.connections import COORDINATE_SPRING
+from beamfem.physics.stations import FOLLOWING
 from beamfem.precision.roundoff_bounds import residual_errors, stress_errors
 from beamfem.validation import shown
 
@@ -283,12 +282,7 @@ class System:
     @shared_table
     def springs(self) -> Alike:
         """Springs of single coordinates to the ground, unstressed in the reference."""
-        dofs, stiffness = springs_to_ground(self.model)
-        free, data = self.unknowns.free[dofs], np.column_stack([stiffness, self.reference[dofs]])
-        places = free.copy()
-        places[free >= 0] = self.unknowns.diagonal(free[free >= 0])
-        none = np.empty((len(dofs), 0), dtype=np.int64)
-        return Alike(COORDINATE_SPRING, dofs[:, None], data, none, places[:, None, None])
+        return springs_to_ground(self.model, self.unknowns, self.reference)
 
     def body(self, time: float) -> np.ndarray:
         """Return acceleration [m/s^2] and load per length [N/m] of each beam (beams, 4) at a time."""

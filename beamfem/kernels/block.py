@@ -118,20 +118,13 @@ class Block(NamedTuple):
         return linear if self.law is None else self.law.linearised(strain, p[self.history], linear)[1]
 
 
-# Kinds of stations, see `physics.stations`
-DEAD = 0
-FOLLOWING = 1
-STRETCHING = 2
-GROUNDED = 3
-
-
 class Stations(NamedTuple):
     """Points of elements where forces act; values of forces are passed with each call."""
 
     element: np.ndarray  # (nl,) element
     position: np.ndarray  # (nl, nv) weights of the nodal vectors e_i in r0 = sum position_i e_i
     direction: np.ndarray  # (nl, nv) likewise for the vector that defines the direction of the section: d or r_x
-    kind: np.ndarray  # (nl,) DEAD, FOLLOWING, STRETCHING or GROUNDED
+    kind: np.ndarray  # (nl,) index in `physics.stations.STATIONS`
     constants: np.ndarray  # (nl, 4): unit vector of that direction in the reference, or stiffness [N/m] and place [m]
 
 

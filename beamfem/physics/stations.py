@@ -4,7 +4,7 @@ They are connections of two points, r and g. Their data are a force [N] and a mo
 constants. A moment M does the virtual work M (g x delta g) / |g|^2.
 """
 
-from beamfem.physics.connections import CONNECTIONS, Connection, Function, Functions, Number, Vector
+from beamfem.physics.connections import CONNECTIONS, Connection, Functions, Number, Vector
 
 
 def _acting(force: Vector, moment: Number, g: Vector) -> tuple[Number, ...]:
@@ -39,16 +39,11 @@ def _grounded(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> N
 
 
 _LOAD = ("fx", "fy", "moment")
-
-
-def _station(name: str, constants: tuple[str, ...], force: Function | None, potential: Function | None) -> Connection:
-    return Connection(name, 2, 2, (*_LOAD, *constants), force=force, potential=potential)
-
-
-STATIONS = (  # in the order of `kernels.block.STATIONS`
-    _station("dead", (), _dead, None),
-    _station("following", ("ux", "uy"), _following, None),  # with the section
-    _station("stretching", ("ux", "uy"), _stretching, None),  # also proportional to the length of g
-    _station("grounded", ("kx", "ky", "x", "y"), None, _grounded),  # by springs
+DEAD, FOLLOWING, STRETCHING, GROUNDED = range(4)  # following: with the section; stretching: also proportional to |g|
+STATIONS = (
+    Connection("dead", 2, 2, _LOAD, force=_dead),
+    Connection("following", 2, 2, (*_LOAD, "ux", "uy"), force=_following),
+    Connection("stretching", 2, 2, (*_LOAD, "ux", "uy"), force=_stretching),
+    Connection("grounded", 2, 2, (*_LOAD, "kx", "ky", "x", "y"), None, _grounded),
 )
 GENERATED = (*CONNECTIONS, *STATIONS)

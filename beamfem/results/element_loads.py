@@ -5,11 +5,12 @@ from functools import lru_cache
 
 import numpy as np
 
+from beamfem.assembly.applied_loads import shape_tables
 from beamfem.assembly.frame_inertia import seen_from_rest
 from beamfem.assembly.system import System
-from beamfem.element.fields import cross, d_slots, r_slots
+from beamfem.element.fields import cross
 from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.mesh.reference import inertia_points, length_points, scales
+from beamfem.mesh.reference import inertia_points, length_points
 from beamfem.physics.compiled_connections import in_python
 from beamfem.physics.stations import STATIONS
 from beamfem.quadrature import gauss
@@ -117,7 +118,7 @@ def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acti
             distributed.append(np.einsum("jn,ensc->sejc", finer, summed).reshape(len(values), -1, 2))
         element, xi = np.repeat(np.arange(len(elements)), len(finer)), np.tile(gauss(len(finer))[0], len(elements))
         # distributed moments come from inertia alone, which turns with d
-        tables = _tables(mesh, elements[element], xi)
+        tables = shape_tables(mesh, elements[element], xi)
         parts.append((element, xi, np.full(len(xi), len(finer)), *tables, *distributed))
     joined = zip(*parts, strict=True)
     return Acting(*(np.concatenate(values, axis=1 if values[0].ndim == 3 else 0) for values in joined))
@@ -129,7 +130,7 @@ def _of_mass(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, ac
     if not pull.any() and not acceleration.any():
         return _nothing(e)
     where, xi, inertia = inertia_points(mesh, elements)
-    element, (position, direction) = _numbers(elements, where), _tables(mesh, where, xi)
+    element, (position, direction) = _numbers(elements, where), shape_tables(mesh, where, xi)
     mass, first, rotary = inertia.T[:, None, :, None]
     free = pull[:, element] - _at(position, acceleration, element)
     turn = _at(direction, acceleration, element)
@@ -146,7 +147,7 @@ def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> A
     element = _numbers(elements, where)
     force = load[:, element] * weight[:, None]
     rule = np.full(len(xi), len(xi) // len(elements))
-    position, direction = _tables(mesh, where, xi)
+    position, direction = shape_tables(mesh, where, xi)
     return Acting(element, xi, rule, position, direction, force, np.zeros_like(force))
 
 
@@ -186,16 +187,6 @@ def _beams(rows: Rows, mesh: BeamMesh, elements: np.ndarray) -> np.ndarray:
 def _numbers(elements: np.ndarray, where: np.ndarray) -> np.ndarray:
     """Return the indices of elements among those cut free, which are in ascending order."""
     return np.searchsorted(elements, where)
-
-
-def _tables(mesh: BeamMesh, element: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the shape function tables (m, nv) of r and of d at points (element, xi) of a beam."""
-    formulation = mesh.beam.element
-    scale = scales(formulation, mesh.lengths[element])
-    position, direction = np.zeros_like(scale), np.zeros_like(scale)
-    position[:, r_slots(formulation.field)] = formulation.field.centreline(xi)
-    direction[:, d_slots(formulation.field)] = formulation.field.director(xi)
-    return position * scale, direction * scale
 
 
 def _at(table: np.ndarray, vectors: np.ndarray, element: np.ndarray) -> np.ndarray:

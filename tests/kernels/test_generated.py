@@ -7,12 +7,12 @@ from beamfem.assembly.routines import MEASURE_PASSES
 from beamfem.element.fields import Axis
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, Structural
 from beamfem.kernels import point
-from beamfem.kernels.block import DEAD, ELASTIC_LINE, FOLLOWING, GREEN_LAGRANGE, GROUNDED, STRETCHING, STRUCTURAL
+from beamfem.kernels.block import ELASTIC_LINE, GREEN_LAGRANGE, STRUCTURAL
 from beamfem.kernels.record import ROW
 from beamfem.physics import generate
 from beamfem.physics.compiled_connections import in_python, passes_of
 from beamfem.physics.measures import MEASURES
-from beamfem.physics.stations import STATIONS
+from beamfem.physics.stations import DEAD, FOLLOWING, GROUNDED, STATIONS, STRETCHING
 from beamfem.precision.roundoff_bounds import depends
 
 

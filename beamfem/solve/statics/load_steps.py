@@ -9,7 +9,7 @@ from scipy.linalg import LinAlgError
 from beamfem.assembly.equations import linearise_at_rest, load_slope, predicted_stresses
 from beamfem.assembly.system import Proven, System
 from beamfem.errors import ConvergenceError, LimitPointError
-from beamfem.kernels.block import FOLLOWING, STRETCHING
+from beamfem.physics.stations import FOLLOWING, STRETCHING
 from beamfem.precision.roundoff import ENOUGH, digits_of, largest_force
 from beamfem.progress import progress
 from beamfem.results.solution_checks import advice, may_turn_back, turned_back

@@ -86,7 +86,7 @@ class PrescribedCoordinate(NamedTuple):
     def change(self, time: float, static: bool) -> float:
         """Return the change from the reference at a time, in statics at a load factor."""
         if callable(self.value):
-            return function_value(f"Prescribed at {self.point}: value", self.value, time)
+            return function_value(f"value prescribed at {self.point}", self.value, time)
         return self.value * (time if static else 1.0)
 
 
@@ -116,21 +116,21 @@ def prescribed_coordinates(model: Model) -> tuple[PrescribedCoordinate, ...]:
     return tuple(coordinates[dof] for dof in sorted(coordinates))
 
 
-def inclined_rollers(model: Model, prescribed: set[int]) -> tuple[tuple[int, np.ndarray], ...]:
-    """Return first coordinate of r and unit normal of each roller not along x or y. Raises InputError."""
-    rollers = []
+def inclined_normals(model: Model, prescribed: set[int]) -> tuple[tuple[int, np.ndarray], ...]:
+    """Return the first coordinate of r and the unit normal of each support that is inclined. Raises InputError."""
+    found = dict[int, np.ndarray]()
     for support in model.point_supports:
         normal = support.direction
         if normal is not None and _axis_of(normal) is None:
             mesh = model.mesh_of(support.point)
             dofs = mesh.coordinates_of(mesh.node_at(support.point.fraction))
-            rollers.append((dofs["r^x"], normal))
-    if len({dof for dof, _ in rollers}) < len(rollers):
-        raise InputError("two inclined Rollers stand at the same point", remedy="a Pin constrains both directions")
-    for dof, _ in rollers:
-        if dof in prescribed or dof + 1 in prescribed:
-            raise InputError("an inclined Roller stands where another support already constrains the displacement")
-    return tuple(rollers)
+            dof, inclined = dofs["r^x"], f"inclined {type(support).__name__}"
+            if dof in found:
+                raise InputError(f"two {inclined}s stand at the same point", remedy="one support can hold ux and uy")
+            if dof in prescribed or dof + 1 in prescribed:
+                raise InputError(f"an {inclined} stands where another support already constrains the displacement")
+            found[dof] = normal
+    return tuple(found.items())
 
 
 def coordinate_of(support: PointSupport, direction: str) -> str | None:

@@ -24,7 +24,7 @@ from beamfem.assembly.equation_numbering import Unknowns
 from beamfem.assembly.history_variables import History
 from beamfem.assembly.model_coordinates import (
     PrescribedCoordinate,
-    inclined_rollers,
+    inclined_normals,
     prescribed_coordinates,
     stress_free,
 )
@@ -374,7 +374,7 @@ class System:
     @shared_table
     def inclined(self) -> tuple[tuple[int, np.ndarray], ...]:
         """First coordinate of r and unit normal of each roller whose normal is not along x or y."""
-        return inclined_rollers(self.model, set(self.prescribed_dofs.tolist()))
+        return inclined_normals(self.model, set(self.prescribed_dofs.tolist()))
 
     @shared_table
     def rotated(self) -> tuple[np.ndarray, np.ndarray]:

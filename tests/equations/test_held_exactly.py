@@ -66,7 +66,7 @@ def test_two_inclined_rollers_at_one_point_are_refused():
     beam = line()
     rollers = [bf.Roller(beam.end, (1.0, 1.0)), bf.Roller(beam.end, (1.0, -1.0))]
     model = bf.Model([beam], [bf.Clamp(beam.start), *rollers])
-    with pytest.raises(bf.InputError, match="two inclined Rollers stand at the same point; a Pin constrains both"):
+    with pytest.raises(bf.InputError, match="two inclined Rollers stand at the same point; one support"):
         bf.solve_static(model)
 
 

@@ -9,7 +9,7 @@ from scipy.linalg import LinAlgError
 import beamfem as bf
 from beamfem.assembly.equations import linearise
 from beamfem.assembly.system import system_of
-from beamfem.results.postprocess import axis, nodal_vectors
+from beamfem.results.nodal import axis, nodal_vectors
 
 # of all that acts; solvers are content with 1e-9 of the largest force
 TOLERANCE = 2e-9

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import beamfem as bf
-from beamfem.results import postprocess
+from beamfem.results.nodal import axis_at
 
 KINDS = {
     "ANCF": bf.ANCF(),
@@ -220,7 +220,7 @@ class Built:
                 mesh = self.model.mesh_of(beam.start)
                 where = [mesh.locate(point.fraction) for point in points if point.beam is beam]
                 element, xi = (np.array(values) for values in zip(*where, strict=True))
-                found.append(postprocess.axis(mesh, postprocess.nodal_vectors(mesh, p[None]), element, xi).r[0])
+                found.append(axis_at(mesh, p[None], element, xi).r[0])
         return self.view.back(np.concatenate(found))
 
 

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from beamfem.io.hdf5 import read_checked, write_checked
-from beamfem.results.axis_fields import QUANTITIES, rotation, section_forces
+from beamfem.results.axis_fields import QUANTITIES, section_forces
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import VALUES, LikeBeams, equal_beams
+from beamfem.results.full_turns import rotation
 from beamfem.results.path import Bifurcation, Path, PathState
 from beamfem.results.solution import Solution
 

@@ -8,8 +8,7 @@ import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.io.vtk_cells import VERTEX, Content, by_precision, legend_of_beams
-from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.mesh.reference import length_points, reference_position
+from beamfem.mesh.reference import length_points
 from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import Contribution
 from beamfem.model.load_base import Load, factor
@@ -17,7 +16,7 @@ from beamfem.model.model import Model
 from beamfem.model.state_protocols import in_plane
 from beamfem.model.supports import DIRECTIONS, LineSupport, PointSupport
 from beamfem.parts.at_points import PartAlongBeam
-from beamfem.results import postprocess
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.full_turns import StationsOfRows
 from beamfem.results.reactions import reaction_of
 from beamfem.results.solution import Solution
@@ -42,9 +41,7 @@ class _Vertices:
     kind: str
     role: int
     fields: tuple[str, ...]
-    mesh: BeamMesh
-    element: np.ndarray
-    xi: np.ndarray
+    points: AxisPoints
     values: Callable[[Solution], _Values]
 
 
@@ -53,16 +50,13 @@ def _flat(vectors: np.ndarray) -> np.ndarray:
     return np.pad(vectors, [(0, 0)] * (vectors.ndim - 1) + [(0, 1)])
 
 
-def _at(model: Model, point: Point) -> tuple[BeamMesh, np.ndarray, np.ndarray]:
-    mesh = model.mesh_of(point)
-    element, xi = mesh.locate(point.fraction)
-    return mesh, np.array([element]), np.array([xi])
+def _at(model: Model, point: Point) -> AxisPoints:
+    return AxisPoints.at(model.mesh_of(point), [point.fraction])
 
 
-def _along(model: Model, beam: Beam) -> tuple[BeamMesh, np.ndarray, np.ndarray]:
+def _along(model: Model, beam: Beam) -> AxisPoints:
     mesh = model.meshes[model.number_of(beam)]
-    element, xi, _ = length_points(mesh)
-    return mesh, element, xi
+    return AxisPoints(mesh, *length_points(mesh)[:2])
 
 
 def _supports(model: Model) -> Iterator[_Vertices]:
@@ -74,11 +68,11 @@ def _supports(model: Model) -> Iterator[_Vertices]:
     for supports in at_node.values():
         kind = " + ".join(dict.fromkeys(type(support).__name__ for support in supports))
         fixed = _fixed(supports)
-        place = _at(model, supports[0].point)
-        yield _Vertices(kind, _SUPPORT, (*_ACTION, *fixed), *place, partial(_reaction, supports, fixed))
+        points = _at(model, supports[0].point)
+        yield _Vertices(kind, _SUPPORT, (*_ACTION, *fixed), points, partial(_reaction, supports, fixed))
     for foundation in model.line_supports:
-        kind, place = type(foundation).__name__, _along(model, foundation.beam)
-        yield _Vertices(kind, _SUPPORT, ("line_force",), *place, partial(_of_foundation, foundation, *place))
+        kind, points = type(foundation).__name__, _along(model, foundation.beam)
+        yield _Vertices(kind, _SUPPORT, ("line_force",), points, partial(_of_foundation, foundation, points))
 
 
 def _fixed(supports: list[PointSupport]) -> _Values:
@@ -101,11 +95,9 @@ def _reaction(supports: list[PointSupport], fixed: _Values, part: Solution) -> _
     return {"force": _flat(reactions[..., :2]), "moment": reactions[..., 2:], **constant}
 
 
-def _of_foundation(
-    foundation: LineSupport, mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, part: Solution
-) -> _Values:
-    position = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, part.p), element, xi).r
-    return {"line_force": _flat(-np.array(foundation.stiffness) * (position - reference_position(mesh, element, xi)))}
+def _of_foundation(foundation: LineSupport, points: AxisPoints, part: Solution) -> _Values:
+    moved = points.positions(part.p)[0] - points.reference
+    return {"line_force": _flat(-np.array(foundation.stiffness) * moved)}
 
 
 def _loads(model: Model) -> Iterator[_Vertices]:
@@ -117,21 +109,18 @@ def _loads(model: Model) -> Iterator[_Vertices]:
             places = [_at(model, beam.at(0.5)) for beam in model.beams]
         else:
             places = [_at(model, where) if isinstance(where, Point) else _along(model, where)]
-        for mesh, element, xi in places:
-            acting = load.acting(mesh.arc_length(element, xi))
+        for points in places:
+            acting = load.acting(points.arc_length)
             for name in acting:
                 require_known(f"acting of {kind} has the unknown quantity {name!r}", name, _COMPONENTS)
             if acting:
-                place = mesh, element, xi
-                yield _Vertices(kind, _LOAD, tuple(acting), *place, partial(_of_load, load, acting, *place))
+                yield _Vertices(kind, _LOAD, tuple(acting), points, partial(_of_load, load, acting, points))
 
 
-def _of_load(
-    load: Load, acting: Mapping[str, np.ndarray], mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, part: Solution
-) -> _Values:
+def _of_load(load: Load, acting: Mapping[str, np.ndarray], points: AxisPoints, part: Solution) -> _Values:
     system, times = loading(part)
     factors = np.array([factor(load, float(time), system.static) for time in times])[:, None, None]
-    stations = StationsOfRows(part, mesh, element, xi)
+    stations = StationsOfRows(part, points)
     sized = {name: factors * numbers for name, numbers in acting.items()}
     return {
         name: _flat(in_plane(numbers, load.axes, stations)) if numbers.shape[-1] == 2 else numbers
@@ -145,7 +134,7 @@ def _connectors(model: Model) -> Iterator[_Vertices]:
             continue  # acts along a beam
         for number, point in enumerate(connector.points):
             values = partial(_of_connector, connector, number)
-            yield _Vertices(type(connector).__name__, _CONNECTOR, _ACTION, *_at(model, point), values)
+            yield _Vertices(type(connector).__name__, _CONNECTOR, _ACTION, _at(model, point), values)
 
 
 def _of_connector(connector: Contribution, number: int, part: Solution) -> _Values:
@@ -163,10 +152,10 @@ class Boundary:
         self.groups = [*_supports(model), *_loads(model), *_connectors(model)]
         numbers = {id(mesh): number for number, mesh in enumerate(model.meshes)}
         kinds = list(dict.fromkeys(group.kind for group in self.groups))
-        self._sizes = [len(group.xi) for group in self.groups]
+        self._sizes = [len(group.points.xi) for group in self.groups]
         self.points = sum(self._sizes)
         self.connectivity, self.offsets = np.arange(self.points), np.arange(self.points + 1)
-        beam = [numbers[id(group.mesh)] for group in self.groups]
+        beam = [numbers[id(group.points.mesh)] for group in self.groups]
         kind, role = [kinds.index(group.kind) for group in self.groups], [group.role for group in self.groups]
         # cell data (cells,) by name, and names of these numbers
         self.numbers = {
@@ -174,14 +163,6 @@ class Boundary:
             for name, values in (("beam", beam), ("kind", kind), ("role", role))
         }
         self.legend = {**legend_of_beams(self.beams), "kinds": kinds, "roles": list(_ROLES)}
-        self._element, self._xi = (
-            np.concatenate([getattr(group, name) for group in self.groups]) if self.groups else np.empty(0)
-            for name in ("element", "xi")
-        )
-        # the vertices of each beam that has some
-        self._places = [
-            (model.meshes[number], np.flatnonzero(self.numbers["beam"] == number)) for number in dict.fromkeys(beam)
-        ]
 
     @property
     def names(self) -> list[str]:
@@ -214,15 +195,9 @@ class Boundary:
 
     def _positions(self, p: np.ndarray) -> np.ndarray:
         """Return the positions (steps, points, 3) [m] of the vertices in states p (steps, n)."""
-        result = np.zeros((len(p), self.points, 3))
-        for mesh, indices in self._places:
-            vectors = postprocess.nodal_vectors(mesh, p)
-            result[:, indices, :2] = postprocess.axis(mesh, vectors, self._element[indices], self._xi[indices]).r
-        return result
+        parts = [np.empty((len(p), 0, 2)), *(group.points.positions(p)[0] for group in self.groups)]
+        return _flat(np.concatenate(parts, axis=1))
 
     @cached_property
     def _reference(self) -> np.ndarray:
-        result = np.zeros((self.points, 3))
-        for mesh, indices in self._places:
-            result[indices, :2] = reference_position(mesh, self._element[indices], self._xi[indices])
-        return result
+        return _flat(np.concatenate([np.empty((0, 2)), *(group.points.reference for group in self.groups)]))

@@ -14,9 +14,11 @@ from beamfem.mesh.reference import reference_axis
 from beamfem.model.beam import Beam, names
 from beamfem.model.model import Model
 from beamfem.results import postprocess
-from beamfem.results.axis_fields import rotation, section_forces
+from beamfem.results.axis_fields import section_forces
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import LikeBeams, equal_beams
+from beamfem.results.full_turns import rotation
+from beamfem.results.nodal import rate_at
 from beamfem.results.solution import Solution
 from beamfem.results.stresses import (
     in_the_plane,
@@ -79,7 +81,7 @@ class Samples:
     def arrays(self, solution: Solution, rows: slice = slice(None)) -> dict[str, np.ndarray]:
         """Return numbers (steps, points), vectors (..., 3) and tensors (..., 6) of some rows of a solution."""
         element, xi, p, v = self.points.element, self.points.xi, solution.p[rows], solution.v[rows]
-        now = postprocess.axis(self.mesh, postprocess.nodal_vectors(self.mesh, p), element, xi)
+        now = self.points.now(p)
         position = self._at_heights(now.r, now.d)
         result = {
             "points": position,
@@ -87,7 +89,7 @@ class Samples:
             "rotation": np.repeat(rotation(self.points, solution, rows)[..., None], self.y.shape[-1], axis=-1),
         }
         if not solution.static:
-            rate = postprocess.axis(self.mesh, postprocess.nodal_velocities(self.mesh, p, v), element, xi)
+            rate = rate_at(self.mesh, p, v, element, xi)
             result["velocity"] = self._at_heights(rate.r, rate.d)
         strain = postprocess.green_strain(now, self.axis, self.y)
         for component in ("xx", "yy", "xy"):

@@ -11,9 +11,11 @@ from beamfem.model.beam import Beam
 from beamfem.results import postprocess
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.beam_stress import stress_at, stress_over_height
-from beamfem.results.full_turns import turned_of
+from beamfem.results.full_turns import rotation
+from beamfem.results.postprocess import Components, Fields
 from beamfem.results.section_forces import at_points
 from beamfem.results.solution import Solution
+from beamfem.results.stresses import self_stress
 from beamfem.validation import require_known, shown
 
 
@@ -21,13 +23,6 @@ def section_forces(points: AxisPoints, solution: Solution, rows: slice | np.ndar
     """Return normal and shear force [N] and moment [N m] (rows, points) of some rows of a solution, by name."""
     forces = at_points(solution, points, rows)
     return {name: forces[:, i] for i, name in enumerate(("normal", "shear", "moment"))}
-
-
-def rotation(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
-    """Return the rotation of the section from the reference configuration (rows, points) [rad]."""
-    turned, p = turned_of(solution, points.mesh), solution.p[rows]
-    counted = None if turned is None else turned[rows]
-    return postprocess.section_rotation(points.mesh, p, points.now(p), points.element, points.xi, counted)
 
 
 Values = Callable[[AxisPoints, Solution, slice | np.ndarray], np.ndarray]
@@ -57,12 +52,23 @@ class Quantity:
         return why if all(laws) else f"{why}; besides, {self.unknown}"
 
 
+def fields(points: AxisPoints, solution: Solution) -> Fields:
+    """Return the fields at points over the steps; arrays (steps, points, ...)."""
+    now, forces, height = points.now(solution.p), at_points(solution, points), np.zeros((len(points.xi), 1))
+    along = points.distributions.normal_stress(None, height, forces[:, 0], forces[:, 2])
+    along = (along + self_stress(solution, points, None, height))[..., 0]
+    sheared = points.distributions.shear_stress(None, height, forces[:, 1])[..., 0]
+    strain, stress = postprocess.strain_at_axis(points, now), Components(along, 0.0 * along, sheared)
+    angle = rotation(points, solution)
+    return Fields(now.r, now.r_s, now.d, angle, postprocess.shear_angle(now), strain, stress)
+
+
 def _section_force(name: str, points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
     return section_forces(points, solution, rows)[name]
 
 
 def _axial_strain(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
-    return postprocess.strain_at_axis(points.mesh, points.now(solution.p[rows]), points.element, points.xi).xx
+    return postprocess.strain_at_axis(points, points.now(solution.p[rows])).xx
 
 
 def _shear_angle(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:

@@ -1,14 +1,16 @@
 """Points along the axis of a beam, in the reference and in states."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from beamfem.cached_properties import cached_property
+from beamfem.element.fields import Axis
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import reference_position
 from beamfem.mesh.section_stress import Distributions, distributions, layers
-from beamfem.results import postprocess
+from beamfem.results.nodal import axis_at, rate_at
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +34,12 @@ class AxisPoints:
     def spaced(cls, mesh: BeamMesh, pieces: int) -> "AxisPoints":
         """Return the ends of equal intervals of every element; adjacent elements both include their common end."""
         return cls.on_each(mesh, np.arange(pieces + 1) / pieces, pieces)
+
+    @classmethod
+    def at(cls, mesh: BeamMesh, fractions: Sequence[float]) -> "AxisPoints":
+        """Return the points at fractions of the length of a beam."""
+        element, xi = map(np.array, zip(*map(mesh.locate, fractions), strict=True))
+        return cls(mesh, element, xi)
 
     def by_element(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return values (rows, points) on each element as (rows, elements, k), and xi (k,), see `on_each`."""
@@ -68,11 +76,10 @@ class AxisPoints:
         now = self.now(p)
         return now.r, now.d
 
-    def now(self, p: np.ndarray) -> postprocess.Axis:
+    def now(self, p: np.ndarray) -> Axis:
         """Return the deformed axis at the points in the states p (steps, n)."""
-        return postprocess.axis(self.mesh, postprocess.nodal_vectors(self.mesh, p), self.element, self.xi)
+        return axis_at(self.mesh, p, self.element, self.xi)
 
     def velocities(self, p: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Return the velocity of the axis (steps, points, 2) [m/s]."""
-        rates = postprocess.nodal_velocities(self.mesh, p, v)
-        return postprocess.axis(self.mesh, rates, self.element, self.xi).r
+        return rate_at(self.mesh, p, v, self.element, self.xi).r

@@ -8,7 +8,7 @@ import numpy as np
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import inertia_points, length_points, reference_axis, reference_position
 from beamfem.model.beam import Beam, Point
-from beamfem.results import postprocess
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.solution import Solution
 
 
@@ -41,10 +41,9 @@ class Displacements:
 
     def along(self, beam: Beam) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return displacements (steps, n, 2) [m] at points along a beam, and their weights and arc lengths (n,) [m]."""
-        mesh = self.solution.model.mesh_of(beam.start)
-        element, xi, weight = length_points(mesh)
-        now = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, self.solution.p), element, xi).r
-        return now - reference_position(mesh, element, xi), weight, mesh.arc_length(element, xi)
+        element, xi, weight = length_points(mesh := self.solution.model.mesh_of(beam.start))
+        points = AxisPoints(mesh, element, xi)
+        return points.positions(self.solution.p)[0] - points.reference, weight, points.arc_length
 
 
 def _reference_moment(mesh: BeamMesh) -> np.ndarray:

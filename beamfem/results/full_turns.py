@@ -1,17 +1,13 @@
 """Full turns of beams without nodal angles, whose coordinates do not hold them, in the rows of a solution."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.cached_properties import cached_property
-from beamfem.element.fields import Axis
 from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.model.beam import Point
 from beamfem.model.model import Model
 from beamfem.results import postprocess
-from beamfem.results.nodal import axis_at
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.solution import Solution
 
 
@@ -48,34 +44,26 @@ def turned_of(solution: Solution, mesh: BeamMesh) -> np.ndarray | None:
     return start_rotations(solution)[:, counted] if counted else None
 
 
-def rotations(solution: Solution, points: Sequence[Point]) -> np.ndarray:
-    """Return the rotations (steps, points) [rad] of sections of one beam, full turns included."""
-    mesh = solution.model.mesh_of(points[0])
-    element, xi = (np.array(each) for each in zip(*(mesh.locate(point.fraction) for point in points), strict=True))
-    now = axis_at(mesh, solution.p, element, xi)
-    return postprocess.section_rotation(mesh, solution.p, now, element, xi, turned_of(solution, mesh))
+def rotation(points: AxisPoints, solution: Solution, rows: slice | np.ndarray = slice(None)) -> np.ndarray:
+    """Return the rotation of the section from the reference configuration (rows, points) [rad], full turns included."""
+    turned, p = turned_of(solution, points.mesh), solution.p[rows]
+    counted = None if turned is None else turned[rows]
+    return postprocess.section_rotation(points.mesh, p, points.now(p), points.element, points.xi, counted)
 
 
 @dataclass(frozen=True, eq=False)
 class StationsOfRows:
-    """Points (n,) of a beam, given by element and xi, in the rows of a solution."""
+    """Points (n,) of a beam in the rows of a solution."""
 
     solution: Solution
-    mesh: BeamMesh
-    element: np.ndarray
-    xi: np.ndarray
+    points: AxisPoints
 
     @property
     def rotation(self) -> np.ndarray:
         """Rotations of the sections from the reference (steps, n) [rad]."""
-        turned = turned_of(self.solution, self.mesh)
-        return postprocess.section_rotation(self.mesh, self.solution.p, self._now, self.element, self.xi, turned)
+        return rotation(self.points, self.solution)
 
     @property
     def slope(self) -> np.ndarray:
         """Derivatives r0' (steps, n, 2) [-]."""
-        return self._now.r_s
-
-    @cached_property
-    def _now(self) -> Axis:
-        return axis_at(self.mesh, self.solution.p, self.element, self.xi)
+        return self.points.now(self.solution.p).r_s

@@ -18,7 +18,7 @@ from beamfem.model.check_replaceable import require_remade
 from beamfem.model.load_base import Load
 from beamfem.model.model import Model
 from beamfem.reprs import brief
-from beamfem.results.postprocess import axis, nodal_velocities
+from beamfem.results.nodal import rate_at
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import finite, number_below, of_package, shown, squared
 
@@ -130,7 +130,7 @@ def _rates(mesh: BeamMesh, p: np.ndarray, shape: np.ndarray) -> tuple[np.ndarray
     A linear field has no unique slope at its nodes: the axis is taken to turn with the section there.
     """
     element, xi = _places(mesh)
-    rates = axis(mesh, nodal_velocities(mesh, p[None], shape[None]), element, xi)
+    rates = rate_at(mesh, p[None], shape[None], element, xi)
     slope = -across(rates.d[0]) if mesh.beam.element.field.degree == 1 else rates.r_s[0]
     return rates.r[0], slope
 

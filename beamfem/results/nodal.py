@@ -48,13 +48,19 @@ def axis(mesh: BeamMesh, vectors: np.ndarray, element: np.ndarray, xi: np.ndarra
 
 
 def axis_at(mesh: BeamMesh, p: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:
-    """Return the axis in states p (steps, n) at points (element, xi), both (points,), from their elements only."""
-    return _around(mesh, nodal_vectors(mesh, p, mesh.node[element].ravel()), element, xi)
+    """Return the axis in states p (steps, n) at points (element, xi), both (points,)."""
+    some = mesh.node[element].ravel()
+    if len(some) >= mesh.nodes:
+        return axis(mesh, nodal_vectors(mesh, p), element, xi)
+    return _around(mesh, nodal_vectors(mesh, p, some), element, xi)
 
 
 def rate_at(mesh: BeamMesh, p: np.ndarray, v: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:
     """Return the rate of the axis at points (element, xi), likewise."""
-    return _around(mesh, nodal_velocities(mesh, p, v, mesh.node[element].ravel()), element, xi)
+    some = mesh.node[element].ravel()
+    if len(some) >= mesh.nodes:
+        return axis(mesh, nodal_velocities(mesh, p, v), element, xi)
+    return _around(mesh, nodal_velocities(mesh, p, v, some), element, xi)
 
 
 def _around(mesh: BeamMesh, vectors: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:

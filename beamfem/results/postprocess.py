@@ -16,11 +16,10 @@ from beamfem.mesh.reference import (
     inertia_points,
     reference_angle,
     reference_axis,
-    reference_position,
 )
-from beamfem.mesh.section_stress import distributions
 from beamfem.reprs import brief
-from beamfem.results.nodal import axis, axis_at, has_angles, nodal_angles, nodal_vectors, nodal_velocities
+from beamfem.results.axis_points import AxisPoints
+from beamfem.results.nodal import axis_at, has_angles, nodal_angles, nodal_vectors, rate_at
 from beamfem.section.law import ConstitutiveLaw
 
 
@@ -83,8 +82,7 @@ def position(mesh: BeamMesh, p: np.ndarray, fraction: float) -> np.ndarray:
     node = mesh.node_near(fraction)
     if node is not None:
         return np.asarray(p[:, mesh.kinematics.dof[node, :2]])
-    element, xi = mesh.locate(fraction)
-    return axis_at(mesh, p, np.array([element]), np.array([xi])).r[:, 0]
+    return AxisPoints.at(mesh, [fraction]).now(p).r[:, 0]
 
 
 def start(mesh: BeamMesh, fraction: float) -> np.ndarray:
@@ -92,8 +90,7 @@ def start(mesh: BeamMesh, fraction: float) -> np.ndarray:
     node = mesh.node_near(fraction)
     if node is not None:
         return np.asarray(mesh.position[node])
-    element, xi = mesh.locate(fraction)
-    return reference_position(mesh, np.array([element]), np.array([xi]))[0]
+    return AxisPoints.at(mesh, [fraction]).reference[0]
 
 
 def direction(mesh: BeamMesh, now: Axis) -> np.ndarray:
@@ -160,38 +157,14 @@ def nodal_rotations(mesh: BeamMesh, p: np.ndarray, turned: np.ndarray | None = N
     return np.asarray(angle + (start - angle[:, 0])[:, None])
 
 
-def fields(
-    mesh: BeamMesh,
-    p: np.ndarray,
-    element: np.ndarray,
-    xi: np.ndarray,
-    forces: np.ndarray,
-    self_stress: np.ndarray | float,
-    turned: np.ndarray | None = None,
-) -> Fields:
-    """Return the fields at points (element, xi), both (points,); arrays (steps, points, ...).
-
-    forces (steps, 3, points): normal force, shear force and moment there; self_stress (steps, points, 1) [Pa]: stress
-    in equilibrium over the section, from hindered thermal expansion; turned: see `nodal_rotations`.
-    """
-    now = axis_at(mesh, p, element, xi)
-    strain = strain_at_axis(mesh, now, element, xi)
-    distribution, height = distributions(mesh, element, xi), np.zeros((len(element), 1))
-    along = (distribution.normal_stress(None, height, forces[:, 0], forces[:, 2]) + self_stress)[..., 0]
-    sheared = distribution.shear_stress(None, height, forces[:, 1])[..., 0]
-    angle = section_rotation(mesh, p, now, element, xi, turned)
-    stress = Components(along, 0.0 * along, sheared)
-    return Fields(now.r, now.r_s, now.d, angle, shear_angle(now), strain, stress)
-
-
 def shear_angle(now: Axis) -> np.ndarray:
     """Return a right angle less the angle [rad] from r_x to r_y, which has the sign of the shear strain."""
     return np.asarray(np.arctan2(dot(now.r_s, now.d), cross(now.r_s, now.d)))
 
 
-def strain_at_axis(mesh: BeamMesh, now: Axis, element: np.ndarray, xi: np.ndarray) -> Components:
-    """Return the Green-Lagrange strain (steps, points) at y = 0 of points (element, xi)."""
-    strain = green_strain(now, reference_axis(mesh, element, xi), np.zeros(1))
+def strain_at_axis(points: AxisPoints, now: Axis) -> Components:
+    """Return the Green-Lagrange strain (steps, points) at y = 0."""
+    strain = green_strain(now, reference_axis(points.mesh, points.element, points.xi), np.zeros(1))
     return Components(strain.xx[..., 0], strain.yy[..., 0], strain.xy[..., 0])
 
 
@@ -212,7 +185,7 @@ def strain_energies(mesh: BeamMesh, p: np.ndarray, imposed: np.ndarray | float =
     imposed: see `imposed_measures`. Self-stress between layers with different free strains is not included.
     """
     element, xi, weight = energy_points(mesh)
-    now = axis(mesh, nodal_vectors(mesh, p), element, xi)
+    now = axis_at(mesh, p, element, xi)
     stiffness, reference = energy_stiffness_at(mesh, element, xi)
     strains = mesh.beam.element.forces.strains(now) - reference - imposed
     if mesh.beam.law is not None:
@@ -256,8 +229,8 @@ def momenta(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> Momenta:
     """Return kinetic energy, momenta and first moment of a beam (steps, ...), see `Momenta`."""
     element, xi, inertia = inertia_points(mesh)
     mass, first, rotary = inertia.T
-    now = axis(mesh, nodal_vectors(mesh, p), element, xi)
-    rate = axis(mesh, nodal_velocities(mesh, p, v), element, xi)
+    now = axis_at(mesh, p, element, xi)
+    rate = rate_at(mesh, p, v, element, xi)
     kinetic = 0.5 * (dot(rate.r, rate.r) @ mass + dot(rate.d, rate.d) @ rotary) + dot(rate.r, rate.d) @ first
     linear = np.einsum("sqc,q->sc", rate.r, mass) + np.einsum("sqc,q->sc", rate.d, first)
     angular = cross(now.r, rate.r) @ mass + cross(now.d, rate.d) @ rotary

@@ -18,7 +18,7 @@ from beamfem.model.load_base import Load
 from beamfem.model.model import Model
 from beamfem.reprs import brief
 from beamfem.results import postprocess
-from beamfem.results.nodal import rate_at
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.postprocess import Fields
 from beamfem.results.status import Statistics, Status, counted
 from beamfem.validation import number_below, shown, whole
@@ -247,17 +247,10 @@ class Solution:
 
         Where two elements meet or a load acts, strain and stress are those on the side towards the beam's end.
         """
-        from beamfem.results.axis_points import AxisPoints
-        from beamfem.results.full_turns import turned_of
-        from beamfem.results.section_forces import at_points
-        from beamfem.results.stresses import self_stress
+        from beamfem.results.axis_fields import fields
 
-        mesh = self.model.mesh_of(point)
-        element, xi = (np.array([value]) for value in mesh.locate(point.fraction))
-        points = AxisPoints(mesh, element, xi)
-        forces, eigenstress = at_points(self, points), self_stress(self, points, None, np.zeros((1, 1)))
-        result = postprocess.fields(mesh, self.p, element, xi, forces, eigenstress, turned_of(self, mesh))
-        return postprocess.part_of(result, (slice(None), 0))
+        points = AxisPoints.at(self.model.mesh_of(point), [point.fraction])
+        return postprocess.part_of(fields(points, self), (slice(None), 0))
 
     def error(self, quantity: "Callable[[Solution], Any] | Point | None" = None, row: int = -1) -> Any:
         """Return an estimate of the discretisation error of a result: its change with a much finer mesh.
@@ -317,16 +310,14 @@ class Solution:
 
     def velocity(self, point: Point) -> np.ndarray:
         """Return the velocity (vx, vy) of a point (steps, 2) [m/s]."""
-        mesh = self.model.mesh_of(point)
-        element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
-        return rate_at(mesh, self.p, self.v, element, xi).r[:, 0]
+        points = AxisPoints.at(self.model.mesh_of(point), [point.fraction])
+        return points.velocities(self.p, self.v)[:, 0]
 
     def rotation(self, point: Point) -> np.ndarray:
         """Return the rotation of the section (steps,) [rad], counter-clockwise positive, full turns included."""
-        from beamfem.results.full_turns import rotations
+        from beamfem.results.full_turns import rotation
 
-        self.model.mesh_of(point)  # refuses what is no point of this model
-        return rotations(self, [point])[:, 0]
+        return rotation(AxisPoints.at(self.model.mesh_of(point), [point.fraction]), self)[:, 0]
 
     def reaction(self, point: Point) -> np.ndarray:
         """Return fx, fy [N] and m [N m] of supports and springs on the beam at a point (steps, 3).

@@ -25,7 +25,7 @@ from beamfem.results import locking
 from beamfem.results.beam_stress import peak_stress
 from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.locking import ROWS, heights, pairs, rows_looked_at
-from beamfem.results.nodal import axis, nodal_vectors
+from beamfem.results.nodal import axis_at, nodal_vectors
 from beamfem.results.postprocess import nodal_rotations
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import imposed_measures, loading
@@ -189,7 +189,7 @@ def _strained(solution: Solution) -> str:
 def _strains(solution: Solution, mesh: BeamMesh, rows: np.ndarray) -> np.ndarray:
     """Return the largest normal strain at the faces, or the shear strain if larger (rows, points), at energy points."""
     element, xi, _ = energy_points(mesh)
-    now, forces = axis(mesh, nodal_vectors(mesh, solution.p[rows]), element, xi), mesh.beam.element.forces
+    now, forces = axis_at(mesh, solution.p[rows], element, xi), mesh.beam.element.forces
     strains = forces.strains(now) - energy_stiffness_at(mesh, element, xi)[1] - imposed_measures(solution, mesh, rows)
     y = layers(mesh, element, xi)[:, [0, -1], [0, 1]]
     components = np.moveaxis(strains, -1, 0)[..., None]

@@ -10,6 +10,7 @@ from beamfem.mesh.reference import length_points
 from beamfem.model.beam import Beam, Point
 from beamfem.model.load_base import Load, factor
 from beamfem.model.load_shapes import Acceleration, Force, ForcesAlong, LoadShape, Moment, Strains, drawn
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.full_turns import StationsOfRows
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
@@ -41,9 +42,7 @@ class PlacedRow:
         return self._stations(beam, (arc_length / beam.curve.length).tolist())
 
     def _stations(self, beam: Beam, fractions: list[float]) -> StationsOfRows:
-        mesh = self.only.model.mesh_of(beam.start)
-        element, xi = map(np.array, zip(*map(mesh.locate, fractions), strict=True))
-        return StationsOfRows(self.only, mesh, element, xi)
+        return StationsOfRows(self.only, AxisPoints.at(self.only.model.mesh_of(beam.start), fractions))
 
     def stations(self, beam: Beam) -> np.ndarray:
         """Return the arc lengths (n,) [m] at which loads along a beam are integrated."""

@@ -194,8 +194,7 @@ def _taken(solution: Solution, which: str, given: Drawn) -> tuple[str, np.ndarra
 def _of_section(solution: Solution, quantity: Quantity, point: Point) -> tuple[str, str, np.ndarray]:
     """Return label, unit and values (steps,) of a quantity along the axis at a point. Raises InputError."""
     mesh = solution.model.mesh_of(point)
-    element, xi = (np.array([value]) for value in mesh.locate(point.fraction))
-    values = quantity.values(AxisPoints(mesh, element, xi), solution, np.arange(len(solution)))[:, 0]
+    values = quantity.values(AxisPoints.at(mesh, [point.fraction]), solution, np.arange(len(solution)))[:, 0]
     if not np.isfinite(values).any():
         why = quantity.unknown_of([point.beam])
         raise InputError(f"the section at this point has no {quantity.label} to draw: {why}")

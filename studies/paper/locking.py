@@ -13,6 +13,7 @@ from scipy.integrate import simpson
 
 import beamfem as bf
 from beamfem.results import postprocess
+from beamfem.results.nodal import axis_at
 from beamfem.view.html_page import Entry, Part, Table
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 from studies.paper.terminal import show
@@ -191,7 +192,7 @@ def stresses(elements: int = 4, integration: str = "reduced", points: int = 41) 
     solution = bf.solve_static(bf.Model([bar], [bf.Clamp(bar.start)], [bf.PointForce(bar.end, (axial, across))]))
     mesh = solution.model.meshes[0]
     number, xi = np.repeat(np.arange(elements), points), np.tile(np.linspace(0.0, 1.0, points), elements)
-    now = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, solution.p[-1:]), number, xi)
+    now = axis_at(mesh, solution.p[-1:], number, xi)
     reference = postprocess.reference_axis(mesh, number, xi)
     found = []
     for y in (0.0, height / 2):

@@ -10,7 +10,8 @@ from beamfem.assembly.equations import linearise, residual
 from beamfem.assembly.model_coordinates import coordinate_columns
 from beamfem.assembly.system import System
 from beamfem.mesh.reference import energy_points, reference_axis
-from beamfem.results.postprocess import axis, nodal_vectors, nodal_velocities, strain_energy
+from beamfem.results.nodal import axis, nodal_vectors, nodal_velocities
+from beamfem.results.postprocess import strain_energy
 from beamfem.results.status import Statistics
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)

@@ -14,7 +14,8 @@ from beamfem.assembly.system import System
 from beamfem.element.coordinates import Gradients, ShearFree
 from beamfem.element.fields import Cubic
 from beamfem.kernels import block
-from beamfem.results.postprocess import axis, nodal_vectors, strain_energy
+from beamfem.results.nodal import axis, nodal_vectors
+from beamfem.results.postprocess import strain_energy
 from beamfem.results.status import Statistics
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)

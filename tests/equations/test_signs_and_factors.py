@@ -7,7 +7,8 @@ import beamfem as bf
 from beamfem.assembly.model_coordinates import coordinate_columns
 from beamfem.assembly.system import System
 from beamfem.mesh.reference import reference_axis
-from beamfem.results.postprocess import axis, green_strain, nodal_vectors
+from beamfem.results.nodal import axis, nodal_vectors
+from beamfem.results.postprocess import green_strain
 
 STIFF = bf.Section.from_stiffness(1e9, 1e9, 1.0, 1.0, 1.0)
 KINDS = [

@@ -15,7 +15,7 @@ from beamfem.assembly.system import System
 from beamfem.element.fields import cross
 from beamfem.linalg.lapack import LinAlgError, superlu
 from beamfem.mesh.reference import energy_points
-from beamfem.results.postprocess import axis, nodal_vectors
+from beamfem.results.nodal import axis, nodal_vectors
 
 SECTION = bf.Rectangle(0.05, 0.05)
 MATERIAL = bf.Material(1e7, 0.3, 1000.0)

@@ -19,7 +19,7 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 import beamfem as bf
 from beamfem.io import vtk
 from beamfem.io import vtk_cells as cells
-from beamfem.results import postprocess
+from beamfem.results.nodal import axis_at
 
 HEIGHT = 0.02
 # Degree (3, 2): xi and side of the twelve points of a cell, from vtkHigherOrderQuadrilateral.PointIndexFromIJK.
@@ -83,9 +83,8 @@ def test_points_are_those_of_the_field(solution, written):
     for row in (0, 5, len(solution) - 1):
         points = vtk_to_numpy(read(files[row]).GetPoints().GetData()).reshape(2, 3, 12, 3)
         for mesh, found in zip(solution.model.meshes, points, strict=True):
-            vectors = postprocess.nodal_vectors(mesh, solution.p[row : row + 1])
             for element in range(mesh.elements):
-                axis = postprocess.axis(mesh, vectors, np.full(12, element), XI)
+                axis = axis_at(mesh, solution.p[row : row + 1], np.full(12, element), XI)
                 np.testing.assert_allclose(found[element, :, :2], axis.r[0] + Y[:, None] * axis.d[0], atol=1e-14)
         assert not points[..., 2].any()
 

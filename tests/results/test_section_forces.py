@@ -5,7 +5,8 @@ import pytest
 from conftest import ELEMENTS, identify
 
 import beamfem as bf
-from beamfem.results.postprocess import axis, direction, nodal_vectors
+from beamfem.results.nodal import axis, nodal_vectors
+from beamfem.results.postprocess import direction
 
 SOFT = bf.Material(2e5, 0.3, 7800.0)
 FORCE, MOMENT = np.array([-3.0, 6.0]), 1.0

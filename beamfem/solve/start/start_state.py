@@ -15,6 +15,7 @@ from beamfem.model.beam import beam_in_words
 from beamfem.model.model import Model
 from beamfem.results import postprocess
 from beamfem.results.check_arrays import require_finite
+from beamfem.results.nodal import nodal_vectors, nodal_velocities
 from beamfem.results.solution import Solution, State
 from beamfem.solve.start.start_checks import left_over
 from beamfem.value_keys import equal
@@ -102,7 +103,7 @@ def _rotations(mesh: BeamMesh, state: State) -> np.ndarray:
 def _by_label(mesh: BeamMesh, state: State) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     """Return every coordinate that a node could have (nodes,), and its rate, by name."""
     p, v = state.p[None], state.v[None]
-    e, rate = postprocess.nodal_vectors(mesh, p)[0], postprocess.nodal_velocities(mesh, p, v)[0]
+    e, rate = nodal_vectors(mesh, p)[0], nodal_velocities(mesh, p, v)[0]
     values: dict[str, np.ndarray] = {}
     rates: dict[str, np.ndarray] = {}
     for i, vector in enumerate(mesh.vectors):

@@ -1,6 +1,7 @@
 """Loads in a drawing: forces and moments as arrows, distributed forces as rows of them, text for imposed strains."""
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Any, assert_never
 
 import numpy as np
@@ -49,10 +50,6 @@ class PlacedRow:
         mesh = self.only.model.mesh_of(beam.start)
         return mesh.arc_length(*length_points(mesh)[:2])
 
-    def shapes(self, load: Load, weight: float) -> tuple[LoadShape, ...]:
-        """Return the shapes of a load, times a weight. Raises InputError for an unknown shape."""
-        return drawn(load, load.shapes(weight, self), LoadShape)
-
     def positions(self, forces: ForcesAlong) -> np.ndarray:
         """Return the positions of forces along a beam (n, 2) [m]."""
         length = forces.beam.curve.length
@@ -68,17 +65,54 @@ class PlacedRow:
         return bool(force.vector @ outward < -0.3 * np.linalg.norm(force.vector) * np.linalg.norm(slope))
 
 
+@dataclass(frozen=True, eq=False)
+class PlacedLoads:
+    """Loads where they act in rows of a solution; what is zero is left out.
+
+    forces: place (2,) [m], vector (2,) [N] and whether the arrow's tip touches the beam; lines: places (n, 2) [m] of
+    forces along beams; moments: place and moment [N m]; gravity: accelerations (2,) [m/s^2]; strains: imposed ones, and
+    their row.
+    """
+
+    forces: list[tuple[np.ndarray, np.ndarray, bool]] = field(default_factory=list)
+    lines: list[tuple[np.ndarray, ForcesAlong]] = field(default_factory=list)
+    moments: list[tuple[np.ndarray, float]] = field(default_factory=list)
+    gravity: list[np.ndarray] = field(default_factory=list)
+    strains: list[tuple[Strains, Solution]] = field(default_factory=list)
+
+    def add(self, placed: PlacedRow, load: Load, weight: float) -> None:
+        """Add a load in a row, times a weight. Raises InputError for an unknown shape."""
+        for shape in drawn(load, load.shapes(weight, placed), LoadShape):
+            match shape:
+                case Force():
+                    if shape.vector.any():
+                        self.forces.append((placed.position(shape.point), shape.vector, placed.touches(shape)))
+                case Moment():
+                    if shape.moment != 0.0:
+                        self.moments.append((placed.position(shape.point), shape.moment))
+                case ForcesAlong():
+                    if shape.vectors.any():
+                        self.lines.append((placed.positions(shape), shape))
+                case Acceleration():
+                    if shape.vector.any():
+                        self.gravity.append(shape.vector)
+                case Strains():
+                    self.strains.append((shape, placed.only))
+                case _:
+                    assert_never(shape)
+
+
 _APART = 12.0  # of the words from the axis [points of print]
 _BENT = 0.02  # of the length: a beam that is bent has its words on its outer side
 _MARGIN = 4.0  # between words and the edge of the axes [points of print]
 _SLOPED = 0.3  # of a unit normal
 
 
-def _imposed(axes: Any, solution: Solution, items: list[tuple[Strains, int]]) -> Any:
-    """Draw the strains imposed by loads in a row of a solution as text; yield the artists."""
+def _imposed(axes: Any, items: list[tuple[Strains, Solution]]) -> Any:
+    """Draw the strains imposed by loads as text; yield the artists."""
     beside: dict[int, int] = {}
-    for strains, row in items:
-        only, beam = solution[row : row + 1], strains.beam
+    for strains, only in items:
+        beam = strains.beam
         at, along = only.position(beam.at(0.5))[0], only.fields(beam.at(0.5)).r_x[0]
         chord = only.position(beam.at(0.25))[0] + only.position(beam.at(0.75))[0] - 2.0 * at
         outward = np.array([-along[1], along[0]]) / np.linalg.norm(along)
@@ -86,7 +120,7 @@ def _imposed(axes: Any, solution: Solution, items: list[tuple[Strains, int]]) ->
             outward = -outward
         # words beside an upright beam take a line each, so that they stay narrow
         sideways = abs(outward[0]) > _SLOPED
-        words, before = _words(strains, solution.model.unit), beside.get(id(beam), 0)
+        words, before = _words(strains, only.model.unit), beside.get(id(beam), 0)
         lines = len(words) if sideways else 1
         beside[id(beam)] = before + lines
         offset = _APART * outward - [0.0, before * _APART] if sideways else (before + 1) * _APART * outward
@@ -131,34 +165,23 @@ _SHORTEST = 14.0
 def draw_loads(axes: Any, solution: Solution, rows: np.ndarray) -> list[Any]:
     """Draw each load on the row at which it is largest, the last of equals; return the artists."""
     system, at = loading(solution)
-    drawn: list[Any] = []
-    forces: list[tuple[Force, PlacedRow]] = []
-    strains: list[tuple[Strains, int]] = []
-    stamps = Stamps()
+    loads, stamps = PlacedLoads(), Stamps()
     for load in solution.model.loads:
         weights = np.array([factor(load, float(at[row]), system.static) for row in rows])
         best = len(rows) - 1 - int(np.abs(weights[::-1]).argmax())
-        if not weights[best]:
-            continue
-        placed = PlacedRow(solution, int(rows[best]))
-        for shape in placed.shapes(load, float(weights[best])):
-            match shape:
-                case Force():
-                    forces.append((shape, placed))
-                case Moment():
-                    arc, head = symbols.turn(0.25 * np.pi, span=float(1.5 * np.pi * np.sign(shape.moment)))
-                    stamps.add(placed.position(shape.point), arc, FORCE, 1.5)
-                    stamps.add(placed.position(shape.point), head, FORCE, 0.5, FORCE)
-                case ForcesAlong():
-                    drawn += _distributed(axes, placed.positions(shape), shape)
-                case Acceleration():
-                    drawn += _gravity(axes, shape.vector)
-                case Strains():
-                    strains.append((shape, int(rows[best])))
-                case _:
-                    assert_never(shape)
-    drawn += _imposed(axes, solution, strains)
-    return [*_forces(axes, forces), *drawn, *stamps.draw(axes, 18.0, 5.0)]
+        if weights[best]:
+            loads.add(PlacedRow(solution, int(rows[best])), load, float(weights[best]))
+    for place, moment in loads.moments:
+        arc, head = symbols.turn(0.25 * np.pi, span=float(1.5 * np.pi * np.sign(moment)))
+        stamps.add(place, arc, FORCE, 1.5)
+        stamps.add(place, head, FORCE, 0.5, FORCE)
+    drawn: list[Any] = []
+    for places, forces in loads.lines:
+        drawn += _distributed(axes, places, forces)
+    for vector in loads.gravity:
+        drawn += _gravity(axes, vector)
+    drawn += _imposed(axes, loads.strains)
+    return [*_forces(axes, loads.forces), *drawn, *stamps.draw(axes, 18.0, 5.0)]
 
 
 def _arrows(axes: Any, at: np.ndarray, vector: np.ndarray, pivot: str, width: float = 1.5, **options: Any) -> Any:
@@ -182,13 +205,10 @@ def _arrows(axes: Any, at: np.ndarray, vector: np.ndarray, pivot: str, width: fl
     )
 
 
-def _forces(axes: Any, items: list[tuple[Force, PlacedRow]]) -> list[Any]:
-    items = [(force, placed) for force, placed in items if force.vector.any()]
+def _forces(axes: Any, items: list[tuple[np.ndarray, np.ndarray, bool]]) -> list[Any]:
     if not items:
         return []
-    at = np.array([placed.position(force.point) for force, placed in items])
-    vector = np.array([force.vector for force, _ in items])
-    push = np.array([placed.touches(force) for force, placed in items])
+    at, vector, push = map(np.array, zip(*items, strict=True))
     size = np.linalg.norm(vector, axis=1)
     length = np.maximum(_LONGEST * np.sqrt(size / size.max()), _SHORTEST)
     vector = vector / size[:, None] * length[:, None]
@@ -199,10 +219,7 @@ def _forces(axes: Any, items: list[tuple[Force, PlacedRow]]) -> list[Any]:
 def _distributed(axes: Any, places: np.ndarray, forces: ForcesAlong) -> list[Any]:
     from matplotlib.transforms import ScaledTranslation
 
-    size = np.linalg.norm(forces.vectors, axis=1).max()
-    if size == 0.0:
-        return []
-    vector = 0.7 * _LONGEST * forces.vectors / size
+    vector = 0.7 * _LONGEST * forces.vectors / np.linalg.norm(forces.vectors, axis=1).max()
     drawn = [_arrows(axes, places, vector, "tip", 1.0)]
     if forces.even:
         foot = axes.transData + ScaledTranslation(
@@ -213,11 +230,8 @@ def _distributed(axes: Any, places: np.ndarray, forces: ForcesAlong) -> list[Any
 
 
 def _gravity(axes: Any, vector: np.ndarray) -> list[Any]:
-    size = np.linalg.norm(vector)
-    if size == 0.0:
-        return []
     # to the left of the upper right corner, which is left to the arrow
-    at, ahead = np.array([0.955, 0.9]), vector / size
+    at, ahead = np.array([0.955, 0.9]), vector / np.linalg.norm(vector)
     arrow = _arrows(axes, at[None], 26.0 * ahead[None], "mid", transform=axes.transAxes)
     offset = -9.0 * np.abs(across(ahead))
     name = axes.annotate(

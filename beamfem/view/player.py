@@ -1,13 +1,14 @@
 """A page with a slider over the steps of a solution: one file, drawn by the browser, works offline."""
 
 import base64
+import itertools
 import json
 from collections.abc import Sequence
 from html import escape
 from importlib.resources import files
 from os import PathLike
 from pathlib import Path
-from typing import Any, assert_never
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,6 @@ from beamfem.errors import InputError
 from beamfem.mesh.joined_mesh import join
 from beamfem.model.beam import Beam
 from beamfem.model.load_base import factor
-from beamfem.model.load_shapes import Acceleration, Force, ForcesAlong, Moment, Strains
 from beamfem.results.axis_fields import QUANTITIES, section_forces
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import of_each
@@ -26,7 +26,7 @@ from beamfem.results.solution_system import loading
 from beamfem.validation import count, optional, text
 from beamfem.view.deformed_shapes import Shapes, limits
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
-from beamfem.view.load_drawing import PlacedRow
+from beamfem.view.load_drawing import PlacedLoads, PlacedRow
 from beamfem.view.notebook_paths import WrittenFile
 from beamfem.view.summary import model_rows, solution_rows
 from beamfem.view.support_symbols import joints_of, supports_of
@@ -98,49 +98,32 @@ def loads_of(shapes: Shapes) -> list[dict[str, Any]]:
     system, at = loading(solution)
     arrows = sum(55 if isinstance(load.place, Beam) else 5 for load in solution.model.loads)
     chosen = rows if arrows * len(rows) <= _MOST else rows[-1:] if arrows <= _MOST else []
-    loads = [_row(shapes, row, float(at[row]), system.static) for row in chosen]
-    forces = [force for row in loads for force in row["points"]]
-    largest = max((float(np.linalg.norm(vector)) for _, vector, _ in forces), default=0.0) or 1.0
-    dense = max((float(np.abs(vector).max()) for row in loads for _, vector in row["lines"]), default=0.0) or 1.0
+    loads = [_loads_in(solution, row, float(at[row]), system.static) for row in chosen]
+    sizes = [float(np.linalg.norm(vector)) for each in loads for _, vector, _ in each.forces]
+    dense = max((float(np.abs(forces.vectors).max()) for each in loads for _, forces in each.lines), default=1.0)
     return [
         {
             "forces": [
-                *(_arrow(place, _scaled(vector, largest), tip) for place, vector, tip in row["points"] if vector.any()),
+                *(_arrow(place, _scaled(vector, max(sizes)), tip) for place, vector, tip in each.forces),
                 *(
                     _arrow(place, _SPREAD * vector / dense, True)
-                    for places, vectors in row["lines"]
-                    for place, vector in zip(places, vectors, strict=True)
+                    for places, forces in each.lines
+                    for place, vector in zip(places, forces.vectors, strict=True)
                     if vector.any()
                 ),
             ],
-            "moments": row["moments"],
-            "gravity": row["gravity"],
+            "moments": [[*_short(place), float(np.sign(moment))] for place, moment in each.moments],
+            "gravity": [*itertools.chain(*(_short(g / np.linalg.norm(g) * _LONGEST) for g in each.gravity[-1:]))],
         }
-        for row in loads
+        for each in loads
     ]
 
 
-def _row(shapes: Shapes, row: int, at: float, static: bool) -> dict[str, list[Any]]:
-    placed = PlacedRow(shapes.solution, row)
-    result: dict[str, list[Any]] = {"points": [], "lines": [], "moments": [], "gravity": []}
-    for load in shapes.solution.model.loads:
-        for shape in placed.shapes(load, factor(load, at, static)):
-            match shape:
-                case Force():
-                    result["points"].append((placed.position(shape.point), shape.vector, placed.touches(shape)))
-                case ForcesAlong():
-                    result["lines"].append((placed.positions(shape), shape.vectors))
-                case Moment():
-                    if shape.moment != 0.0:
-                        result["moments"].append([*_short(placed.position(shape.point)), float(np.sign(shape.moment))])
-                case Acceleration():
-                    if shape.vector.any():
-                        result["gravity"] = _short(shape.vector / np.linalg.norm(shape.vector) * _LONGEST)
-                case Strains():
-                    pass  # pages have arrows only
-                case _:
-                    assert_never(shape)
-    return result
+def _loads_in(solution: Solution, row: int, at: float, static: bool) -> PlacedLoads:
+    placed, loads = PlacedRow(solution, row), PlacedLoads()
+    for load in solution.model.loads:
+        loads.add(placed, load, factor(load, at, static))
+    return loads
 
 
 def _scaled(vector: np.ndarray, largest: float) -> np.ndarray:

@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from beamfem.results.solution import Solution
-
 # what a quantity is: the method of a Solution and the attributes or columns of its result; and the unit in SI
 # what a quantity is: the method of a Solution and the attributes or columns of its result; and the unit in SI
 _AT_POINT = """

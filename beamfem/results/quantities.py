@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from beamfem.results.solution import Solution
-# what a quantity is: the method of a Solution and the attributes or columns of its result; and the unit in SI
+
 # what a quantity is: the method of a Solution and the attributes or columns of its result; and the unit in SI
 _AT_POINT = """
 x position.0 m, y position.1 m, ux displacement.0 m, uy displacement.1 m, vx velocity.0 m/s, vy velocity.1 m/s,

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+import tracemalloc
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -338,6 +339,21 @@ def test_a_file_is_as_before_or_after_a_change_wherever_its_writer_ends(tmp_path
             assert_same({name: found[name] for name in ("p", "turned") if name in found}, {"p": before["p"]})
         assert len(bf.resume(path, duration=0.05)) == 51
         assert_same(datasets(path), after)
+
+
+def test_memory_does_not_grow_with_rows(tmp_path, monkeypatch):
+    """A row has 1.1 kB; times of steps, which are known before, have some 10 bytes each."""
+    monkeypatch.setattr(long_runs, "_BYTES", 2**18)
+    monkeypatch.setattr(long_runs, "_loaded", lambda file: bf.load(file.path, rows=slice(0, 1)))
+    model, peaks = pendulum(), []
+    row = 24 * model.size
+    for steps in (1000, 2000, 10_000):  # the first one warms up
+        tracemalloc.start()
+        bf.simulate(model, steps * 1e-4, 1e-4, file=tmp_path / f"{steps}.h5")
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+        assert len(bf.load(tmp_path / f"{steps}.h5")) == steps + 1
+    assert peaks[2] - peaks[1] < 0.15 * 8000 * row
 
 
 KILLED = """

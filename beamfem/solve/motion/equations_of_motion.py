@@ -9,14 +9,18 @@ from scipy.linalg import LinAlgError
 from scipy.sparse import block_array, block_diag, csc_array, csr_array, dia_array
 
 from beamfem.assembly.equations import linearise, residual
-from beamfem.assembly.system import System
+from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.linalg.lapack import superlu
 from beamfem.linalg.tangent import UNROTATED, rotation_to_normals
+from beamfem.model.model import Model
 from beamfem.reprs import brief
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
+from beamfem.solve.motion.start_acceleration import initial_acceleration
 from beamfem.solve.newton.newton import Correction, Termination, iterate
+from beamfem.solve.start.start_checks import refuse_frame
+from beamfem.solve.start.start_state import last_state, transferred
 from beamfem.validation import count, positive
 
 _NOISE = 1e-9  # of the model: smaller corrections that no longer decrease are round-off
@@ -46,6 +50,77 @@ class EquationsOfMotion:
     begin: float = 0.0
 
     __repr__ = brief
+
+    @classmethod
+    def of(cls, model: Model) -> "EquationsOfMotion":
+        """Return the equations of a model for solvers of ordinary differential equations, see `rates`.
+
+        Raises InputError for supports that move, and parts with history variables, which need steps.
+
+        >>> from scipy.integrate import solve_ivp
+        >>> equations = bf.EquationsOfMotion.of(model)
+        >>> solved = solve_ivp(equations.rates, (0.0, 1e-4), equations.coordinates(), method="Radau", rtol=1e-6)
+        >>> equations.state(solved.t[-1], solved.y[:, -1]).at
+        0.0001
+        """
+        system = system_of(model, static=False)
+        refuse_frame(system, "EquationsOfMotion.of")
+        if any(callable(item.value) for item in system.prescribed):
+            raise InputError("a model whose supports move has no equations in its free coordinates alone; use simulate")
+        if len(system.history.numbers):
+            raise InputError("a model with history variables has no rates between steps; use simulate")
+        return cls(system, np.zeros(1, dtype=np.int64))
+
+    def rates(self, time: float, y: np.ndarray) -> np.ndarray:
+        """Return the derivative of y = (p, p') by time, as `scipy.integrate.solve_ivp` needs it.
+
+        p'' satisfies M p'' = unbalanced forces, with conditions differentiated twice: they are met as well as solutions
+        are accurate.
+
+        Parameters
+        ----------
+        time : float, [s]
+            Time.
+        y : array, (2 k,)
+            The k unknown coordinates without multipliers, and their rates [1/s].
+
+        Returns
+        -------
+        array, [1/s, 1/s^2], (2 k,)
+            The derivative.
+        """
+        p, v = self._whole(y)
+        a = initial_acceleration(self.system, np.array([p, v, np.zeros_like(p)]), float(time))
+        return np.concatenate([v[self._unknown], a[self._unknown]])
+
+    def coordinates(self, state: State | Solution | None = None) -> np.ndarray:
+        """Return y (2 k,) of a state of the model, see `rates`, by default of the reference at rest."""
+        given = last_state(state, "state")
+        if given is None:
+            return np.concatenate([self.system.reference[self._unknown], np.zeros(len(self._unknown))])
+        p, v = transferred(given, self.system, "state")
+        return np.concatenate([p[self._unknown], v[self._unknown]])
+
+    def state(self, time: float, y: np.ndarray) -> State:
+        """Return the state of y (2 k,) at a time [s], with the multipliers that act there."""
+        p, v = self._whole(y)
+        state = np.array([p, v, np.zeros_like(p)])
+        a = initial_acceleration(self.system, state, float(time))
+        return State(state[0], state[1], a, float(time), self.system.model)
+
+    @property
+    def _unknown(self) -> np.ndarray:
+        return np.setdiff1d(self.system.free_dofs, self.system.connectors.multipliers)
+
+    def _whole(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return p and p' (n,) of y. Raises InputError for another number of values."""
+        dofs = self._unknown
+        if np.shape(y) != (2 * len(dofs),):
+            raise InputError(f"y must have {2 * len(dofs)} values, coordinates and their rates, got {np.shape(y)}")
+        p, v = self.system.reference.copy(), np.zeros(self.system.model.size)
+        p[self.system.prescribed_dofs] = self.system.prescribed_values(0.0)
+        p[dofs], v[dofs] = np.split(np.asarray(y, dtype=float), 2)
+        return p, v
 
     @property
     def free(self) -> np.ndarray:

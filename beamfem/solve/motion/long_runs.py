@@ -44,7 +44,7 @@ _STEPS = 1000  # of a section
 _COORDINATES = 500_000  # times steps of a section, at most
 _BESIDE = 20  # steps on both sides of a section on which prescribed coordinates in it depend
 _SECONDS = 1.0  # between writing
-_BYTES = 2**24  # of rows that wait to be written
+_BYTES = 2**22  # of rows that wait to be written
 
 
 @dataclass(frozen=True)

@@ -129,7 +129,7 @@ class TimeStepWarning(UserWarning):
 
 
 class LongRunWarning(UserWarning):
-    """A file holds a motion that is complete already, or of more rows than fit into memory."""
+    """A long motion was interrupted, is complete in its file already, or has more rows than fit into memory."""
 
 
 class NotJoinedWarning(UserWarning):

@@ -1,15 +1,22 @@
 """Long work: a bar on a terminal or in a notebook, silence in a pipe, and the results so far if it ends early."""
 
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
+from functools import wraps
 from importlib.util import find_spec
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
-from beamfem.errors import ConvergenceError
+from beamfem.errors import ConvergenceError, LongRunWarning, warn
+
+_Taken = ParamSpec("_Taken")
+_Found = TypeVar("_Found")
+_WORTH = 5.0  # seconds of work from which on Ctrl-C returns its results; below it is meant for what called it
 
 _held: ContextVar[bool] = ContextVar("_held", default=False)
+_part: ContextVar[bool] = ContextVar("_part", default=False)
 
 
 def in_notebook() -> bool:
@@ -25,6 +32,16 @@ def no_progress() -> Iterator[None]:
         yield
     finally:
         _held.reset(token)
+
+
+@contextmanager
+def ends_as_a_whole() -> Iterator[None]:
+    """Let Ctrl-C end the work inside with an exception, as it is part of a larger one."""
+    token = _part.set(True)
+    try:
+        yield
+    finally:
+        _part.reset(token)
 
 
 def progress(label: str, total: float) -> AbstractContextManager[Callable[[float], None]]:
@@ -69,3 +86,24 @@ def kept(found: Callable[[], Any]) -> Iterator[None]:
             if not isinstance(error, ConvergenceError):
                 error.add_note("What was found before is the `solution` of this exception.")
         raise
+
+
+def returned_on_interrupt(solve: Callable[_Taken, _Found]) -> Callable[_Taken, _Found]:
+    """Return a function that returns the results so far on Ctrl-C, with a warning, if it was long at work."""
+
+    @wraps(solve)
+    def called(*arguments: _Taken.args, **keywords: _Taken.kwargs) -> _Found:
+        begin = time.monotonic()
+        try:
+            return solve(*arguments, **keywords)
+        except KeyboardInterrupt as error:
+            found = getattr(error, "solution", None)
+            if found is None or _part.get() or time.monotonic() - begin < _WORTH:
+                raise
+        warn(
+            f"Ctrl-C: the motion ends early, {found.statistics.ended}; press it again to end the program",
+            LongRunWarning,
+        )
+        return found
+
+    return called

@@ -12,6 +12,7 @@ import typer
 
 from beamfem.cli.report import DRAWN, AsJson, Colour, Quiet, draw, reported, require_target, summary
 from beamfem.errors import ConvergenceError, InputError
+from beamfem.progress import ends_as_a_whole
 
 Results = Annotated[Path, typer.Argument(help="A results file (.h5).")]
 _LINES = ("file", "written_by", "kind", "units", "coordinates", "states", "load_factor", "time", "outcome", "effort")
@@ -47,7 +48,8 @@ def run(
             announce_compilation()
         start = time.perf_counter()
         try:
-            found = job.solve()
+            with ends_as_a_whole():
+                found = job.solve()
         except (ConvergenceError, KeyboardInterrupt) as error:
             if out is not None and (before := getattr(error, "solution", None)) is not None:
                 before.save(out)

@@ -25,7 +25,7 @@ import numpy as np
 import beamfem
 from beamfem.errors import BeamfemError, InputError
 from beamfem.kernels.compiling import seconds_waited
-from beamfem.progress import no_progress
+from beamfem.progress import ends_as_a_whole, no_progress
 from beamfem.reprs import brief
 from beamfem.results.solution import Solution
 from beamfem.tables import cut
@@ -54,7 +54,8 @@ def call(function: Callable[..., Any], point: Point) -> Outcome:
     """
     start = _clock()
     try:
-        value = _checked(function(**point))
+        with ends_as_a_whole():
+            value = _checked(function(**point))
     except Exception as error:
         sentence = f"{type(error).__name__}: {error}"
         return Outcome(None, _clock() - start, sentence, traceback.format_exc())

@@ -60,6 +60,32 @@ def test_a_motion_that_is_interrupted_keeps_its_states(third_time, save_every):
     assert "`solution`" in caught.value.__notes__[0]
 
 
+def test_a_long_motion_that_is_interrupted_returns_what_is_done(third_time, monkeypatch):
+    monkeypatch.setattr("beamfem.progress._WORTH", 0.0)
+    with pytest.warns(bf.LongRunWarning, match=r"Ctrl-C: the motion ends early, \d+ steps of 1e-05 s; press it again"):
+        found = bf.simulate(MODEL, 1.0, 1e-5)
+    assert found.status.name == "STOPPED"
+    assert 60 < len(found) < 5000
+
+
+def test_ctrl_c_ends_a_sweep_of_long_motions(third_time, monkeypatch):
+    monkeypatch.setattr("beamfem.progress._WORTH", 0.0)
+    with pytest.raises(KeyboardInterrupt):
+        bf.sweep(lambda step: bf.simulate(MODEL, 1.0, step).p[-1, 0], step=[1e-5, 2e-5])
+
+
+def test_a_motion_in_a_file_that_is_interrupted_is_resumed(third_time, monkeypatch, tmp_path):
+    monkeypatch.setattr("beamfem.progress._WORTH", 0.0)
+    path = tmp_path / "motion.h5"
+    with pytest.warns(bf.LongRunWarning, match="bf.resume goes on from there; press it again"):
+        found = bf.simulate(MODEL, 0.05, 1e-5, file=path)
+    assert found.status.name == "STOPPED"
+    assert 1000 < len(found) < 5000
+    whole = bf.resume(path)
+    np.testing.assert_array_equal(whole.p[: len(found)], found.p)
+    assert len(whole) == 5001
+
+
 def test_a_static_solve_that_is_interrupted_keeps_its_rows(monkeypatch):
     solve = load_steps.solve_equilibrium
 
@@ -75,7 +101,8 @@ def test_a_static_solve_that_is_interrupted_keeps_its_rows(monkeypatch):
     assert caught.value.solution.load_factor.tolist() == [0.0, 0.25, 0.5]
 
 
-def test_the_command_line_saves_what_was_found_and_says_so(third_time, tmp_path):
+def test_the_command_line_saves_what_was_found_and_says_so(third_time, tmp_path, monkeypatch):
+    monkeypatch.setattr("beamfem.progress._WORTH", 0.0)
     model = (ROOT / "examples" / "cantilever.toml").read_text() + "\n"
     assert "[analysis]" not in model
     motion = '[analysis]\nkind = "dynamics"\nduration = 1.0\nstep = 1e-5\n'

@@ -12,7 +12,7 @@ from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, EnergyWarning, InputError, warn
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.model.model import Model
-from beamfem.progress import kept
+from beamfem.progress import ends_as_a_whole, kept, returned_on_interrupt
 from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.full_turns import first_turns
 from beamfem.results.solution import Solution, State
@@ -37,6 +37,7 @@ from beamfem.solve.start.functions_of_time import name_unresolved
 from beamfem.solve.start.start_state import last_state, start_state, transferred_turns
 
 
+@returned_on_interrupt
 def simulate(
     model: Model,
     duration: float,
@@ -104,13 +105,18 @@ def simulate(
         Before the solve, for invalid arguments, such as a support that would jump from the start, or a file with a
         motion that has not ended, or into which another process writes.
     ConvergenceError
-        If a step does not converge, however short; its `solution` has all states so far. Any other exception during the
-        solve, such as KeyboardInterrupt, carries the states so far as its `solution` too.
+        If a step does not converge, however short; its `solution` has all states so far. So has any other exception
+        during the solve.
+    KeyboardInterrupt
+        On Ctrl-C within the first 5 seconds, in a sweep, and from the command line. Later, Ctrl-C ends the motion only:
+        what is done is returned, and a second Ctrl-C ends the program.
     FileError
         If the file cannot be written; it then holds the motion up to where it could.
 
     Warns
     -----
+    LongRunWarning
+        If Ctrl-C has ended the motion.
     LockingWarning
         If locking changes displacements by 1 % or more.
     LargeStrainWarning
@@ -133,7 +139,9 @@ def simulate(
         def solve(model: Model) -> Solution:
             return simulate(model, duration, step, integrator, None, velocity, save_every, **others)
 
-        return _told(refined_until(model, accuracy, lambda model: motion_attempt(model, solve), MOST_MESHES))
+        with ends_as_a_whole():
+            refined = refined_until(model, accuracy, lambda model: motion_attempt(model, solve), MOST_MESHES)
+        return _told(refined)
     settings = settings_of(duration, step, integrator, save_every, tolerance, save_at, events)
     plan = planned(model, settings, in_memory=file is None)
     system, times, parts, acting = plan.system, plan.times, plan.parts, plan.acting

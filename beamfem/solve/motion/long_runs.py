@@ -19,7 +19,7 @@ from beamfem.io.motion_file import MotionFile, created
 from beamfem.io.results_hdf5 import load
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.model.model import Model
-from beamfem.progress import kept, progress
+from beamfem.progress import kept, progress, returned_on_interrupt
 from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import warned
 from beamfem.results.status import Statistics, Status
@@ -104,6 +104,7 @@ def into_file(plan: MotionPlan, state: np.ndarray, rotations: np.ndarray, file: 
         open_file.close()
 
 
+@returned_on_interrupt
 def resume(
     file: str | PathLike[str],
     model: Model | None = None,
@@ -149,7 +150,7 @@ def resume(
     Warns
     -----
     LongRunWarning
-        If the motion was complete already, which then is returned as it is.
+        If the motion was complete already, which then is returned as it is, and as in `simulate`.
 
     Examples
     --------

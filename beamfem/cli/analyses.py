@@ -124,5 +124,5 @@ ANALYSES: Kinds = {
     "path": _analysis("path", trace_equilibrium, start=None, until=reader(_until)),
     "buckling": _analysis("buckling", solve_buckling, Buckling.solution, about=reader(_start), mode=int),
     "modes": _analysis("modes", solve_modes, Modes.solution, about=reader(_start), mode=int),
-    "dynamics": _analysis("dynamics", simulate, integrator=None, start=reader(_start), rho_inf=float),
+    "dynamics": _analysis("dynamics", simulate, integrator=None, file=None, start=reader(_start), rho_inf=float),
 }

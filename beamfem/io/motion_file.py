@@ -68,7 +68,7 @@ class MotionFile:
         except BaseException:
             self._journal.close()
             raise
-        self._tail = [np.empty(0)] * len(STATES)
+        self._tail = _last_block(self._file)
 
     def close(self) -> None:
         """Close the file; what was not committed is dropped."""
@@ -115,11 +115,10 @@ class MotionFile:
         """Keep some rows and events."""
         for name in STATES:
             self._file[name].resize(rows, axis=0)
-        block = self._block
-        first = rows - rows % block
-        self._tail = [np.asarray(self._file[name][first:]) for name in STATES]
-        self._file[CHECKSUMS].resize(first // block, axis=0)
-        self._sum(first, self._tail)
+        for name in ("rows", "all_rows"):
+            self._file.attrs.modify(name, rows)
+        self._tail = _last_block(self._file)
+        _sum(self._file, rows - len(self._tail[0]), self._tail)
         if "turned" in self._file:
             shorten_checked(self._file, "turned", rows)
         if EVENTS in self._file:
@@ -135,30 +134,12 @@ class MotionFile:
         begun: dict[str, Any] | None = None,
     ) -> None:
         """Append rows, and replace what the run needs to go on; begun: new settings. Raises FileError."""
-        times, states, rotations, events = rows
-        before, added = len(self._file["at"]), (times, *states.swapaxes(0, 1))
-        if len(times):
-            for name, values in zip(STATES, added, strict=True):
-                self._file[name].resize(before + len(times), axis=0)
-                self._file[name][before:] = values
-            first = before - len(self._tail[0])
-            joined = [
-                np.concatenate([old, new]) if len(old) else new for old, new in zip(self._tail, added, strict=True)
-            ]
-            self._sum(first, joined)
-            whole = len(joined[0]) - len(joined[0]) % self._block
-            self._tail = [values[whole:].copy() for values in joined]
-            if "turned" in self._file:
-                extend_checked(self._file, "turned", rotations)
-        if events:
-            append_events(self._file, events)
+        self._tail = _append(self._file, self._tail, rows)
         _write_anew(self._file, "statistics", _padded(as_text(about(False, statistics))))
         for name, values in checkpoint.items():
             _write_anew(self._file[_CHECKPOINT], name, values)
         if begun is not None:
             _write_anew(self._file, _SETTINGS, as_text(begun))
-        for name in ("rows", "all_rows"):
-            self._file.attrs.modify(name, before + len(times))
         self._file.flush()
         try:
             self._pages.commit()
@@ -171,17 +152,6 @@ class MotionFile:
         if read_text(self._file, "model")["functions"]:
             _write_anew(self._file, "model", as_text(describe(model, self._file["at"][:] if at is None else at)))
 
-    @property
-    def _block(self) -> int:
-        return int(self._file["at"].chunks[0])
-
-    def _sum(self, first: int, states: Sequence[np.ndarray]) -> None:
-        """Write the checksums of blocks of rows from one on that begins a block."""
-        block, count = self._block, len(states[0])
-        sums = [checksum(*(values[at : at + block] for values in states)) for at in range(0, count, block)]
-        self._file[CHECKSUMS].resize(first // block + len(sums), axis=0)
-        self._file[CHECKSUMS][first // block :] = sums
-
 
 def created(
     model: Model,
@@ -190,8 +160,9 @@ def created(
     checkpoint: Mapping[str, np.ndarray],
     statistics: Statistics,
     event_names: Sequence[str],
+    rows: Rows,
 ) -> Callable[[Path], None]:
-    """Return what writes the file of a motion that has no rows yet; at [s]: where its functions are evaluated.
+    """Return what writes the file of a motion with its first rows; at [s]: where its functions are evaluated.
 
     Raises InputError for a model that cannot be saved. An unfinished motion is not replaced: InputError.
     """
@@ -207,6 +178,7 @@ def created(
             begin_checked(file, "turned", (turned,), np.float64, block)
         if event_names:
             begin_events(file, max(len(name.encode()) for name in event_names))
+        _append(file, _last_block(file), rows)
         write_checked(file, _SETTINGS, as_text(settings))
         group = file.create_group(_CHECKPOINT)
         for name, values in checkpoint.items():
@@ -229,6 +201,41 @@ def _refuse_unfinished(path: Path) -> None:
         return
     if unfinished:
         raise InputError(f"{path} holds a motion that has not ended; resume it, or delete the file")
+
+
+def _last_block(file: Any) -> list[np.ndarray]:
+    """Return the rows of the last block, if it is not complete."""
+    rows, block = file["at"].shape[0], file["at"].chunks[0]
+    return [np.asarray(file[name][rows - rows % block :]) for name in STATES]
+
+
+def _append(file: Any, tail: list[np.ndarray], rows: Rows) -> list[np.ndarray]:
+    """Append rows, and events; tail: the rows of the last block, if it is not complete. Return those of the new one."""
+    times, states, rotations, events = rows
+    before, added, block = len(file["at"]), (times, *states.swapaxes(0, 1)), file["at"].chunks[0]
+    if events:
+        append_events(file, events)
+    if not len(times):
+        return tail
+    for name, values in zip(STATES, added, strict=True):
+        file[name].resize(before + len(times), axis=0)
+        file[name][before:] = values
+    joined = [np.concatenate([old, new]) if len(old) else new for old, new in zip(tail, added, strict=True)]
+    _sum(file, before - len(tail[0]), joined)
+    if "turned" in file:
+        extend_checked(file, "turned", rotations)
+    for name in ("rows", "all_rows"):
+        file.attrs.modify(name, before + len(times))
+    whole = len(joined[0]) - len(joined[0]) % block
+    return [values[whole:].copy() for values in joined]
+
+
+def _sum(file: Any, first: int, states: Sequence[np.ndarray]) -> None:
+    """Write the checksums of blocks of rows from one on that begins a block."""
+    block, count = file["at"].chunks[0], len(states[0])
+    sums = [checksum(*(values[at : at + block] for values in states)) for at in range(0, count, block)]
+    file[CHECKSUMS].resize(first // block + len(sums), axis=0)
+    file[CHECKSUMS][first // block :] = sums
 
 
 def _padded(text: np.ndarray) -> np.ndarray:

@@ -3,6 +3,7 @@
 import io
 import os
 import struct
+import time
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ except ImportError:  # not on Windows, where nothing keeps two processes apart
     fcntl = None  # type: ignore[assignment]
 
 _PAGE = 1 << 14
+_PATIENCE, _PAUSE = 100, 0.02  # how often to try for a lock, and the seconds between
 _MAGIC = b"beamfem1"
 _HEAD = struct.Struct("<8sqqqI")  # mark, inode and size of the file, bytes of pages that follow, their checksum
 _NUMBER = struct.Struct("<q")
@@ -74,6 +76,7 @@ class Journal:
         try:
             target = _opened(self._of, os.O_RDWR)
             try:
+                _wait_for_readers(target)
                 for at in range(0, len(data), _NUMBER.size + _PAGE):
                     begin = _NUMBER.unpack_from(data, at)[0] * _PAGE
                     page = memoryview(data)[at + _NUMBER.size : at + _NUMBER.size + _PAGE]
@@ -94,9 +97,14 @@ class Journal:
         os.close(self._file)
 
 
+def being_written(path: Path) -> bool:
+    """Return whether a process has begun to write a file and not ended it."""
+    return path.with_name(f"{path.name}.journal").exists()
+
+
 def replay(path: Path) -> None:
     """Complete what a killed process was about to write, if it is not being written now."""
-    if not path.with_name(f"{path.name}.journal").exists():
+    if not being_written(path):
         return
     with suppress(InputError, FileError):
         journal = Journal(path)
@@ -208,6 +216,24 @@ def _locked(file: int) -> bool:
     except OSError:  # a file system without locks
         return True
     return True
+
+
+def _wait_for_readers(file: int) -> None:
+    """Lock a file against readers by HDF5, which lock it too; wait for those that read it, but not for long."""
+    for _ in range(_PATIENCE):
+        if _locked(file):
+            return
+        time.sleep(_PAUSE)
+
+
+def opened_once_written(h5py: Any, path: Path) -> Any:
+    """Return an HDF5 file opened to read, once the process that is changing it has done so."""
+    for _ in range(_PATIENCE):
+        try:
+            return h5py.File(path, "r")
+        except BlockingIOError:
+            time.sleep(_PAUSE)
+    return h5py.File(path, "r")
 
 
 def _all_of(file: int) -> bytes:

@@ -28,7 +28,7 @@ from beamfem.io.hdf5 import (
     write_label,
 )
 from beamfem.io.hdf5_arrays import AXES, load_factors, load_path, save_axes, save_critical
-from beamfem.io.paged_file import replay
+from beamfem.io.paged_file import being_written, opened_once_written, replay
 from beamfem.results.motion_state import Occurrence
 from beamfem.results.path import Path as EquilibriumPath
 from beamfem.results.solution import Solution
@@ -43,6 +43,7 @@ _OPTIONAL = ("stability", "turned", "loaded")
 CHECKSUMS = "checksums"  # of each block of rows
 EVENTS = "events"
 _BLOCK_EVENTS = 64
+_TRIES = 5  # to read a file that changes meanwhile
 
 
 def save(solution: Solution, path: str | PathLike[str]) -> None:
@@ -129,8 +130,19 @@ def load(path: str | PathLike[str], rows: slice | None = None) -> Solution:
     with source.open("rb") as stream:
         if stream.read(len(_SIGNATURE)) != _SIGNATURE:
             raise InputError(f"{source} is not a file that beamfem saved: it is no HDF5 file")
+    for _ in range(_TRIES):
+        try:
+            return _loaded(h5py, source, rows)
+        except InputError:
+            if not being_written(source):
+                raise
+    return _loaded(h5py, source, rows)
+
+
+def _loaded(h5py: Any, source: Path, rows: slice | None) -> Solution:
+    """Return the solution in a file. Raises InputError."""
     try:
-        with h5py.File(source, "r") as file:
+        with opened_once_written(h5py, source) as file:
             return _read(file, slice(None) if rows is None else rows)
     except InputError as error:
         raise InputError(f"{source} cannot be loaded: {error}") from error

@@ -406,3 +406,17 @@ def test_a_motion_that_is_killed_at_random_moments_is_the_same(kills, tmp_path):
     with motion_process(path, "resume") as process:
         assert process.wait() == 0
     assert_same(datasets(path), datasets(whole))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="nothing keeps readers and writers apart there")
+def test_a_file_is_read_while_it_is_written(tmp_path):
+    """Each reading shows rows that the motion has; a second writer is refused."""
+    path, counts = tmp_path / "motion.h5", []
+    with motion_process(path, "begin") as process:
+        while process.poll() is None:
+            time.sleep(0.1)
+            if path.exists():
+                counts.append(len(bf.load(path, rows=slice(0, None, 50))))
+    assert process.returncode == 0
+    assert counts == sorted(counts)
+    assert len(bf.load(path)) == 10_001

@@ -91,12 +91,15 @@ def into_file(plan: MotionPlan, state: np.ndarray, rotations: np.ndarray, file: 
     """Run a motion from a state (4, n) and rotations (m,) [rad] at its start; its rows go into a file."""
     saved, settings = plan.saved_rows(), plan.settings
     saved.begin(state[:3], rotations)
-    counts = np.array([0, 0, 0, len(saved.times), 0])
+    first = saved.take_out(0)
+    counts = np.array([0, 0, 0, len(first[0]), 0])
     values = np.array(saved.watch.values)
     begin = Checkpoint(Reached(), state, rotations, values, counts, False, _cutter(plan, state).judged(), {})
     names = [event.name for event in settings.events]
     statistics = _statistics(plan, begin, False)
-    create = created(plan.system.model, _sampled(plan), _described(settings, True), begin.arrays(), statistics, names)
+    create = created(
+        plan.system.model, _sampled(plan), _described(settings, True), begin.arrays(), statistics, names, first
+    )
     open_file = MotionFile(file, create)
     try:
         return _run(open_file, plan, begin, saved)

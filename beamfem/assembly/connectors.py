@@ -5,12 +5,21 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import LinAlgError
+from scipy.sparse import coo_array, csr_array
 
 from beamfem.cached_properties import cached_property
 from beamfem.element.fields import rule_of
 from beamfem.errors import InputError
 from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.model.contribution import At, Contribution, Remembering, prescribed_by, remembered, uses_rotations
+from beamfem.model.contribution import (
+    At,
+    Contribution,
+    Remembering,
+    is_one_sided,
+    prescribed_by,
+    remembered,
+    uses_rotations,
+)
 from beamfem.model.load_base import factor
 from beamfem.model.model import Model
 from beamfem.parts.at_points import PartAlongBeam, PartAtPoints
@@ -342,6 +351,8 @@ def _by_rates(item: Connector, motion: Motion) -> np.ndarray:
     return item.alone.tangent(motion, TIMES[0], gravity_of(item), (0.0, 1.0, 0.0))
 
 
+SHORT_TIME = 1e-4  # [s] of the differences that give rates of conditions
+_FORWARD = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0  # functions of time need not be defined before the start
 _ROUND_OFF = 1e-13  # relative to the largest stiffness of a contribution
 _COORDINATES = ("r^x", "r^y", "theta")
 _TURNED = np.array([0.0, 0.0, 0.1])  # arbitrary
@@ -360,6 +371,24 @@ class Connectors:
     def multipliers(self) -> np.ndarray:
         """Numbers (k,) of the multipliers."""
         return np.concatenate([_NO_NUMBERS, *(item.multipliers for item in self.items)]) if self.items else _NO_NUMBERS
+
+    @cached_property
+    def one_sided(self) -> np.ndarray:
+        """Numbers (k,) of the multipliers whose conditions come and go."""
+        return np.concatenate([_NO_NUMBERS, *(item.multipliers for item in self.items if is_one_sided(item.item))])
+
+    def gradients(self, p: np.ndarray, load_factor: float) -> csr_array:
+        """Return the gradients (k, n) of the conditions that come and go, in a state p (n,)."""
+        zeros, gravity, size = np.zeros(len(p)), np.zeros(2), (len(self.one_sided), len(p))
+        entries, places, first = [_NOTHING], [np.empty((2, 0), dtype=np.int64)], 0
+        for item in (each for each in self.items if is_one_sided(each.item)):
+            d = len(item.dofs)
+            rates = item.tangent((p, zeros, zeros), load_factor, gravity, (1.0, 0.0, 0.0))[d:, :d]
+            row, column = np.indices(rates.shape)
+            entries.append(rates.ravel())
+            places.append(np.stack([first + row.ravel(), item.dofs[column.ravel()]]))
+            first += len(rates)
+        return csr_array(coo_array((np.concatenate(entries), tuple(np.concatenate(places, axis=1))), shape=size))
 
     @cached_property
     def memory(self) -> np.ndarray:
@@ -384,6 +413,11 @@ class Connectors:
     def keep_energy(self) -> bool:
         """Whether no connector adds energy to a motion or dissipates it."""
         return self.conservative and not self.damp and not any(any(follows_time(item)) for item in self.items)
+
+    @cached_property
+    def conditions_follow_time(self) -> bool:
+        """Whether a condition depends on time other than by a prescribed value."""
+        return any(follows_time(item)[1] for item in self.items)
 
     @cached_property
     def damp(self) -> bool:
@@ -431,16 +465,19 @@ class Connectors:
                 result += px, py, x * py - y * px + turn
         return result
 
-    def conditions(self, p: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the residuals (k,) of all constraint conditions in a state p (n,), and their rates for p' (n,)."""
+    def conditions(self, p: np.ndarray, rate: np.ndarray, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return the residuals (k,) of all conditions in a state p (n,) at a time, and their rates for p' (n,)."""
         zeros, gravity = np.zeros(len(p)), np.zeros(2)
         values, rates = [_NOTHING], [_NOTHING]
         for item in (each for each in self.items if len(each.own)):
             d, motion = len(item.dofs), (p, zeros, zeros)
             rows, moved = slice(d, d + len(item.multipliers)), rate[item.all]
             moved[rows] = 0.0
-            values.append(item.force_in(motion, 0.0, gravity)[rows])
-            rates.append(item.tangent(motion, 0.0, gravity, (1.0, 0.0, 0.0))[rows] @ moved)
+            values.append(item.force_in(motion, time, gravity)[rows])
+            rates.append(item.tangent(motion, time, gravity, (1.0, 0.0, 0.0))[rows] @ moved)
+            if item.compiled is None:
+                later = [item.force_in(motion, time + k * SHORT_TIME, gravity)[rows] for k in range(len(_FORWARD))]
+                rates[-1] += _FORWARD @ later / SHORT_TIME
         return np.concatenate(values), np.concatenate(rates)
 
     @cached_property

@@ -27,12 +27,64 @@ def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: 
     dt [s]: time step since the committed history, 0 in an accepted state.
     """
     if system.model.frame is None:
-        return _residual(system, p, v, a, time, dt)
-    terms = [
-        weight * _residual(system, p, *absolute(system, p, v, a, speed), time, dt)
-        for weight, speed in speeds(system, time)
-    ]
-    return np.asarray(sum(terms))
+        result = _residual(system, p, v, a, time, dt)
+    else:
+        at = speeds(system, time)
+        terms = [weight * _residual(system, p, *absolute(system, p, v, a, speed), time, dt) for weight, speed in at]
+        result = np.asarray(sum(terms))
+    if not len(system.connectors.one_sided):
+        return result
+    return released(system, p, result, system.connectors.gradients(p, time), inactive_conditions(system, p, result))
+
+
+def inactive_conditions(system: System, p: np.ndarray, unbalanced: np.ndarray) -> np.ndarray:
+    """Return the multipliers (m,) of one-sided conditions g that do not act in a state p (n,): g + s l <= 0.
+
+    unbalanced (n,): residual with all conditions active, which has their values.
+    """
+    numbers = system.connectors.one_sided
+    closed = unbalanced[numbers] + _compliance(system, numbers) * p[numbers]
+    return np.asarray(numbers[closed <= 0.0])
+
+
+def inactive_after(
+    system: System, p: np.ndarray, step: np.ndarray, unbalanced: np.ndarray, gradients: csr_array, inactive: np.ndarray
+) -> np.ndarray:
+    """Return the multipliers that are inactive after a linearised step (n,) from p (n,) with `inactive` ones.
+
+    unbalanced: see `inactive_conditions`; gradients: see `Connectors.gradients`.
+    """
+    numbers = system.connectors.one_sided
+    off = np.isin(numbers, inactive)
+    opens = np.where(off, unbalanced[numbers] + gradients @ step, -(p + step)[numbers])
+    return np.asarray(numbers[off == (opens <= 0.0)])
+
+
+def released(
+    system: System, p: np.ndarray, unbalanced: np.ndarray, gradients: csr_array, inactive: np.ndarray
+) -> np.ndarray:
+    """Return the residual (n,) without inactive conditions, whose equations are -s l = 0; see `inactive_after`."""
+    numbers, result = system.connectors.one_sided, unbalanced.copy()
+    result -= gradients.T @ np.where(np.isin(numbers, inactive), p[numbers], 0.0)
+    result[inactive] = -_compliance(system, inactive) * p[inactive]
+    return result
+
+
+def without(system: System, tangent: Tangent, inactive: np.ndarray, weight: float = 1.0) -> Tangent:
+    """Return a tangent with the equations -s l = 0 of inactive multipliers (m,); weight: of p.
+
+    So each of them has a negative eigenvalue, as an active condition has, whatever the set.
+    """
+    if not len(inactive):
+        return tangent
+    assert isinstance(tangent, BorderedTangent | SaddleTangent)
+    numbers = system.unknowns.free[inactive] - len(system.unknowns.dofs)
+    return tangent.without(numbers, -weight * _compliance(system, inactive))
+
+
+def _compliance(system: System, multipliers: np.ndarray) -> np.ndarray:
+    """Return s (m,) of multipliers, by which conditions and forces are compared."""
+    return np.asarray(system.extent / system.scale[multipliers])
 
 
 def residual_at_rest(system: System, p: np.ndarray, time: float) -> np.ndarray:
@@ -81,15 +133,21 @@ def linearise(
     equations: Equations | None = None,
     dt: float = 0.0,
     moving: bool = False,
+    all_active: bool = False,
 ) -> tuple[np.ndarray, Tangent]:
     """Return residual (n,) and tangent; `coefficients` are the weights of p, p' and p'' (`STATICS`, `INERTIA`).
 
     stresses: resultants (ne, nq, ns) of each block for the geometric part of the tangent; equations: those of other
     blocks, used instead of those of the system; dt [s]: see `residual`; moving: whether there are inertia forces where
-    p'' has no weight, which statics lacks.
+    p'' has no weight, which statics lacks; all_active: whether one-sided conditions are all active, and not those that
+    the state shows.
     """
     at = system, p, v, a, time, coefficients, stresses, equations, dt
     result, tangent = _linearise(*at, moving) if system.model.frame is None else _linearise_turning(*at)
+    if len(system.connectors.one_sided) and not all_active:
+        inactive = inactive_conditions(system, p, result)
+        result = released(system, p, result, system.connectors.gradients(p, time), inactive)
+        tangent = without(system, tangent, inactive, coefficients[0])
     if Proven.LOSES_DIGITS in system.proven and coefficients[0] != 0.0 and equations is None:
         tangent = with_stresses(system, (p, v, a), time, coefficients, stresses, tangent)
     return result, tangent
@@ -202,7 +260,8 @@ def _by_rates(
 def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float) -> Tangent:
     """Return the static tangent in p (n,) with the stress resultants predicted by a linear step (n,) from p."""
     zeros = np.zeros(len(p))
-    if Proven.LOSES_DIGITS in system.proven or system.model.frame is not None:
+    one_sided = len(system.connectors.one_sided) > 0
+    if Proven.LOSES_DIGITS in system.proven or system.model.frame is not None or one_sided:
         return linearise_at_rest(system, p, time, predicted_stresses(system, p, step, time))[1]
     matrix, assembler = _entries(system), _acquired(system)
     assembler.take(system.loads_at(time))

@@ -67,7 +67,8 @@ def _scale_conditions(border):
         largest = 0.0
         for j in range(edge):
             largest = max(largest, abs(small[i * m + j]))
-        sizes[i], sizes[m + i] = stiffest, stiffest / largest if largest > 0.0 else 1.0
+        sizes[m + i] = stiffest / largest if largest > 0.0 else 1.0
+        sizes[i] = stiffest if largest > 0.0 else abs(small[i * (m + 1)])
     for i in range(m):
         for j in range(m):
             small[i * m + j] *= sizes[m + i] * sizes[m + j]

@@ -1,7 +1,7 @@
 """Band matrices with a border: a few unknowns that are coupled beyond the band, and Lagrange multipliers."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -127,6 +127,13 @@ class BorderedTangent(Tangent):
             return CondensedFactors(own)
         whole, multipliers = SparseTangent(self._whole()), self.border.multipliers
         return (SaddleTangent(whole, multipliers) if multipliers else whole).factorised(rotated)
+
+    def without(self, numbers: np.ndarray, diagonal: np.ndarray) -> "BorderedTangent":
+        """Return the tangent with diagonal entries alone in some rows and columns of multipliers, counted from -k."""
+        entries = self.border.entries.copy()
+        entries[numbers], entries[:, numbers] = 0.0, 0.0
+        entries[numbers, numbers] = diagonal
+        return replace(self, border=self.border._replace(entries=entries))
 
     def sparse(self, rotated: Rotated) -> csr_array:
         """Return the matrix (n + k, n + k) with the normals of inclined rollers rotated to x and constrained there."""

@@ -62,6 +62,9 @@ class Contribution(Protocol):
     A class attribute or field `rotations = False` is optional. The force then must not depend on rotations, and its
     moments must be zero. Otherwise each point has an angle as a coordinate, which keeps the thickness of elements with
     gradients constant there.
+
+    With `one_sided = True`, likewise optional, conditions are g <= 0, with multipliers l >= 0 and l g = 0 (Karush, Kuhn
+    and Tucker): -g is a gap, and the multiplier the force that keeps it from closing further. In statics only.
     """
 
     @property
@@ -109,6 +112,7 @@ def require_connector(connector: Contribution) -> None:
     if isinstance(connector, type) or not (hasattr(connector, "points") and hasattr(connector, "force")):
         raise InputError(f"a connector is an object with the members of Contribution, got {shown(connector)}")
     flag(f"rotations of {name}", uses_rotations(connector))
+    flag(f"one_sided of {name}", is_one_sided(connector))
     points = items(f"points of {name}", connector.points)
     if not points:
         raise InputError(f"{name} has no points: it needs one point of a beam at least")
@@ -127,6 +131,11 @@ def require_connector(connector: Contribution) -> None:
 def uses_rotations(connector: Contribution) -> bool:
     """Return whether a connector depends on rotations of its points, which then have an angle as a coordinate."""
     return getattr(connector, "rotations", True)
+
+
+def is_one_sided(connector: Contribution) -> bool:
+    """Return whether the conditions of a connector come and go: they are g <= 0."""
+    return getattr(connector, "one_sided", False)
 
 
 def prescribed_by(connector: Contribution) -> tuple[Value, ...]:

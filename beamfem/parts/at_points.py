@@ -62,6 +62,11 @@ class PartAtPoints:
         return self.connection.coordinates == 3
 
     @property
+    def one_sided(self) -> bool:
+        """Whether its conditions come and go."""
+        return self.connection.one_sided
+
+    @property
     def unknowns(self) -> int:
         """Number of its multipliers."""
         return self.connection.multipliers

@@ -61,6 +61,8 @@ class Connection(NamedTuple):
         conditions and the reactions, or ck df/dq + cv df/dv + ca df/da row by row.
     prescribed : int, default 0
         Number of the conditions, the first ones, that are g(q) = u with values u that `PartAtPoints.prescribed` gives.
+    one_sided : bool, default False
+        Whether its conditions are g(q) <= 0, see `Contribution`.
     """
 
     name: str
@@ -77,6 +79,7 @@ class Connection(NamedTuple):
     remember: Callable[..., tuple[Number, ...]] | None = None
     compiled: tuple[int, int] | None = None
     prescribed: int = 0
+    one_sided: bool = False
 
 
 def _mass_kinetic(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:

@@ -60,8 +60,17 @@ class SaddleTangent(Tangent):
         weights = stiffest / np.where(sizes > 0.0, sizes, 1.0) ** 2
         stiffening = csr_array(conditions.T @ dia_array((weights[None], [0]), shape=(k, k)))
         stiffness = matrix[:-k, :-k] + stiffening @ conditions
-        whole = csc_array(block_array([[stiffness, matrix[:-k, -k:]], [conditions, None]]))
+        whole = csc_array(block_array([[stiffness, matrix[:-k, -k:]], [conditions, matrix[-k:, -k:]]]))
         return SaddleFactors(SparseTangent(whole).factorised(UNROTATED), stiffening, k, rotated)
+
+    def without(self, numbers: np.ndarray, diagonal: np.ndarray) -> "SaddleTangent":
+        """Return the tangent with diagonal entries alone in some rows and columns of multipliers, counted from -k."""
+        matrix = self.whole.matrix
+        own = np.zeros(matrix.shape[0])
+        own[numbers] = diagonal
+        kept = dia_array((np.where(own == 0.0, 1.0, 0.0)[None], [0]), shape=matrix.shape)
+        switched = kept @ matrix @ kept + dia_array((own[None], [0]), shape=matrix.shape)
+        return SaddleTangent(SparseTangent(csc_array(switched)), self.multipliers)
 
     def sparse(self, rotated: Rotated) -> csr_array:
         return self.whole.sparse(rotated)

@@ -94,6 +94,43 @@ def test_driven_hinge_in_statics_paths_and_modes(value):
     assert np.abs(own[:, None] / frequencies[:2] - 1.0).min(axis=0) == pytest.approx(0.0, abs=1e-7)
 
 
+@dataclass(frozen=True)
+class OwnCondition:
+    """A drive in a hinge, t_b - t_a = u(time), by a condition that depends on time itself."""
+
+    a: bf.Point
+    b: bf.Point
+    value: Any
+    unknowns = 1
+    conservative = True
+
+    @property
+    def points(self):
+        return self.a, self.b
+
+    def force(self, at):
+        turn = at.q[1, 2] - at.q[0, 2] - self.value(at.time)
+        return np.array([0.0, 0.0, -at.own[0], 0.0, 0.0, at.own[0], turn])
+
+    def energy(self, at):
+        return 0.0, 0.0
+
+
+@pytest.mark.parametrize("value", [swing, lambda time: 2.0 * time], ids=["smooth", "with an impact"])
+def test_conditions_that_depend_on_time_drive_a_motion_as_prescribed_values_do(value):
+    """With g_t in the first velocity, and g_tt in the first acceleration and multiplier."""
+    joined, _, link = driven(value)
+    drive = joined.connectors[0]
+    own = joined.with_(connectors=[OwnCondition(drive.a, drive.b, value)])
+    one, other = (bf.simulate(model, 0.2, 1e-3) for model in (joined, own))
+    assert other.velocity(link.end)[0] == pytest.approx(one.velocity(link.end)[0], abs=1e-8)
+    first = [solution.a[0, : joined.coordinates] for solution in (one, other)]
+    assert first[1] == pytest.approx(first[0], abs=1e-3 * np.abs(first[0]).max())
+    assert other.position(link.end) == pytest.approx(one.position(link.end), abs=1e-10)
+    torques = [solution.multipliers(solution.model.connectors[0])[:, 0] for solution in (one, other)]
+    assert torques[1] == pytest.approx(torques[0], abs=1e-6 * np.abs(torques[0]).max())
+
+
 def test_jumping_drive_is_refused_and_a_state_is_continued():
     joined, _, link = driven(lambda time: 0.4 + time)
     with pytest.raises(bf.InputError, match=r"Driven at .* prescribes 0\.4 when .* reference has 0, .* jump by 0\.4"):

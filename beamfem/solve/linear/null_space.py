@@ -25,7 +25,8 @@ def independent_motions(system: System, p: np.ndarray, tangent: csr_array) -> tu
     multipliers = len(system.connectors.multipliers)
     size = unknown - multipliers
     first, normals = system.rotated
-    rows = tangent[size:, :size].toarray() if multipliers else np.empty((0, size))
+    active = size + np.flatnonzero(tangent.diagonal()[size:] == 0.0)  # of conditions that come and go, too
+    rows = tangent[active, :size].toarray() if len(active) else np.empty((0, size))
     rollers = np.zeros((len(first), size))
     rollers[np.arange(len(first)), first] = normals[:, 0]
     rollers[np.arange(len(first)), first + 1] = normals[:, 1]

@@ -95,8 +95,9 @@ class Pencil:
     @cached_property
     def size(self) -> int:
         """Number of modes; each inclined roller and each multiplier constrains one coordinate, and has none itself."""
-        conditions = len(self.system.connectors.multipliers)
-        return self.mass.shape[0] - len(self.system.rotated[0]) - 2 * conditions
+        corner = self.stiffness.diagonal()[self.mass.shape[0] - len(self.system.connectors.multipliers) :]
+        active = np.count_nonzero(corner == 0.0)  # of the conditions that come and go, too
+        return self.mass.shape[0] - len(self.system.rotated[0]) - len(corner) - active
 
     def below(self, value: float) -> int:
         """Return how many eigenvalues of a symmetric pencil are below a value (Sylvester's law of inertia)."""

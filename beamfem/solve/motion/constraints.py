@@ -4,11 +4,12 @@ import numpy as np
 from scipy.linalg import LinAlgError
 from scipy.sparse import block_array, csc_array
 
-from beamfem.assembly.connectors import Motion, follows_time
+from beamfem.assembly.connectors import SHORT_TIME, Motion
 from beamfem.assembly.equations import INERTIA, STATICS, linearise, residual
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
+from beamfem.model.contribution import is_one_sided
 from beamfem.precision.saddle import SaddleTangent
 from beamfem.solve.start.mechanisms import dependent, require_independent
 
@@ -16,18 +17,19 @@ _MET = 1e-8  # of the model, or of the largest velocity
 _SHORT = 1e-4  # of the model: step of a difference along the motion
 
 
-def require_met(system: System, p: np.ndarray, v: np.ndarray, duration: float) -> None:
-    """Raise InputError if the start p, p' (n,) of a motion does not satisfy the conditions of connectors."""
+def require_met(system: System, p: np.ndarray, v: np.ndarray, time: float, duration: float) -> None:
+    """Raise InputError if the start p, p' (n,) of a motion at a time does not satisfy the conditions of connectors."""
+    for item in system.connectors.items:
+        if is_one_sided(item.item):
+            raise InputError(
+                f"conditions of {item.name} are one-sided, which statics supports and simulate does not; a Stop has a "
+                "contact stiffness instead"
+            )
     require_independent(system, p)
-    gaps, rates = system.connectors.conditions(p, v)
+    gaps, rates = system.connectors.conditions(p, v, time)
     fastest = float(np.max(np.abs(v) * np.where(system.positions, 1.0, system.extent), initial=0.0))
     fastest += system.extent / duration
     for item in system.connectors.items:
-        if follows_time(item)[1]:
-            raise InputError(
-                f"conditions of {item.name} depend on time, which simulate does not support; let a Prescribed support "
-                "move"
-            )
         rows = item.multipliers - system.model.coordinates
         if np.any(np.abs(gaps[rows]) > _MET * system.extent):
             raise InputError(
@@ -42,29 +44,29 @@ def require_met(system: System, p: np.ndarray, v: np.ndarray, duration: float) -
 
 
 def constrained_acceleration(
-    system: System, motion: Motion, unbalanced: np.ndarray, mass: Tangent, time: float
+    system: System, motion: Motion, unbalanced: np.ndarray, mass: Tangent, time: float | None
 ) -> np.ndarray:
-    """Return p'' and multipliers (unknown,), with [M, G'; G, 0] [p'', l] = [-r, -dG/dt p'].
+    """Return p'' and multipliers (unknown,), with [M, G'; G, 0] [p'', l] = [-r, -d/dt (G p' + dg/dt)], G p'' apart.
 
     motion: p, p' and p'' of prescribed coordinates; unbalanced (n,): residual r without multipliers; mass: M, between
-    coordinates.
+    coordinates; time: None for an impact, in which it stands still.
     """
     (p, v, a), k = motion, len(system.connectors.multipliers)
     right = -unbalanced[system.free_dofs]
-    right[-k:] = -_change_of_rates(system, p, v, a)
-    return _with_conditions(system, p, mass, right, time)
+    right[-k:] = -_change_of_rates(system, p, v, a, time)
+    return _with_conditions(system, p, mass, right, time or 0.0)
 
 
-def stopped_by_conditions(system: System, p: np.ndarray, v: np.ndarray) -> np.ndarray:
+def stopped_by_conditions(system: System, p: np.ndarray, v: np.ndarray, time: float) -> np.ndarray:
     """Return the change of p' (n,) by the impulses of conditions that a start p, p' (n,) does not satisfy at once.
 
-    Momentum changes along the gradients of the conditions only, M x + G' l = 0 with G (p' + x) = 0.
+    Momentum changes along the gradients of the conditions only, M x + G' l = 0 with G (p' + x) + dg/dt = 0.
     """
     zeros, multipliers = np.zeros(len(p)), system.connectors.multipliers
     mass = linearise(system, p, zeros, zeros, 0.0, INERTIA)[1]
     right, result = np.zeros(len(system.free_dofs)), zeros.copy()
-    right[-len(multipliers) :] = -system.connectors.conditions(p, v)[1]
-    result[system.free_dofs] = _with_conditions(system, p, mass, right, 0.0)
+    right[-len(multipliers) :] = -system.connectors.conditions(p, v, time)[1]
+    result[system.free_dofs] = _with_conditions(system, p, mass, right, time)
     result[multipliers] = 0.0
     return result
 
@@ -81,13 +83,21 @@ def _with_conditions(system: System, p: np.ndarray, mass: Tangent, right: np.nda
         raise InputError(dependent(system, p)) from error
 
 
-def _change_of_rates(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
-    """Return d/dt (G p') (k,) along p + p' t + p'' t^2 / 2, by a central difference."""
+def _change_of_rates(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float | None) -> np.ndarray:
+    """Return d/dt (G p' + dg/dt) (k,) along p + p' t + p'' t^2 / 2, by differences; time: None for G p' alone."""
     speed, push = (float(np.max(np.abs(values) / system.scale)) for values in (v, a))
-    if speed == 0.0 == push:
+    changing = time is not None and system.connectors.conditions_follow_time
+    if speed == 0.0 == push and not changing:
         return np.zeros(len(system.connectors.multipliers))
     size = min(_SHORT / speed if speed else np.inf, np.sqrt(_SHORT / push) if push else np.inf)
-    ends = [system.connectors.conditions(p + t * v + 0.5 * t**2 * a, v + t * a)[1] for t in (size, -size)]
+    if changing and time is not None:
+        size = min(size, SHORT_TIME)
+        at = [
+            system.connectors.conditions(p + t * v + 0.5 * t**2 * a, v + t * a, time + t)[1]
+            for t in (0.0, size, 2.0 * size)
+        ]
+        return np.asarray((4.0 * at[1] - 3.0 * at[0] - at[2]) / (2.0 * size))
+    ends = [system.connectors.conditions(p + t * v + 0.5 * t**2 * a, v + t * a, 0.0)[1] for t in (size, -size)]
     return np.asarray((ends[0] - ends[1]) / (2.0 * size))
 
 
@@ -101,7 +111,7 @@ def impact(system: System, p: np.ndarray, change: np.ndarray) -> np.ndarray:
     mass = linearise(system, p, zeros, zeros, 0.0, INERTIA)[1]
     impulse, free, result = _momentum(system, p, change), system.free_dofs, zeros.copy()
     if len(system.connectors.multipliers):
-        result[free] = constrained_acceleration(system, (p, zeros, change), impulse, mass, 0.0)
+        result[free] = constrained_acceleration(system, (p, zeros, change), impulse, mass, None)
         result[system.connectors.multipliers] = 0.0
     else:
         result[free] = mass.solve(-impulse[free], system.rotated)

@@ -159,9 +159,9 @@ def simulate(
     if stopped.any():
         state[1] += impact(system, state[0], stopped)
     if len(system.connectors.multipliers):
-        if start is not None and velocity is None:
-            state[1] += stopped_by_conditions(system, state[0], state[1])
-        require_met(system, state[0], state[1], settings.duration)
+        if velocity is None and (start is not None or system.connectors.conditions_follow_time):
+            state[1] += stopped_by_conditions(system, state[0], state[1], parts[0].loads_from)
+        require_met(system, state[0], state[1], parts[0].loads_from, settings.duration)
     state[2] = initial_acceleration(system, state, parts[0].loads_from)
     state[3] = state[2]
     turned = first_turns(model, state[0], transferred_turns(start, model, "start"))

@@ -2,6 +2,7 @@
 
 import math
 from abc import ABC, abstractmethod
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple, Protocol
@@ -12,18 +13,22 @@ from scipy.linalg import LinAlgError
 from beamfem.assembly.band_workspace import band_workspace
 from beamfem.assembly.equations import (
     STATICS,
+    inactive_after,
+    inactive_conditions,
+    linearise,
     linearise_after,
-    linearise_at_rest,
     predicted_stresses,
+    released,
     residual_at_rest,
     residual_change,
+    without,
 )
 from beamfem.assembly.system import Proven, System
 from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
 from beamfem.kernels import newton_loop
 from beamfem.kernels.newton_record import STALLED
-from beamfem.linalg.tangent import SMALLEST_PIVOT, Factorised, Stresses
+from beamfem.linalg.tangent import SMALLEST_PIVOT, Factorised, Stresses, Tangent
 from beamfem.precision.roundoff import ENOUGH, MOST_DIGITS, digits_of, load_size, loses_digits, remainder, row_floors
 from beamfem.validation import convert, count, flag, positive, shown
 
@@ -113,6 +118,7 @@ def require_newton(newton: Newton | None, default: Newton) -> Newton:
     return newton
 
 
+_MOST_SETS = 50  # of active conditions that are tried at a tangent
 STAGNANT = 1e-6  # corrections below this that no longer decrease are round-off, if the residual agrees
 _SURE = 1e-9  # of the movement: smaller corrections do not change the results
 _EPS = float(np.finfo(float).eps)
@@ -377,6 +383,14 @@ class BandProblem:
         self.space.return_scratch(self.system)
 
 
+class _Solved(NamedTuple):
+    """A correction (n,), the stresses after it, if they are separate unknowns, and the factors of its tangent."""
+
+    step: np.ndarray
+    after: Stresses | None
+    factors: Factorised
+
+
 class PivotedProblem(SingleCorrections):
     """The equilibrium at a load factor, from the state `start` (n,).
 
@@ -400,20 +414,49 @@ class PivotedProblem(SingleCorrections):
         self.stresses = stresses
 
     def take(self) -> tuple[float, int]:
-        system, p, free = self.system, self.state, self.system.free_dofs
-        unbalanced, tangent = linearise_at_rest(system, p, self.load_factor, self.stresses)
-        factors: Factorised = tangent.factorised(system.rotated)
-        step = self.step.step.copy() if self.taken == 0 else np.zeros(len(p))
-        step[free], after = factors.correction(unbalanced[free])
-        if self.taken == 0 and self.step.moves:
-            step[free] -= factors.solve(self.step.force[free])
-            after = None
+        system, p, zeros = self.system, self.state, np.zeros(len(self.state))
+        unbalanced, tangent = linearise(
+            system, p, zeros, zeros, self.load_factor, STATICS, self.stresses, all_active=True
+        )
+        solved = self._with_active_set if len(system.connectors.one_sided) else self._solved
+        step, after, factors = solved(unbalanced, tangent)
         if self.newton.independent_stresses:
             self.stresses = after or predicted_stresses(system, p, step, self.load_factor)
         self.state = p + step
         if self.taken == 0:
             self.linear = self.state
         return float(np.max(np.abs(step) / system.scale, initial=0.0)), factors.negative_pivots
+
+    def _with_active_set(self, unbalanced: np.ndarray, tangent: Tangent) -> _Solved:
+        """Return what `_solved` does with the set of one-sided conditions that the solution itself shows.
+
+        The search begins with the set of the state or, if that leaves a part free to move, with all conditions.
+        unbalanced, tangent: with all conditions active. Raises LinAlgError if no set holds the model.
+        """
+        system, p = self.system, self.state
+        gradients, shown = system.connectors.gradients(p, self.load_factor), inactive_conditions(system, p, unbalanced)
+        for inactive in (shown, shown[:0]):
+            with suppress(LinAlgError):
+                for _ in range(_MOST_SETS):
+                    left = released(system, p, unbalanced, gradients, inactive)
+                    solved = self._solved(left, without(system, tangent, inactive))
+                    held = bool(np.max(np.abs(solved.step) / system.scale) <= LARGEST)
+                    before, inactive = inactive, inactive_after(system, p, solved.step, unbalanced, gradients, inactive)
+                    if not held or np.array_equal(before, inactive):
+                        break
+                if held:
+                    return solved
+        raise LinAlgError("no set of one-sided conditions holds the model")
+
+    def _solved(self, unbalanced: np.ndarray, tangent: Tangent) -> _Solved:
+        """Return the correction for a residual (n,). Raises LinAlgError."""
+        free, factors = self.system.free_dofs, tangent.factorised(self.system.rotated)
+        step = self.step.step.copy() if self.taken == 0 else np.zeros(len(unbalanced))
+        step[free], after = factors.correction(unbalanced[free])
+        if self.taken == 0 and self.step.moves:
+            step[free] -= factors.solve(self.step.force[free])
+            after = None
+        return _Solved(step, after, factors)
 
     def balance(self) -> Balance:
         return balance_of(self.system, self.state, self.load_factor)
@@ -527,7 +570,7 @@ def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton
     """Iterate with the fastest method that the model allows, and with pivoting if that fails."""
     step = PrescribedStep(system, start, load_factor)
     result = None
-    banded = system.unknowns.pattern is None and system.model.frame is None
+    banded = system.unknowns.pattern is None and system.model.frame is None and not len(system.connectors.one_sided)
     if banded and Proven.LOSES_DIGITS not in system.proven:
         problem = BandProblem(system, start, load_factor, newton, step, keep)
         result = find_equilibrium(problem, newton, keep)

@@ -15,6 +15,7 @@ from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, FreeMotionError, InputError
 from beamfem.linalg.lapack import qr, solve_triangular
 from beamfem.model.beam import Point, beam_in_words
+from beamfem.model.contribution import is_one_sided
 from beamfem.model.missing_joints import Pair, in_words, unjoined_ends
 from beamfem.model.model import Model
 
@@ -239,7 +240,10 @@ def require_independent(system: System, p: np.ndarray) -> None:
 
 def redundant(system: System, p: np.ndarray) -> list[Connector]:
     """Return the connectors whose conditions depend on each other, or on supports and joints, in a state p (n,)."""
-    zeros, items = np.zeros(len(p)), [item for item in system.connectors.items if len(item.multipliers)]
+    zeros, lasting = np.zeros(len(p)), (item for item in system.connectors.items if not is_one_sided(item.item))
+    items = [item for item in lasting if len(item.multipliers)]
+    if not items:
+        return []
     rows, owners = [], []
     for item in items:
         first, count = len(item.dofs), len(item.multipliers)

@@ -113,8 +113,8 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
         return False
     if _differs_half_way(system, done, target, result.state):
         return True
-    if len(system.history.numbers):
-        return False  # the tangent of a committed state is that of unloading, not of the path
+    if len(system.history.numbers) or len(system.connectors.one_sided):
+        return False  # the tangent of a committed state is that of unloading, not of the path, which may have kinks
     done.iterations += 2
     return leaves_path(system, (done.state, done.reached), (result.state, target))
 

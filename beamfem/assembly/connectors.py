@@ -235,19 +235,19 @@ class Connector:
         if self.compiled is None:
             return self.force(self.at(motion, time, gravity)).real
         result = np.empty(len(self.all))
-        passes_of(self.compiled).force(*self._numbers(motion, gravity), result)
+        passes_of(self.compiled).force(*self.numbers(motion, gravity), result)
         return result
 
     def _compiled_tangent(
         self, connection: Connection, motion: Motion, gravity: np.ndarray, weights: Sequence[float]
     ) -> np.ndarray:
         result = np.empty((len(self.all), len(self.all)))
-        passes_of(connection).tangent(*self._numbers(motion, gravity), *map(float, weights), result)
+        passes_of(connection).tangent(*self.numbers(motion, gravity), *map(float, weights), result)
         if not np.isfinite(result).all():
             raise LinAlgError(f"force of {self.name} is not finite")
         return result
 
-    def _numbers(self, motion: Motion, gravity: np.ndarray) -> tuple[np.ndarray, ...]:
+    def numbers(self, motion: Motion, gravity: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return the arguments of compiled forces and tangents."""
         q, v, a = (values[self.dofs] for values in motion)
         angles = q[2::3] if self.per_point == 3 else np.zeros(len(self.reference))

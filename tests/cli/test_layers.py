@@ -43,6 +43,7 @@ LAYERS = (
     "assembly/band_workspace",
     "assembly/connector_equilibrium",
     "assembly/imposed_forces",
+    "assembly/data_derivatives",
     "assembly/equations",
     "precision/mixed_tangent",
     "assembly",

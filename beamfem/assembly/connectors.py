@@ -11,6 +11,8 @@ from beamfem.cached_properties import cached_property
 from beamfem.element.fields import rule_of
 from beamfem.errors import InputError
 from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.reference import jacobians, length_points
+from beamfem.model.beam import Point
 from beamfem.model.contribution import (
     At,
     Contribution,
@@ -22,7 +24,7 @@ from beamfem.model.contribution import (
 )
 from beamfem.model.load_base import factor
 from beamfem.model.model import Model
-from beamfem.parts.at_points import PartAlongBeam, PartAtPoints
+from beamfem.parts.at_points import PartAlongBeam, PartAtPoints, Station
 from beamfem.physics.compiled_connections import passes_of
 from beamfem.physics.connections import Connection
 from beamfem.validation import called, finite
@@ -559,7 +561,7 @@ def first_value(model: Model) -> int:
 
 
 def _with_nodes(given: Contribution, model: Model) -> list[tuple[Contribution, list[tuple[BeamMesh, int]]]]:
-    """Return a part with its nodes; of one along a beam, what acts at each node with its weight [m]."""
+    """Return a part with its nodes; of one along a beam, what acts at its nodes and quadrature points."""
     if not isinstance(given, PartAlongBeam):
         places = [(model.mesh_of(point), point.fraction) for point in given.points]
         return [(given, [(mesh, mesh.node_at(fraction)) for mesh, fraction in places])]
@@ -576,7 +578,33 @@ def _with_nodes(given: Contribution, model: Model) -> list[tuple[Contribution, l
     elements = np.repeat(np.arange(mesh.elements), len(xi))
     arcs[mesh.node.ravel()] = mesh.arc_length(elements, np.tile(xi, mesh.elements))
     points = [given.beam.at(min(arc / given.beam.curve.length, 1.0)) for arc in arcs.tolist()]
-    return [(item, [(mesh, node)]) for node, item in enumerate(given.at_nodes(points, lengths))]
+    at_nodes = [(item, [(mesh, node)]) for node, item in enumerate(given.at_nodes(points, lengths))]
+    return [*at_nodes, *_at_stations(given, mesh, points)]
+
+
+def _at_stations(
+    given: PartAlongBeam, mesh: BeamMesh, points: Sequence[Point]
+) -> list[tuple[Contribution, list[tuple[BeamMesh, int]]]]:
+    """Return what acts at the quadrature points of a part along a beam, with the nodes of the element."""
+    if type(given).at_stations is PartAlongBeam.at_stations:
+        return []
+    field = mesh.beam.element.field
+    if "r_x" in field.vectors:
+        raise InputError(
+            f"{type(given).__name__} acts at stations along a beam, which the {field.name} field with r_x does "
+            "not have; take elements of an order, such as CRBF(3)"
+        )
+    element, xi, weight = length_points(mesh)
+    slopes = field.centreline(xi, 1) / jacobians(mesh, element, xi)[0][:, None]
+    nodes = mesh.node[element]
+    rows = zip(nodes.tolist(), field.centreline(xi), slopes, weight.tolist(), strict=True)
+    stations = [Station(tuple(points[node] for node in own), *row) for own, *row in rows]
+    found = given.at_stations(stations)
+    if len(found) != len(stations):
+        raise InputError(
+            f"at_stations of {type(given).__name__} must return a part for each of {len(stations)}, got {len(found)}"
+        )
+    return [(item, [(mesh, node) for node in own]) for own, item in zip(nodes.tolist(), found, strict=True)]
 
 
 def _require_finite(item: Connector) -> None:

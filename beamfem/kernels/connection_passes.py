@@ -5,7 +5,7 @@ from beamfem.kernels.nodes import cosine_sine
 from beamfem.kernels.pointers import at, room
 from beamfem.kernels.record import System
 
-MOST = 8  # coordinates of a part, or multipliers and prescribed values
+MOST = 12  # coordinates of a part, or multipliers and prescribed values
 MOST_DATA = 24  # numbers and history variables of a part with history
 _ENTRIES = 2 * MOST * 2 * MOST
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -161,8 +161,21 @@ class BetweenPlaces(PartAtPoints):
             )
 
 
+class Station(NamedTuple):
+    """A quadrature point along a beam, with the shape functions of its field.
+
+    points (m,): nodes of the element; shape (m,): r = sum shape_i r_i, and d = sum shape_i d_i with d_i = (-sin t_i,
+    cos t_i) at nodes with rotations; slope (m,) [1/m]: r' = sum slope_i r_i, likewise d'; length [m]: weight.
+    """
+
+    points: tuple[Point, ...]
+    shape: np.ndarray
+    slope: np.ndarray
+    length: float
+
+
 class PartAlongBeam:
-    """A part along a beam that acts at all of its nodes.
+    """A part along a beam that acts at all of its nodes, or at the quadrature points of its elements.
 
     Attributes
     ----------
@@ -183,8 +196,15 @@ class PartAlongBeam:
         return self.beam.start, self.beam.end
 
     def at_nodes(self, points: Sequence[Point], lengths: np.ndarray) -> tuple[PartAtPoints, ...]:
-        """Return what acts at the nodes of the beam; lengths (n,): that belong to each [m]."""
-        raise NotImplementedError
+        """Return what acts at the nodes of the beam, by default nothing; lengths (n,): that belong to each [m]."""
+        return ()
+
+    def at_stations(self, stations: Sequence[Station]) -> tuple[PartAtPoints, ...]:
+        """Return what acts at each quadrature point of the beam, by default nothing, on the points of its station.
+
+        Fields of order k have stations, the cubic one with r_x has none.
+        """
+        return ()
 
     def force(self, at: At) -> np.ndarray:
         """Return the forces at the ends: none, as those at the nodes are separate parts."""

@@ -1,4 +1,4 @@
-"""Trials of the door for parts: contact with a disc, a magnetic torque and a rope over points, a few lines each."""
+"""Parts of one's own at all nodes of a beam; those at quadrature points are in `tests/trials`."""
 
 from dataclasses import dataclass
 

@@ -89,3 +89,20 @@ def test_a_part_at_the_angles_of_all_nodes_asks_for_elements_that_have_them():
     model = bf.Model([strip], [bf.Clamp(strip.start)], connectors=[Along(strip, TORQUE, (0.1,))])
     with pytest.raises(bf.InputError, match="Along acts on rotations along a beam, and the nodes of ANCF have none"):
         bf.solve_static(model)
+
+
+@dataclass(frozen=True)
+class BetweenNodes(Along):
+    def at_nodes(self, points, lengths):
+        return ()
+
+    def at_stations(self, stations):
+        return ()
+
+
+def test_stations_need_elements_of_an_order_and_a_part_each():
+    for element, said in ((bf.ANCFCRBF(), "stations along a beam, which the cubic field"), (bf.CRBF(2), "got 0")):
+        strip = bf.Beam(bf.Line((0, 0), (0.2, 0)), 4, element, STRIP, STEEL)
+        part = BetweenNodes(strip, TORQUE, (0.1,))
+        with pytest.raises(bf.InputError, match=said):
+            bf.solve_static(bf.Model([strip], [bf.Clamp(strip.start)], connectors=[part]))

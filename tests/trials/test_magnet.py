@@ -54,9 +54,3 @@ def test_a_magnetic_strip_bends_as_its_closed_form_says(order):
     solution = bf.solve_static(bf.Model([strip], [bf.Clamp(strip.start)], connectors=[Magnet(strip, 0.01)]))
     assert solution.rotation(strip.end)[-1] == pytest.approx(-0.01 * 0.2**2 / (2 * bending), rel=2e-4)
     assert np.abs(solution.reaction(strip.start)[-1, :2]).max() < 1e-9
-
-
-def test_the_cubic_field_has_no_stations():
-    strip = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.ANCFCRBF(), bf.Rectangle(0.1, 0.1), bf.Material(2e9, 0.3, 1e3))
-    with pytest.raises(bf.InputError, match="Magnet acts at stations along a beam, which the cubic field with r_x"):
-        bf.solve_static(bf.Model([strip], [bf.Clamp(strip.start)], connectors=[Magnet(strip, 0.01)]))

@@ -12,6 +12,7 @@ from pathlib import Path
 import beamfem as bf
 from beamfem.kernels.compiling import Routine
 from beamfem.view.html_page import Part, write_page
+from studies.mechanisms import page as mechanisms
 from studies.paper import cantilever_small, curved, elements, locking, pendulum_page, rollup
 from studies.stability import page as stability
 
@@ -24,8 +25,19 @@ PARTS: dict[str, Callable[[Path], Part]] = {  # by folder, as they stand on the 
     "curved": curved.part,
     "rollup": rollup.part,
     "frames": stability.part,
+    "mechanisms": mechanisms.part,
 }
-LONGEST_FIRST = ("elements", "rollup", "pendulum-printed", "pendulum-thin", "frames", "curved", "locking", "cantilever")
+LONGEST_FIRST = (
+    "elements",
+    "rollup",
+    "pendulum-printed",
+    "pendulum-thin",
+    "frames",
+    "mechanisms",
+    "curved",
+    "locking",
+    "cantilever",
+)
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 

@@ -82,7 +82,7 @@ class PartAtPoints:
         if connection.remember is None:
             return ()
         q, v = (list(map(tuple, x[:, : connection.coordinates])) for x in (at.q, at.v))
-        return connection.remember(q, v, self._data(at), ANALYTIC)
+        return connection.remember(q, v, (*self._data(at), *at.own), ANALYTIC)
 
     def shapes(self) -> tuple[ConnectorShape, ...]:
         """Return the shapes to draw; without any, a dashed line connects its points."""

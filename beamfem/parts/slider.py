@@ -1,14 +1,16 @@
 """A prismatic joint between two sections."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
+from beamfem.model.contribution import At
+from beamfem.model.part_units import UNIT
 from beamfem.parts.at_points import BetweenPlaces
-from beamfem.physics.connections import SLIDER, Connection
-from beamfem.validation import convert, squared, vector
+from beamfem.physics.connections import ROUGH_SLIDER, SLIDER, Connection
+from beamfem.validation import convert, not_negative, positive, squared, vector
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,7 +18,10 @@ class Slider(BetweenPlaces):
     """A prismatic joint: b slides along an axis that turns with a, and keeps its angle to a.
 
     Its conditions are (r_b - r_a) . n = constant, with the normal n of the axis, and t_b - t_a = 0; its multipliers are
-    the force across the axis [N] and the moment [N m].
+    the force N across the axis [N] and the moment [N m].
+
+    With friction, a spring along the axis holds b until its force reaches friction |N| (Coulomb); then b slips. Its
+    losses are in `solution.energy().dissipated`.
 
     Parameters
     ----------
@@ -24,11 +29,15 @@ class Slider(BetweenPlaces):
         Points of beams.
     axis : (float, float), [-]
         Direction of the axis in the reference; its length does not matter.
+    friction : float, [-], default 0
+        Coefficient of friction >= 0.
+    stiffness : float, [N/m], optional
+        Stiffness > 0 with which friction sticks; the larger, the smaller the steps that it needs.
 
     Raises
     ------
     InputError
-        For an invalid value.
+        For an invalid value, or friction without stiffness.
 
     Examples
     --------
@@ -40,19 +49,41 @@ class Slider(BetweenPlaces):
     a: Point
     b: Point
     axis: tuple[float, float]
+    friction: float = 0.0
+    stiffness: float | None = field(default=None, metadata={UNIT: "N/m"})
 
     def __post_init__(self) -> None:
         BetweenPlaces.__post_init__(self)
         convert(self, squared(vector), "axis")
         if not any(self.axis):
             raise InputError("the axis of a Slider must not be zero")
+        convert(self, not_negative, "friction")
+        if self.friction and self.stiffness is None:
+            raise InputError("friction of a Slider needs a stiffness with which it sticks")
+        if self.stiffness is not None:
+            convert(self, positive, "stiffness")
+
+    @property
+    def conservative(self) -> bool:  # type: ignore[override]
+        """Whether it is without friction."""
+        return self.friction == 0.0
 
     @property
     def connection(self) -> Connection:
-        """A slider."""
-        return SLIDER
+        """A slider, with history only where there is friction."""
+        return ROUGH_SLIDER if self.friction else SLIDER
 
     def data(self, reference: np.ndarray) -> tuple[float, ...]:
-        """Return the unit normal of the axis and the distance of b from it."""
-        x, y = np.array(self.axis) / np.hypot(*self.axis)
-        return -y, x, float((reference[1, :2] - reference[0, :2]) @ (-y, x))
+        """Return the unit normal of the axis, the distance of b from it, and what friction needs."""
+        (x, y), apart = np.array(self.axis) / np.hypot(*self.axis), reference[1, :2] - reference[0, :2]
+        smooth = -y, x, float(apart @ (-y, x))
+        return (*smooth, self.friction, self.stiffness or 0.0, float(apart @ (x, y))) if self.friction else smooth
+
+    def energy(self, at: At) -> tuple[float, float]:
+        """Return no kinetic energy, and the potential energy [J] of the spring that sticks."""
+        if not self.friction:
+            return 0.0, 0.0
+        nx, ny, _, _, stiffness, start = self.data(at.reference)
+        c, s = np.cos(at.q[0, 2]), np.sin(at.q[0, 2])
+        along = (at.q[1, :2] - at.q[0, :2]) @ (c * ny + s * nx, s * ny - c * nx)
+        return 0.0, 0.5 * stiffness * (along - start - at.memory[0]) ** 2

@@ -56,7 +56,7 @@ def connection_source(connection: Connection) -> str:
     kinetic = connection.kinetic(at, rates, data, functions) if connection.kinetic else zero
     potential = connection.potential(at, data, gravity, functions) if connection.potential else zero
     lost = connection.dissipation(at, rates, data, functions) if connection.dissipation else zero
-    given = connection.force(at, rates, data, functions) if connection.force else [zero] * count
+    given = connection.force(at, rates, (*data, *own), functions) if connection.force else [zero] * count
     conditions = list(connection.conditions(at, data, functions)) if connection.conditions else []
     momentum = sympy.Matrix([kinetic.diff(x) for x in v])
     force = momentum.jacobian(v) * sympy.Matrix(a) + momentum.jacobian(q) * sympy.Matrix(v)

@@ -52,6 +52,7 @@ class Connection(NamedTuple):
         Names of its history variables, zero at the start; they follow the numbers in the data of all functions.
     force : callable, optional
         Resisting forces f(q, v, data, f) that have no energy, as of friction: a tuple with one for each coordinate.
+        Multipliers follow the history variables in data, here and in `remember`.
     remember : callable, optional
         History variables after an accepted step, h(q, v, data, f), a tuple in the order of `memory`.
     compiled : (int, int), optional
@@ -203,6 +204,27 @@ def _slider_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Num
     return data[0] * along + data[1] * across - data[2], q[1][2] - q[0][2]
 
 
+def _slider_slip(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, Number]:
+    """Return the friction along the axis, which is at most `friction` |N|, and the change of the slip."""
+    along, across = _in_frame(q, f)
+    trial = data[4] * (data[1] * along - data[0] * across - data[5] - data[6])
+    over = _clipped(trial, data[3] * (f.positive(data[8]) + f.positive(-data[8])), f)
+    return trial - over, over / data[4]
+
+
+def _slider_friction(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
+    """Return the friction on a and b along the axis, and its moment about a."""
+    x, y = _arm(q[0][2], (data[1], -data[0]), f)
+    friction = _slider_slip(q, data, f)[0]
+    moment = x * (q[1][1] - q[0][1]) - y * (q[1][0] - q[0][0])
+    return -friction * x, -friction * y, friction * moment, friction * x, friction * y, 0
+
+
+def _slider_remember(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
+    friction, slipped = _slider_slip(q, data, f)
+    return data[6] + slipped, data[7] + friction * slipped
+
+
 def _gear_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
     return (q[1][2] - data[0] * q[0][2],)
 
@@ -315,6 +337,13 @@ GROUNDED_CABLE = Connection("grounded_cable", 1, 2, ("stiffness", "length", "x",
 _BUSHING = ("kx", "ky", "kt", "cx", "cy", "ct", "x", "y")
 BUSHING = Connection("bushing", 2, 3, _BUSHING, None, _bushing_potential, _bushing_dissipation)
 SLIDER = Connection("slider", 2, 3, ("nx", "ny", "offset"), None, None, None, _slider_conditions, 2)
+ROUGH_SLIDER = SLIDER._replace(
+    name="rough_slider",
+    data=(*SLIDER.data, "friction", "stiffness", "along"),
+    memory=("slip", "dissipated"),
+    force=_slider_friction,
+    remember=_slider_remember,
+)
 GEAR = Connection("gear", 2, 3, ("ratio",), None, None, None, _gear_conditions, 1)
 MOTOR = Connection("motor", 2, 3, (), None, None, None, _motor_conditions, 1, prescribed=1)
 _SLIP = "slip", "dissipated"
@@ -327,4 +356,5 @@ HINGE_FRICTION = Connection(
 _LIMITS = ("low", "high", "stiffness", "damping")
 HINGE_STOP = Connection("hinge_stop", 2, 3, _LIMITS, None, _limits_potential, _limits_dissipation)
 _SPRINGS = SPRING, GROUNDED_SPRING, COORDINATE_SPRING, TORSION_SPRING, CABLE, GROUNDED_CABLE, BUSHING
-CONNECTIONS = MASS, BODY, *_SPRINGS, LINK, SLIDER, GEAR, MOTOR, DRAG, STOP, ROUGH_STOP, HINGE_FRICTION, HINGE_STOP
+_JOINTS = LINK, SLIDER, ROUGH_SLIDER, GEAR, MOTOR
+CONNECTIONS = MASS, BODY, *_SPRINGS, *_JOINTS, DRAG, STOP, ROUGH_STOP, HINGE_FRICTION, HINGE_STOP

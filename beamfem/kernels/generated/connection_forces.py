@@ -849,6 +849,237 @@ def slider_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
 
 
 @routine("rrrrrrrr")
+def rough_slider_force(q, v, a, own, turned, data, gravity, out):
+    """Fill the force of `ROUGH_SLIDER`."""
+    q0 = q[0]
+    q1 = q[1]
+    q2 = q[2]
+    q3 = q[3]
+    q4 = q[4]
+    q5 = q[5]
+    own0 = own[0]
+    own1 = own[1]
+    nx = data[0]
+    ny = data[1]
+    offset = data[2]
+    friction = data[3]
+    stiffness = data[4]
+    along = data[5]
+    slip = data[6]
+    c2 = turned[0]
+    s2 = turned[1]
+    x0 = c2 * nx - ny * s2
+    x1 = own0 * x0
+    x2 = c2 * ny + nx * s2
+    x3 = q1 - q4
+    x4 = -x3
+    x5 = q0 - q3
+    x6 = -x5
+    x7 = -ny * (c2 * x6 + s2 * x4)
+    x8 = along + nx * (c2 * x4 - s2 * x6) + slip + x7
+    x9 = -stiffness * x8
+    x10 = own0 > 0.0
+    x11 = own0 < 0.0
+    x12 = friction * (((-own0) if x11 else (0.0)) + ((own0) if x10 else (0.0)))
+    x13 = -x12 - x9
+    x14 = x10 and x11
+    x15 = x9 < 0.0
+    x16 = friction * own0
+    x17 = x16 + x9
+    x18 = -x9
+    x19 = x16 + x18
+    x20 = -x12 - x18
+    x21 = x9 > 0.0
+    x22 = (
+        x9
+        + ((x13) if ((x15) if x14 else ((x17 < 0.0) if x10 else ((x19 > 0.0) if x11 else (x15)))) else (0.0))
+        - ((x20) if ((x21) if x14 else ((x19 < 0.0) if x10 else ((x17 > 0.0) if x11 else (x21)))) else (0.0))
+    )
+    x23 = own0 * x2
+    x24 = c2 * x3 - s2 * x5
+    x25 = stiffness * x8
+    x26 = x25 < 0.0
+    x27 = x16 + x25
+    x28 = x16 - x25
+    x29 = x25 > 0.0
+    x30 = (
+        x25
+        - ((x13) if ((x29) if x14 else ((x28 < 0.0) if x10 else ((x27 > 0.0) if x11 else (x29)))) else (0.0))
+        + ((x20) if ((x26) if x14 else ((x27 < 0.0) if x10 else ((x28 > 0.0) if x11 else (x26)))) else (0.0))
+    )
+    out[0] = -x1 - x2 * x22
+    out[1] = x0 * x22 - x23
+    out[2] = own0 * (-nx * x24 + x7) - own1 + x30 * (-x0 * x6 - x2 * x4)
+    out[3] = x1 - x2 * x30
+    out[4] = x0 * x30 + x23
+    out[5] = own1
+    out[6] = -nx * (c2 * x5 + s2 * x3) - ny * x24 - offset
+    out[7] = -q2 + q5
+
+
+@routine("rrrrrrrdddr")
+def rough_slider_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
+    """Fill ck df/dq + cv df/dv + ca df/da of `ROUGH_SLIDER`, row by row."""
+    q0 = q[0]
+    q1 = q[1]
+    q3 = q[3]
+    q4 = q[4]
+    own0 = own[0]
+    nx = data[0]
+    ny = data[1]
+    friction = data[3]
+    stiffness = data[4]
+    along = data[5]
+    slip = data[6]
+    c2 = turned[0]
+    s2 = turned[1]
+    x0 = c2 * ny + nx * s2
+    x1 = stiffness * x0
+    x2 = -x1
+    x3 = own0 > 0.0
+    x4 = own0 < 0.0
+    x5 = x3 and x4
+    x6 = q1 - q4
+    x7 = -x6
+    x8 = q0 - q3
+    x9 = -x8
+    x10 = c2 * x7 - s2 * x9
+    x11 = c2 * x9 + s2 * x7
+    x12 = along + slip
+    x13 = nx * x10 - ny * x11 + x12
+    x14 = stiffness * x13
+    x15 = x14 < 0.0
+    x16 = friction * own0
+    x17 = x14 + x16
+    x18 = -x14 + x16
+    x19 = (x15) if x5 else ((x17 < 0.0) if x3 else ((x18 > 0.0) if x4 else (x15)))
+    x20 = x14 > 0.0
+    x21 = (x20) if x5 else ((x18 < 0.0) if x3 else ((x17 > 0.0) if x4 else (x20)))
+    x22 = x1 - ((x1) if x21 else (0.0)) + ((x2) if x19 else (0.0))
+    x23 = -x22
+    x24 = ck * x0
+    x25 = c2 * nx
+    x26 = ny * s2
+    x27 = x25 - x26
+    x28 = stiffness * x27
+    x29 = -x28
+    x30 = x28 - ((x28) if x19 else (0.0)) + ((x29) if x21 else (0.0))
+    x31 = own0 * x0
+    x32 = -x31
+    x33 = nx * x11 + ny * x10
+    x34 = stiffness * x33
+    x35 = -x34
+    x36 = -stiffness * x13
+    x37 = x36 < 0.0
+    x38 = x16 + x36
+    x39 = -x36
+    x40 = x16 + x39
+    x41 = (x37) if x5 else ((x38 < 0.0) if x3 else ((x40 > 0.0) if x4 else (x37)))
+    x42 = x36 > 0.0
+    x43 = (x42) if x5 else ((x40 < 0.0) if x3 else ((x38 > 0.0) if x4 else (x42)))
+    x44 = x34 - ((x34) if x43 else (0.0)) + ((x35) if x41 else (0.0))
+    x45 = friction * (((-own0) if x4 else (0.0)) + ((own0) if x3 else (0.0)))
+    x46 = -x36 - x45
+    x47 = -x39 - x45
+    x48 = x36 + ((x46) if x41 else (0.0)) - ((x47) if x43 else (0.0))
+    x49 = x1 - ((x1) if x19 else (0.0)) + ((x2) if x21 else (0.0))
+    x50 = x28 - ((x28) if x21 else (0.0)) + ((x29) if x19 else (0.0))
+    x51 = -x50
+    x52 = -friction * (((-1.0) if x4 else (0.0)) + ((1.0) if x3 else (0.0)))
+    x53 = -((x52) if x19 else (0.0)) + ((x52) if x21 else (0.0))
+    x54 = ck * x27
+    x55 = own0 * x27
+    x56 = -x53
+    x57 = ck * (x0 + x27 * x56)
+    x58 = -x0 * x7 - x27 * x9
+    x59 = x14 - ((x46) if x21 else (0.0)) + ((x47) if x19 else (0.0))
+    x60 = -x59
+    x61 = x27 * x60
+    x62 = x34 - ((x34) if x19 else (0.0)) + ((x35) if x21 else (0.0))
+    x63 = x0 * x6 + x27 * x8
+    x64 = -x0 * x59 + x55
+    x65 = c2 * x8 + s2 * x6
+    x66 = ny * x65
+    x67 = c2 * x6 - s2 * x8
+    x68 = nx * x67
+    x69 = -ck
+    x70 = stiffness * (-nx * x67 + x12 + x66)
+    x71 = x70 > 0.0
+    x72 = x16 - x70
+    x73 = x16 + x70
+    x74 = (x71) if x5 else ((x72 < 0.0) if x3 else ((x73 > 0.0) if x4 else (x71)))
+    x75 = x70 < 0.0
+    x76 = (x75) if x5 else ((x73 < 0.0) if x3 else ((x72 > 0.0) if x4 else (x75)))
+    x77 = x28 - ((x28) if x76 else (0.0)) + ((x29) if x74 else (0.0))
+    x78 = -x62
+    x79 = x1 - ((x1) if x76 else (0.0)) + ((x2) if x74 else (0.0))
+    out[0] = -x23 * x24
+    out[1] = -x24 * x30
+    out[2] = -ck * (x0 * x44 + x27 * x48 + x32)
+    out[3] = -x24 * x49
+    out[4] = -x24 * x51
+    out[5] = 0.0
+    out[6] = ck * (-x0 * x53 - x27)
+    out[7] = 0.0
+    out[8] = x23 * x54
+    out[9] = x30 * x54
+    out[10] = -ck * (x0 * x48 - x27 * x44 + x55)
+    out[11] = x49 * x54
+    out[12] = x51 * x54
+    out[13] = 0.0
+    out[14] = -x57
+    out[15] = 0.0
+    out[16] = -ck * (x23 * x58 + x32 + x61)
+    out[17] = -ck * (x0 * x60 + x30 * x58 + x55)
+    out[18] = -ck * (own0 * x33 + x58 * x62 + x60 * (x0 * x9 - x27 * x7))
+    out[19] = -ck * (x31 + x49 * x58 - x61)
+    out[20] = ck * (x50 * x63 + x64)
+    out[21] = 0.0
+    out[22] = ck * (x56 * x63 + x66 - x68)
+    out[23] = x69
+    out[24] = -x22 * x24
+    out[25] = x24 * x77
+    out[26] = -ck * (x0 * x78 + x27 * x59 + x31)
+    out[27] = x24 * x79
+    out[28] = -x24 * x50
+    out[29] = 0.0
+    out[30] = -ck * (x0 * (-((x52) if x41 else (0.0)) + ((x52) if x43 else (0.0))) - x25 + x26)
+    out[31] = 0.0
+    out[32] = x22 * x54
+    out[33] = -x54 * x77
+    out[34] = ck * (x27 * x78 + x64)
+    out[35] = -x54 * x79
+    out[36] = x50 * x54
+    out[37] = 0.0
+    out[38] = x57
+    out[39] = 0.0
+    out[40] = 0.0
+    out[41] = 0.0
+    out[42] = 0.0
+    out[43] = 0.0
+    out[44] = 0.0
+    out[45] = 0.0
+    out[46] = 0.0
+    out[47] = ck
+    out[48] = -x54
+    out[49] = -x24
+    out[50] = ck * (ny * x65 - x68)
+    out[51] = x54
+    out[52] = x24
+    out[53] = 0.0
+    out[54] = 0.0
+    out[55] = 0.0
+    out[56] = 0.0
+    out[57] = 0.0
+    out[58] = x69
+    out[59] = 0.0
+    out[60] = 0.0
+    out[61] = ck
+    out[62] = 0.0
+    out[63] = 0.0
+
+
+@routine("rrrrrrrr")
 def gear_force(q, v, a, own, turned, data, gravity, out):
     """Fill the force of `GEAR`."""
     q2 = q[2]

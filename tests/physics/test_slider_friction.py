@@ -1,0 +1,81 @@
+"""Friction in a slider against the closed forms of Coulomb."""
+
+import numpy as np
+import pytest
+
+import beamfem as bf
+from beamfem.testing import check_connector
+
+STEEL, SQUARE = bf.Material(2.1e12, 0.3, 7850.0), bf.Rectangle(0.02, 0.02)
+MASS, GRAVITY, FRICTION, STIFFNESS = 7850.0 * 0.02**2 * 0.2, 9.81, 0.3, 1e8
+
+
+def sled(slope=0.0, supports=(), loads=()):
+    """A stiff bar that slides along an axis of a given slope on a stub that is held at both ends."""
+    along = np.array([np.cos(slope), np.sin(slope)])
+    stub, bar = (
+        bf.Beam(bf.Line(begin * along, end * along), 1, bf.CRBF(2), SQUARE, STEEL)
+        for begin, end in ((-0.1, 0.0), (1e-3, 0.201))
+    )
+    joint = bf.Slider(stub.end, bar.start, along, friction=FRICTION, stiffness=STIFFNESS)
+    ends = [bf.Clamp(stub.start), bf.Clamp(stub.end), *(make(bar.start) for make in supports)]
+    forces = [bf.Gravity((0, -GRAVITY)), *(make(bar.start) for make in loads)]
+    return bf.Model([stub, bar], ends, forces, connectors=[joint]), bar
+
+
+def test_consistent():
+    check_connector(sled(0.4)[0].connectors[0])
+
+
+def test_a_sled_stops_where_friction_has_dissipated_its_energy():
+    """v^2 / (2 friction g) from the start; then it rests."""
+    model, bar = sled()
+    motion = bf.simulate(
+        model, 0.5, 1e-4, velocity=lambda place: (float(place[0] > 0.0), 0.0), integrator=bf.GeneralizedAlpha(0.5)
+    )
+    moved, energy = motion.displacement(bar.start)[:, 0], motion.energy()
+    assert moved[-1] == pytest.approx(1.0 / (2.0 * FRICTION * GRAVITY), rel=1e-3)
+    assert np.ptp(moved[-500:]) < 2.1 * FRICTION * MASS * GRAVITY / STIFFNESS
+    assert energy.dissipated[-1] == pytest.approx(0.5 * MASS, rel=1e-3)
+    assert np.all(np.diff(energy.dissipated) >= 0.0)
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.5])
+def test_the_work_of_a_slow_push_forth_and_back_is_lost(slope):
+    """The push is m g (sin + friction cos) / (cos - friction sin), back with other signs; losses are friction |N|."""
+    path = bf.Interpolated([(0.0, 0.0), (0.5, 0.1), (1.0, 0.0)])
+    model, bar = sled(slope, [lambda point: bf.Prescribed(point, ux=lambda f: float(path(f)) * np.cos(slope))])
+    found = bf.solve_static(model.with_loads([bf.Gravity((0, -GRAVITY), scale=False)]), at=np.linspace(0, 1, 21))
+    push, lost = found.reaction(bar.start)[:, 0], found.energy().dissipated
+    for rows, sign in ((slice(1, 11), 1.0), (slice(12, 21), -1.0)):
+        cos, sin = np.cos(slope), np.sin(slope)
+        force = MASS * GRAVITY * (sin + sign * FRICTION * cos) / (cos - sign * FRICTION * sin)
+        assert push[rows] == pytest.approx(force, rel=2e-4)  # the bar bends
+        way = sign * np.diff(found.displacement(bar.start)[rows] @ (cos, sin))
+        normal = np.abs(found.multipliers(found.model.connectors[0])[rows, 0][1:])
+        assert np.diff(lost[rows]) == pytest.approx(FRICTION * normal * way, rel=1e-9, abs=1e-13)
+        work = sign * way * (push[rows][1:] * cos - MASS * GRAVITY * sin)
+        assert np.diff(lost[rows]) == pytest.approx(work, rel=1e-6)
+
+
+def test_a_sled_slides_down_a_slope_beyond_the_friction_angle():
+    """At g (sin - friction cos)."""
+    slope = 1.5 * np.arctan(FRICTION)
+    model, bar = sled(slope)
+    motion = bf.simulate(model, 0.2, 1e-4, integrator=bf.GeneralizedAlpha(0.5))
+    moved = -motion.displacement(bar.start) @ (np.cos(slope), np.sin(slope))
+    assert moved[-1] == pytest.approx(0.02 * GRAVITY * (np.sin(slope) - FRICTION * np.cos(slope)), rel=2e-3)
+
+
+def test_friction_holds_a_sled_on_a_slope_within_the_friction_angle():
+    """By m g sin / stiffness down the slope."""
+    slope = 0.5 * np.arctan(FRICTION)
+    model, bar = sled(slope)
+    moved = bf.solve_static(model).displacement(bar.start)[-1] @ (np.cos(slope), np.sin(slope))
+    assert moved == pytest.approx(-MASS * GRAVITY * np.sin(slope) / STIFFNESS, rel=1e-3)
+
+
+def test_friction_needs_a_stiffness():
+    stub = sled()[0].beams[0]
+    with pytest.raises(bf.InputError, match="friction of a Slider needs a stiffness"):
+        bf.Slider(stub.start, stub.end, (1, 0), friction=0.1)

@@ -1,0 +1,106 @@
+"""Random mechanisms give the same turned, mirrored, in other units and with beams in another order."""
+
+import numpy as np
+import pytest
+
+import beamfem as bf
+
+VIEWS = ("turned", "mirrored", "millimetres", "reversed")
+
+
+class View:
+    """How a mechanism is seen: rotation or reflection (2, 2), unit of length [m], order of the beams."""
+
+    def __init__(self, name=""):
+        c, s = np.cos(0.7), np.sin(0.7)
+        self.matrix = {"turned": np.array([[c, -s], [s, c]]), "mirrored": np.diag([-1.0, 1.0])}.get(name, np.eye(2))
+        self.hand = np.sign(np.linalg.det(self.matrix))
+        self.size = 1e3 if name == "millimetres" else 1.0  # lengths; in N, mm, t, s
+        self.mass = 1e-3 if name == "millimetres" else 1.0
+        self.reverse = name == "reversed"
+
+    def vector(self, values, unit):
+        return tuple(self.matrix @ values * unit)
+
+
+def mechanism(seed, view):
+    """A chain or tree of 2 to 30 bars with hinges, springs, masses, sliders, gears and bushings, hung on a spring."""
+    random = np.random.default_rng(seed)
+    count, length = int(random.integers(2, 31)), view.size
+    pressure, density = 1.0 / view.size**2, view.mass / view.size**3
+    material = bf.Material(2e9 * pressure, 0.3, 1200.0 * density)
+    places, bars, joints, parts, masses, links = [np.zeros(2)], [], [], [], [], []
+    for number in range(count):
+        parent = int(random.integers(max(0, number - 2), number)) if number else -1
+        begin = places[parent + 1]
+        angle, reach = random.uniform(-1.2, 1.2), random.uniform(0.2, 0.5)
+        places.append(begin + reach * np.array([np.cos(angle), np.sin(angle)]))
+        height = random.uniform(0.01, 0.02)
+        line = bf.Line(view.vector(begin, length), view.vector(places[-1], length))
+        bars.append(bf.Beam(line, 1, bf.CRBF(3), bf.Rectangle(0.01 * length, height * length), material))
+        kind = str(random.choice(["hinge", "rigid", "bushing", "slider"], p=[0.5, 0.25, 0.15, 0.1]))
+        links.append((parent, kind, random.uniform(10.0, 30.0), random.uniform(-1.0, 1.0, 2)))
+        mass, offset = random.uniform(0.05, 0.3), random.uniform(-0.05, 0.05, 2)
+        if random.random() < 0.3:
+            inertia = 1e-4 * view.mass * length**2
+            masses.append(
+                bf.RigidBody(bars[-1].end, mass * view.mass, inertia, view.vector(offset, length))
+                if random.random() < 0.5
+                else bf.PointMass(bars[-1].end, mass * view.mass)
+            )
+        if random.random() < 0.3:
+            ground = view.vector(places[-1] + random.uniform(0.2, 0.4, 2), length)
+            parts.append(bf.SpringDamper(bars[-1].end, ground, 50.0 / length))
+    for bar, (parent, kind, stiffness, axis) in zip(bars[1:], links[1:], strict=True):
+        a, b = bars[parent].end, bar.start
+        if kind == "rigid":
+            joints.append(bf.Rigid(a, b))
+        elif kind == "hinge":
+            joints.append(bf.Hinge(a, b))
+            parts.append(bf.TorsionSpring(a, b, stiffness * length))
+        elif kind == "bushing":
+            parts.append(bf.Bushing(a, b, (2e3 / length, 2e3 / length, stiffness * length)))
+        else:
+            parts += [bf.Slider(a, b, view.vector(axis, 1.0)), bf.SpringDamper(bars[parent].start, b, 2e3 / length)]
+    model = bf.Model(
+        bars[::-1] if view.reverse else bars,
+        [bf.Clamp(bars[0].start)],
+        [bf.Gravity(view.vector(np.array([0.0, -1.0]), length))],
+        joints,
+        connectors=parts,
+        masses=masses,
+        **({"units": "N, mm"} if view.size > 1.0 else {}),
+    )
+    return model, bars
+
+
+def results(seed, view):
+    """Positions in statics, frequencies, and positions in a motion, in the original axes and m."""
+    model, bars = mechanism(seed, view)
+    ends = [bar.end for bar in bars]
+
+    def seen(solution):
+        return np.array([solution.position(end)[-1] @ view.matrix / view.size for end in ends])
+
+    motion = bf.simulate(model, 0.02, 1e-3)
+    return seen(bf.solve_static(model, 4)), bf.solve_modes(model, 3).frequencies, seen(motion)
+
+
+def compare(seed):
+    static, frequencies, moved = results(seed, View())
+    for name in VIEWS:
+        other = results(seed, View(name))
+        assert other[0] == pytest.approx(static, rel=0, abs=1e-8), name
+        assert other[1] == pytest.approx(frequencies, rel=1e-7), name
+        assert other[2] == pytest.approx(moved, rel=0, abs=1e-8), name
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_some_random_mechanisms(seed):
+    compare(seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(6, 300))
+def test_random_mechanisms(seed):
+    compare(seed)

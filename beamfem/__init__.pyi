@@ -107,6 +107,7 @@ from .parts.spring_damper import SpringDamper as SpringDamper
 from .parts.stop import Stop as Stop
 from .parts.temperature import Temperature as Temperature
 from .parts.torsion_spring import TorsionSpring as TorsionSpring
+from .parts.weld import Weld as Weld
 from .physics.connections import Connection as Connection
 from .results.beam_stress import BeamStress as BeamStress
 from .results.motion_state import MotionState as MotionState

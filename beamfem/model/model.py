@@ -107,8 +107,8 @@ class Model:
     loads : sequence, optional
         Loads, such as `PointForce`, `Gravity` or `Temperature`.
     joints : sequence, optional
-        Joints between beams: `Rigid` and `Hinge`, also `Link`, `Slider` and `Gear`. The distance of points that `Rigid`
-        or `Hinge` joins may be up to 1e-5 of the longer beam: the second is moved to the first without stress.
+        Joints between beams: `Rigid` and `Hinge`, also `Link`, `Slider`, `Weld` and `Gear`. The distance of points that
+        `Rigid` or `Hinge` joins may be up to 1e-5 of the longer beam: the second is moved to the first without stress.
     connectors : sequence of Contribution, optional
         Forces between points, such as `SpringDamper` and `Link`, or user-defined ones, see `Contribution`.
     units : str, default "N, m, s"

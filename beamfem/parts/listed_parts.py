@@ -14,6 +14,7 @@ from beamfem.parts.rigid import Rigid as Rigid
 from beamfem.parts.hinge import Hinge as Hinge
 from beamfem.parts.link import Link as Link
 from beamfem.parts.slider import Slider as Slider
+from beamfem.parts.weld import Weld as Weld
 from beamfem.parts.gear import Gear as Gear
 from beamfem.parts.cable import Cable as Cable
 from beamfem.parts.bushing import Bushing as Bushing

@@ -225,6 +225,12 @@ def _slider_remember(q: list[Vector], v: list[Vector], data: Vector, f: Function
     return data[6] + slipped, data[7] + friction * slipped
 
 
+def _weld_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
+    """Return the displacement of b in axes that turn with a, and its rotation relative to a."""
+    along, across = _in_frame(q, f)
+    return along - data[0], across - data[1], q[1][2] - q[0][2]
+
+
 def _gear_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
     return (q[1][2] - data[0] * q[0][2],)
 
@@ -344,6 +350,7 @@ ROUGH_SLIDER = SLIDER._replace(
     force=_slider_friction,
     remember=_slider_remember,
 )
+WELD = Connection("weld", 2, 3, ("x", "y"), None, None, None, _weld_conditions, 3)
 GEAR = Connection("gear", 2, 3, ("ratio",), None, None, None, _gear_conditions, 1)
 MOTOR = Connection("motor", 2, 3, (), None, None, None, _motor_conditions, 1, prescribed=1)
 _SLIP = "slip", "dissipated"
@@ -356,5 +363,5 @@ HINGE_FRICTION = Connection(
 _LIMITS = ("low", "high", "stiffness", "damping")
 HINGE_STOP = Connection("hinge_stop", 2, 3, _LIMITS, None, _limits_potential, _limits_dissipation)
 _SPRINGS = SPRING, GROUNDED_SPRING, COORDINATE_SPRING, TORSION_SPRING, CABLE, GROUNDED_CABLE, BUSHING
-_JOINTS = LINK, SLIDER, ROUGH_SLIDER, GEAR, MOTOR
+_JOINTS = LINK, SLIDER, ROUGH_SLIDER, WELD, GEAR, MOTOR
 CONNECTIONS = MASS, BODY, *_SPRINGS, *_JOINTS, DRAG, STOP, ROUGH_STOP, HINGE_FRICTION, HINGE_STOP

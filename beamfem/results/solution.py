@@ -348,7 +348,7 @@ class Solution:
         On `a` it exerts the opposite force. Of `Hinge`, `Rigid` and other joints at which beams share coordinates, the
         force balances all else that acts on the nodes on the side of `b`: elements with their inertia, loads, supports
         and connectors there; a joint without a common angle transmits no moment. Of connectors with two points, such as
-        `Link`, `Slider` and `Gear`, it is the force on the second one, and of a `Motor` its torque.
+        `Link`, `Slider`, `Weld` and `Gear`, it is the force on the second one, and of a `Motor` its torque.
 
         Parameters
         ----------

@@ -55,6 +55,7 @@ def parts(one, two):
         "guy": (bf.Cable(one.end, (1.0, 0.3), 200.0, 5.0), None),
         "bushing": (bf.Bushing(one.end, two.end, (90.0, 40.0, 3.0), (1.0, 2.0, 0.1)), None),
         "slider": (bf.Slider(one.end, two.end, (1.0, 2.0)), None),
+        "weld": (bf.Weld(one.end, two.end), None),
         "gear": (bf.Gear(one.end, two.end, -1.5), None),
         "link": (bf.Link(one.end, two.end), LinkInPython(one.end, two.end)),
     }

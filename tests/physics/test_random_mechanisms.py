@@ -65,7 +65,7 @@ def mechanism(seed, view):
     model = bf.Model(
         bars[::-1] if view.reverse else bars,
         [bf.Clamp(bars[0].start)],
-        [bf.Gravity(view.vector(np.array([0.0, -1.0]), length))],
+        [bf.Gravity(view.vector(np.array([0.0, -0.3]), length))],
         joints,
         connectors=parts,
         masses=masses,

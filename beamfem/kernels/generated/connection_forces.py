@@ -1080,6 +1080,147 @@ def rough_slider_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
 
 
 @routine("rrrrrrrr")
+def weld_force(q, v, a, own, turned, data, gravity, out):
+    """Fill the force of `WELD`."""
+    q0 = q[0]
+    q1 = q[1]
+    q2 = q[2]
+    q3 = q[3]
+    q4 = q[4]
+    q5 = q[5]
+    own0 = own[0]
+    own1 = own[1]
+    own2 = own[2]
+    x = data[0]
+    y = data[1]
+    c2 = turned[0]
+    s2 = turned[1]
+    x0 = c2 * own0 - own1 * s2
+    x1 = c2 * own1 + own0 * s2
+    x2 = q0 - q3
+    x3 = q1 - q4
+    x4 = c2 * x3 - s2 * x2
+    out[0] = -x0
+    out[1] = -x1
+    out[2] = -own0 * x4 - own1 * (-c2 * x2 - s2 * x3) - own2
+    out[3] = x0
+    out[4] = x1
+    out[5] = own2
+    out[6] = -c2 * x2 - s2 * x3 - x
+    out[7] = -x4 - y
+    out[8] = -q2 + q5
+
+
+@routine("rrrrrrrdddr")
+def weld_tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out):
+    """Fill ck df/dq + cv df/dv + ca df/da of `WELD`, row by row."""
+    q0 = q[0]
+    q1 = q[1]
+    q3 = q[3]
+    q4 = q[4]
+    own0 = own[0]
+    own1 = own[1]
+    c2 = turned[0]
+    s2 = turned[1]
+    x0 = ck * (c2 * own1 + own0 * s2)
+    x1 = c2 * ck
+    x2 = -x1
+    x3 = ck * s2
+    x4 = ck * (c2 * own0 - own1 * s2)
+    x5 = -x4
+    x6 = -x3
+    x7 = q0 - q3
+    x8 = -x7
+    x9 = q1 - q4
+    x10 = -x9
+    x11 = -x0
+    x12 = -ck * (c2 * x9 - s2 * x7)
+    x13 = ck * (c2 * x7 + s2 * x9)
+    x14 = -ck
+    out[0] = 0.0
+    out[1] = 0.0
+    out[2] = x0
+    out[3] = 0.0
+    out[4] = 0.0
+    out[5] = 0.0
+    out[6] = x2
+    out[7] = x3
+    out[8] = 0.0
+    out[9] = 0.0
+    out[10] = 0.0
+    out[11] = x5
+    out[12] = 0.0
+    out[13] = 0.0
+    out[14] = 0.0
+    out[15] = x6
+    out[16] = x2
+    out[17] = 0.0
+    out[18] = x0
+    out[19] = x5
+    out[20] = -ck * (own0 * (c2 * x8 + s2 * x10) + own1 * (c2 * x10 - s2 * x8))
+    out[21] = x11
+    out[22] = x4
+    out[23] = 0.0
+    out[24] = x12
+    out[25] = x13
+    out[26] = x14
+    out[27] = 0.0
+    out[28] = 0.0
+    out[29] = x11
+    out[30] = 0.0
+    out[31] = 0.0
+    out[32] = 0.0
+    out[33] = x1
+    out[34] = x6
+    out[35] = 0.0
+    out[36] = 0.0
+    out[37] = 0.0
+    out[38] = x4
+    out[39] = 0.0
+    out[40] = 0.0
+    out[41] = 0.0
+    out[42] = x3
+    out[43] = x1
+    out[44] = 0.0
+    out[45] = 0.0
+    out[46] = 0.0
+    out[47] = 0.0
+    out[48] = 0.0
+    out[49] = 0.0
+    out[50] = 0.0
+    out[51] = 0.0
+    out[52] = 0.0
+    out[53] = ck
+    out[54] = x2
+    out[55] = x6
+    out[56] = x12
+    out[57] = x1
+    out[58] = x3
+    out[59] = 0.0
+    out[60] = 0.0
+    out[61] = 0.0
+    out[62] = 0.0
+    out[63] = x3
+    out[64] = x2
+    out[65] = x13
+    out[66] = x6
+    out[67] = x1
+    out[68] = 0.0
+    out[69] = 0.0
+    out[70] = 0.0
+    out[71] = 0.0
+    out[72] = 0.0
+    out[73] = 0.0
+    out[74] = x14
+    out[75] = 0.0
+    out[76] = 0.0
+    out[77] = ck
+    out[78] = 0.0
+    out[79] = 0.0
+    out[80] = 0.0
+
+
+@routine("rrrrrrrr")
 def gear_force(q, v, a, own, turned, data, gravity, out):
     """Fill the force of `GEAR`."""
     q2 = q[2]

@@ -65,7 +65,7 @@ def mechanism(seed, view):
     model = bf.Model(
         bars[::-1] if view.reverse else bars,
         [bf.Clamp(bars[0].start)],
-        [bf.Gravity(view.vector(np.array([0.0, -0.3]), length))],
+        [bf.Gravity(view.vector(np.array([0.0, -1.0]), length))],
         joints,
         connectors=parts,
         masses=masses,
@@ -75,15 +75,19 @@ def mechanism(seed, view):
 
 
 def results(seed, view):
-    """Positions in statics, frequencies, and positions in a motion, in the original axes and m."""
+    """Positions in statics, or the load factor of a snap; frequencies; positions in a motion."""
     model, bars = mechanism(seed, view)
     ends = [bar.end for bar in bars]
 
     def seen(solution):
         return np.array([solution.position(end)[-1] @ view.matrix / view.size for end in ends])
 
+    try:
+        static = seen(bf.solve_static(model, 4))
+    except bf.LimitPointError as error:
+        static = np.array(error.load_factor)
     motion = bf.simulate(model, 0.02, 1e-3)
-    return seen(bf.solve_static(model, 4)), bf.solve_modes(model, 3).frequencies, seen(motion)
+    return static, bf.solve_modes(model, 3).frequencies, seen(motion)
 
 
 def compare(seed):

@@ -9,7 +9,6 @@ import numpy as np
 from beamfem.assembly.applied_loads import LoadsAt
 from beamfem.assembly.callbacks import Deferred
 from beamfem.assembly.element_group import ElementGroup
-from beamfem.assembly.scratch_memory import Scratch, new
 from beamfem.kernels import element_passes, model_passes, node_passes, record
 from beamfem.kernels.connection_passes import add_parts
 from beamfem.kernels.pointers import address_of
@@ -18,6 +17,39 @@ from beamfem.kernels.simd import WIDTH
 
 Stresses = Sequence[np.ndarray]
 _NONE = np.empty(0)
+_LARGEST_KEPT = 1_000_000  # floats of memory that is kept
+_MOST_KEPT = 4
+
+
+@dataclass(eq=False)
+class Scratch:
+    """Scratch memory of compiled code, reused by the next solve of any model, and its last user."""
+
+    memory: np.ndarray
+    user: object = None
+
+
+_kept: list[Scratch] = []
+
+
+def lend_scratch(size: int) -> Scratch:
+    """Return memory of at least `size` floats that is not in use; its contents are arbitrary."""
+    try:
+        scratch = _kept.pop()
+    except IndexError:
+        return new_scratch(size)
+    return scratch if len(scratch.memory) >= size else new_scratch(size)
+
+
+def new_scratch(size: int) -> Scratch:
+    """Return memory (size,) of zeros."""
+    return Scratch(np.zeros(size))
+
+
+def take_back_scratch(scratch: Scratch) -> None:
+    """Keep memory for the next solve, if it is small."""
+    if len(scratch.memory) <= _LARGEST_KEPT and len(_kept) < _MOST_KEPT:
+        _kept.append(scratch)
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +110,7 @@ class Assembler:
         self._taken: LoadsAt | None = None
         self._scratch = _NONE
         if not shared:
-            self.work_in(new(self.scratch))
+            self.work_in(new_scratch(self.scratch))
 
     def work_in(self, scratch: Scratch) -> None:
         """Use scratch memory of at least `scratch` floats; its contents are overwritten."""

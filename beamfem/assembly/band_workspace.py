@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from beamfem.assembly import scratch_memory as scratch
 from beamfem.assembly.applied_loads import LoadsAt
+from beamfem.assembly.assembler import Scratch, lend_scratch, take_back_scratch
 from beamfem.assembly.connector_equilibrium import ConnectedBalance
 from beamfem.assembly.equations import STATICS
 from beamfem.assembly.system import System
@@ -55,11 +55,11 @@ class BandWorkspace:
 
     def return_scratch(self, system: System) -> None:
         """Return the scratch memory, and keep the workspace for the next solve if it is small."""
-        scratch.take_back(self._scratch)
+        take_back_scratch(self._scratch)
         if self.solver.rows.size <= _KEPT:
             system.spare.append(self)
 
-    def take(self, shared: scratch.Scratch) -> None:
+    def take(self, shared: Scratch) -> None:
         """Use shared scratch memory until `return_scratch`."""
         self._scratch = shared
         self.assembler.work_in(shared)
@@ -71,5 +71,5 @@ def band_workspace(system: System) -> BandWorkspace:
         workspace: BandWorkspace = system.spare.pop()
     except IndexError:
         workspace = BandWorkspace(system)
-    workspace.take(scratch.lend(workspace.assembler.scratch))
+    workspace.take(lend_scratch(workspace.assembler.scratch))
     return workspace

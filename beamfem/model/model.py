@@ -318,6 +318,11 @@ class Model:
         """The mesh of each beam, in the order of the beams."""
         return self.numbered.meshes
 
+    @cached_property
+    def automatic(self) -> bool:
+        """Whether the mesh of a beam is left to the analyses, see `Beam`."""
+        return any(beam.elements == "auto" for beam in self.beams)
+
     @property
     def coordinates(self) -> int:
         """Number of coordinates of the beams, including prescribed ones; shared ones are counted once."""

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly import scratch_memory as scratch
+from beamfem.assembly import assembler, band_workspace
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 
@@ -25,14 +25,14 @@ MODELS = [
 
 @pytest.fixture
 def empty(monkeypatch):
-    monkeypatch.setattr(scratch, "_kept", [])
+    monkeypatch.setattr(assembler, "_kept", [])
 
 
 def test_models_that_are_solved_in_turns_do_not_see_each_other(empty):
     alone = []
     for element, height in MODELS:
         alone.append(bf.solve_static(cantilever(element, height)).p[-1])
-        scratch._kept.clear()
+        assembler._kept.clear()
     models = [cantilever(element, height) for element, height in MODELS]
     for _ in range(3):
         for model, expected in zip(models, alone, strict=True):
@@ -45,11 +45,11 @@ def test_what_the_memory_holds_does_not_count(element, height, empty, monkeypatc
     expected = bf.solve_static(model).p[-1]
 
     def spoilt(size):
-        found = scratch.new(size)
+        found = assembler.new_scratch(size)
         found.memory[:] = np.nan
         return found
 
-    monkeypatch.setattr(scratch, "lend", spoilt)
+    monkeypatch.setattr(band_workspace, "lend_scratch", spoilt)
     for _ in range(2):
         np.testing.assert_array_equal(bf.solve_static(model).p[-1], expected)
     np.testing.assert_array_equal(bf.solve_static(cantilever(element, height)).p[-1], expected)
@@ -65,9 +65,9 @@ def test_threads_do_not_share_memory(empty):
 
 def test_only_a_little_memory_is_kept(empty):
     for _ in range(10):
-        scratch.take_back(scratch.new(100))
-    assert len(scratch._kept) == 4
-    scratch._kept.clear()
-    scratch.take_back(scratch.new(1_000_001))
-    assert not scratch._kept
-    assert len(scratch.lend(7).memory) >= 7
+        assembler.take_back_scratch(assembler.new_scratch(100))
+    assert len(assembler._kept) == 4
+    assembler._kept.clear()
+    assembler.take_back_scratch(assembler.new_scratch(1_000_001))
+    assert not assembler._kept
+    assert len(assembler.lend_scratch(7).memory) >= 7

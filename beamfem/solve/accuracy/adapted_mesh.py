@@ -27,7 +27,7 @@ from beamfem.solve.accuracy.error_estimate import (
 )
 from beamfem.validation import positive
 
-_DEFAULT = 1e-4  # accuracy of beams whose elements are "auto"
+DEFAULT = 1e-4  # accuracy of beams whose elements are "auto"
 _MOST_MESHES = 16
 # orders below are raised first, by so much at a time, and up to the highest one where most elements would be divided
 _RAISED, _STEP = 4, 2
@@ -47,12 +47,11 @@ def prepared(model: Model, accuracy: float | None, start: State | Solution | Non
     """
     if accuracy is not None and start is not None:
         raise InputError("an accuracy needs a mesh that may change, but a state to start from keeps its mesh")
-    system_of(model, static=True)  # refuses what is not a model
-    automatic = any(beam.elements == "auto" for beam in model.beams)
+    automatic = system_of(model, static=True).model.automatic
     if start is not None:
         return model.meshed(start) if automatic and isinstance(start, State | Solution) else model, None
     if accuracy is None:
-        return model, _DEFAULT if automatic else None
+        return model, DEFAULT if automatic else None
     return model, positive("accuracy", accuracy)
 
 

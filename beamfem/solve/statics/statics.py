@@ -20,7 +20,7 @@ from beamfem.progress import kept
 from beamfem.results.full_turns import start_rotations
 from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import warned
-from beamfem.solve.accuracy.adapted_mesh import prepared, refined_until, static_attempt
+from beamfem.solve.accuracy.adapted_mesh import DEFAULT, refined_until, static_attempt
 from beamfem.solve.accuracy.coarse_mesh import warned_of_coarse_mesh
 from beamfem.solve.accuracy.error_estimate import Quantity
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
@@ -37,7 +37,7 @@ from beamfem.solve.start.start_checks import refuse_memory
 from beamfem.solve.statics.load_jumps import changing, cross_jump
 from beamfem.solve.statics.load_steps import SAME, Snap, Unstable, reach
 from beamfem.solve.statics.static_record import StaticRecord, is_unstable
-from beamfem.validation import count, finite, items, one_of, shown
+from beamfem.validation import count, finite, items, one_of, positive, shown
 
 _NEWTON = Newton()
 _SIDE = 1e-9  # of the load factor: distance from a row at which a function with declared kinks is evaluated
@@ -128,10 +128,10 @@ def solve_static(
         through = solve_through(model, load_factors, steps, newton, snap=snap, unstable=unstable, end=load_factors[-1])
         return _rows_at(through, load_factors)
 
-    model, accuracy = prepared(model, accuracy)
-    if accuracy is None:
+    if accuracy is None and not system_of(model, static=True).model.automatic:
         return _judged(solve(model))
-    return _judged(refined_until(model, accuracy, lambda model: static_attempt(solve(model), quantity)))
+    wanted = positive("accuracy", DEFAULT if accuracy is None else accuracy)
+    return _judged(refined_until(model, wanted, lambda model: static_attempt(solve(model), quantity)))
 
 
 def _judged(solution: Solution) -> Solution:

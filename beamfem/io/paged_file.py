@@ -99,7 +99,7 @@ class Journal:
 
 def being_written(path: Path) -> bool:
     """Return whether a process has begun to write a file and not ended it."""
-    return path.with_name(f"{path.name}.journal").exists()
+    return os.path.exists(f"{path}.journal")  # False for a name that is too long
 
 
 def replay(path: Path) -> None:

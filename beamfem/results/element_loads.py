@@ -36,7 +36,24 @@ class Rows:
 
 
 def rows_of(solution: Solution, rows: slice | np.ndarray) -> Rows:
-    """Return some rows of a solution with the forces that act in them."""
+    """Return some rows of a solution with the forces that act in them, kept until other rows are asked for.
+
+    The beams of a model ask for the same rows one after another.
+    """
+    key = rows if isinstance(rows, slice) else np.asarray(rows).tobytes()
+    latest = solution.computed(_latest)
+    kept = latest.get("rows")
+    if kept is None or kept[0] != key:
+        kept = latest["rows"] = key, _rows_of(solution, rows)
+    return kept[1]
+
+
+def _latest(solution: Solution) -> dict[str, tuple[slice | bytes, Rows]]:
+    """Return the latest rows of a solution, none at first."""
+    return {}
+
+
+def _rows_of(solution: Solution, rows: slice | np.ndarray) -> Rows:
     system, at = loading(solution)
     times = at[rows].tolist()
     body = np.array([system.body(time) for time in times]).reshape(len(times), -1, 4)

@@ -90,7 +90,11 @@ def test_files_of_the_first_version_are_refused_as_those_of_another_version(name
             '"mass_density"',
             "another version of beamfem saved it: a Material has no 'mass_density' in this",
         ),
-        ('"elements": 3, ', "", "another version of beamfem saved it: a Beam had no 'elements' in that version"),
+        (
+            '"poisson_ratio": 0.3, ',
+            "",
+            "another version of beamfem saved it: a Material had no 'poisson_ratio' in that",
+        ),
         ('"class": "Clamp"', '"class": "FixedEnd"', "this version of beamfem knows no FixedEnd"),
     ],
 )

@@ -37,7 +37,8 @@ Contents; see help(bf.Beam), for example, for details.
     From files        read_mesh LineMesh Frame read_dxf load
     Solvers           solve_static trace_equilibrium solve_buckling solve_modes simulate resume
                       linearise frequency_response reduce
-    Solver settings   Newton GeneralizedAlpha Gauss Radau EnergyMomentum RigidVelocity Event
+    Solver settings   Newton RigidVelocity Event
+    Integrators       GeneralizedAlpha HHT Newmark Trapezoidal Midpoint Gauss Radau EnergyMomentum
     Results           Solution State Path PathState Bifurcation Modes Buckling Status
                       LinearModel FrequencyResponse MotionState Occurrence
     Along beams       SectionForces BeamStress Fields FieldOnBasis field_on_basis

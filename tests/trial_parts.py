@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from beamfem.model.beam import Beam, Point
-from beamfem.model.joints import Joint
+from beamfem.model.joint_base import Joint
 from beamfem.model.load_base import Amplitude, LineLoad
 from beamfem.model.supports import PointSupport
 

@@ -16,7 +16,7 @@ from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import warned
 from beamfem.solve.modes.modes import Modes, solve_modes
 from beamfem.solve.motion.dynamics import simulate
-from beamfem.solve.motion.integrators import GeneralizedAlpha
+from beamfem.solve.motion.generalized_alpha import GeneralizedAlpha
 from beamfem.solve.paths.trace import trace_equilibrium
 from beamfem.solve.stability.buckling import Buckling, solve_buckling
 from beamfem.solve.statics.load_steps import SAME

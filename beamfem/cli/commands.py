@@ -71,8 +71,8 @@ def run(
 def info(results: Results, as_json: AsJson = False, quiet: Quiet = False) -> None:
     """Show the contents of a results file: model, states, statistics; with --quiet, check that it can be read."""
     with reported(as_json, quiet) as show:
-        from beamfem.io.descriptions import beam_in_words, part_in_words
         from beamfem.io.hdf5 import read_label, required_h5py
+        from beamfem.io.parts_in_words import beam_in_words, part_in_words
 
         solution = _loaded(results)
         with required_h5py("loading").File(results, "r") as file:

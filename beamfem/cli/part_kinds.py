@@ -18,7 +18,7 @@ from beamfem.material import Material
 from beamfem.model.beam import Beam, Point, graded
 from beamfem.model.time_functions import Interpolated, kinks_of, sine, smooth_ramp
 from beamfem.parts.hinge import Hinge
-from beamfem.parts.parts_registry import parts_in
+from beamfem.parts.parts_by_role import parts_in
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import nearest
 

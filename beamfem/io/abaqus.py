@@ -15,7 +15,7 @@ import numpy as np
 
 from beamfem.atomic_write import readable
 from beamfem.errors import InputError, NotReadWarning, warn
-from beamfem.io.mesh_file import MeshFile
+from beamfem.io.meshio_reader import MeshFile
 
 _STRAIGHT = re.compile(r"(T[23]D2|B[23][13]|PIPE[23]1|FRAME[23]D)")
 _QUADRATIC = re.compile(r"(T[23]D3|B[23]2|PIPE[23]2)")

@@ -27,7 +27,7 @@ from beamfem.model.model import Model
 from beamfem.model.rotating_frame import RotatingFrame
 from beamfem.model.sampled_functions import Sampled, SampledAlong, SampledSection
 from beamfem.model.time_functions import Interpolated
-from beamfem.parts.parts_registry import listed_parts
+from beamfem.parts.parts_by_role import listed_parts
 from beamfem.section import (
     ElasticFibreSection,
     ElasticPlastic,

@@ -11,7 +11,7 @@ from beamfem.curves import BSpline, Chain, Curve, Line, Polyline
 from beamfem.errors import InputError
 from beamfem.io.line_mesh import LineMesh
 from beamfem.model.beam import Beam, Point
-from beamfem.model.joints import Joint
+from beamfem.model.joint_base import Joint
 from beamfem.parts.hinge import Hinge
 from beamfem.parts.rigid import Rigid
 from beamfem.reprs import brief

@@ -7,7 +7,7 @@ from typing import Any, Literal
 import numpy as np
 
 from beamfem.cached_properties import cached_property
-from beamfem.io.descriptions import material_in_words, section_in_words
+from beamfem.io.parts_in_words import material_in_words, section_in_words
 from beamfem.material import Material
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import reference_axis

@@ -10,7 +10,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.model.along_beam import AlongBeam, check_along, ends_and_middle, values_along
 from beamfem.model.beam import Beam, Point, require_beam, require_point_of
-from beamfem.model.joints import Joint
+from beamfem.model.joint_base import Joint
 from beamfem.model.load_shapes import Acceleration, Force, ForcesAlong, LoadShape, Moment
 from beamfem.model.state_protocols import Axes, Displaced, Placed, in_plane
 from beamfem.model.supports import Value

@@ -16,7 +16,7 @@ from beamfem.model.beam import Beam, Point, reference_positions, require_differe
 from beamfem.model.check_units import warn_of_units
 from beamfem.model.contribution import Contribution, require_connector
 from beamfem.model.imposed_strains import ImposedStrain
-from beamfem.model.joints import Joint
+from beamfem.model.joint_base import Joint
 from beamfem.model.load_base import BodyLoad, CompositeLoad, LineLoad, Load, MovingLoad, PointLoad
 from beamfem.model.rotating_frame import RotatingFrame
 from beamfem.model.supports import LineSupport, PointSupport, Support, SupportsAlong

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from beamfem.model.beam import Point
-from beamfem.model.joints import Joint
+from beamfem.model.joint_base import Joint
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from beamfem.model.beam import Point
-from beamfem.model.joints import Joint
+from beamfem.model.joint_base import Joint
 
 
 @dataclass(frozen=True, slots=True)

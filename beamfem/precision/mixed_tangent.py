@@ -16,8 +16,8 @@ from scipy.sparse.linalg import SuperLU
 
 from beamfem.assembly.system import System
 from beamfem.cached_properties import cached_property
-from beamfem.linalg.inertia import negative_eigenvalues
 from beamfem.linalg.lapack import LinAlgError, superlu
+from beamfem.linalg.negative_eigenvalues import negative_eigenvalues
 from beamfem.linalg.tangent import Rotated, Stresses, Tangent, rotation_to_normals
 
 _FLEXIBILITY = 1e-10  # of the stiffest part, beside derivatives of strains of one

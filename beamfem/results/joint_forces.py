@@ -10,7 +10,7 @@ from beamfem.errors import InputError
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.beam import Point
 from beamfem.model.contribution import Contribution
-from beamfem.model.joints import Joint
+from beamfem.model.joint_base import Joint
 from beamfem.model.load_base import Load, PointLoad, factor
 from beamfem.model.model import Model
 from beamfem.model.supports import PointSupport

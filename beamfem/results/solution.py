@@ -13,7 +13,7 @@ from beamfem.curves import BSpline, spline_through_hermite, without_removable_kn
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import Contribution
-from beamfem.model.joints import Joint
+from beamfem.model.joint_base import Joint
 from beamfem.model.load_base import Load
 from beamfem.model.model import Model
 from beamfem.reprs import brief

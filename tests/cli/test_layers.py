@@ -52,7 +52,7 @@ LAYERS = (
     "linalg",
     "forms",
     "mesh",
-    "parts/parts_registry",
+    "parts/parts_by_role",
     "parts/listed_parts",
     "parts",
     "model",

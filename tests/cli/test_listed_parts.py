@@ -12,7 +12,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.cli.part_kinds import ACTING
-from beamfem.parts.parts_registry import listed_parts, parts_in
+from beamfem.parts.parts_by_role import listed_parts, parts_in
 
 FILE = str(Path(__file__).parents[1] / "trial_parts.py")
 PARTS = ("SnowLoad", "Slide", "Weld", "Buffer")

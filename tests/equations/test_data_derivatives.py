@@ -11,7 +11,7 @@ import beamfem as bf
 from beamfem.assembly.data_derivatives import residual_derivative
 from beamfem.assembly.equations import STATICS, linearise, residual
 from beamfem.assembly.system import system_of
-from beamfem.parts.parts_registry import listed_parts
+from beamfem.parts.parts_by_role import listed_parts
 from beamfem.section.moments import StiffnessSection
 
 DATA = {

@@ -10,7 +10,7 @@ from shooting import Member, solved
 import beamfem as bf
 from beamfem.assembly.equations import STATICS
 from beamfem.assembly.system import system_of
-from beamfem.linalg.inertia import negative_eigenvalues
+from beamfem.linalg.negative_eigenvalues import negative_eigenvalues
 from beamfem.precision.roundoff import lost_digits
 
 EI, EA = 115.0, 5.5e6

@@ -99,6 +99,16 @@ class Gauss:
         return CollocationRun(_rule(gauss(self.stages)[0]))
 
 
+def Midpoint() -> Gauss:
+    """Return the implicit midpoint rule: Gauss collocation with one stage, order 2, without numerical damping.
+
+    Examples
+    --------
+    >>> motion = bf.simulate(model, duration=0.02, step=0.001, integrator=bf.Midpoint())
+    """
+    return Gauss(1)
+
+
 @dataclass(frozen=True)
 class Radau:
     """Radau IIA collocation with s stages: order 2 s - 1, L-stable: what a step does not resolve decays.

@@ -15,12 +15,12 @@ from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.solve.motion.compiled_steps import CompiledSteps
 from beamfem.solve.motion.energy_judgement import CHUNK, EnergyJudge
 from beamfem.solve.motion.equations_of_motion import Integrator
-from beamfem.solve.motion.integrators import Scheme, is_scheme
+from beamfem.solve.motion.generalized_alpha import Scheme, is_scheme
+from beamfem.solve.motion.marching_by_step import Memory, OwnSteps
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.start_acceleration import initial_acceleration, mean_acceleration
 from beamfem.solve.motion.stored_states import Saving
 from beamfem.solve.motion.time_steps import PARTS, Stretch
-from beamfem.solve.motion.user_integrators import Memory, OwnSteps
 
 _CHUNK_SECONDS = 0.25  # of a call of compiled code, which the next call is made to last at least
 _MOST = 6  # cuts of a step, to 1 / 4096

@@ -23,8 +23,8 @@ from beamfem.solve.motion.constraints import impact, require_met, stopped_by_con
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.error_control import march_to_tolerance
 from beamfem.solve.motion.events import Event
+from beamfem.solve.motion.generalized_alpha import Scheme
 from beamfem.solve.motion.initial_velocity import put_onto_supports, require_on_supports, start_velocity
-from beamfem.solve.motion.integrators import Scheme
 from beamfem.solve.motion.motion_error import MOST_MESHES, motion_attempt
 from beamfem.solve.motion.motion_plan import planned, settings_of
 from beamfem.solve.motion.period_error import detuned

@@ -7,7 +7,7 @@ import numpy as np
 from beamfem.progress import progress
 from beamfem.solve.motion.cut_steps import Rows, StepCutter
 from beamfem.solve.motion.energy_judgement import CHUNK
-from beamfem.solve.motion.integrators import is_scheme
+from beamfem.solve.motion.generalized_alpha import is_scheme
 from beamfem.solve.motion.saved_rows import SavedRows
 from beamfem.solve.motion.start_acceleration import initial_acceleration
 from beamfem.solve.motion.time_marching import Failure, Record

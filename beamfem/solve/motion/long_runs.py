@@ -30,13 +30,13 @@ from beamfem.solve.motion.energy_momentum import EnergyMomentum
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.error_control import Reached, march_to_tolerance
 from beamfem.solve.motion.events import Event
-from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, is_scheme
+from beamfem.solve.motion.generalized_alpha import GeneralizedAlpha, Scheme, is_scheme
+from beamfem.solve.motion.marching_by_step import Memory
 from beamfem.solve.motion.motion_plan import MotionPlan, MotionSettings, planned, settings_of
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.saved_rows import SavedRows
 from beamfem.solve.motion.start_acceleration import initial_acceleration
 from beamfem.solve.motion.time_marching import Failure, Record, cutter_of
-from beamfem.solve.motion.user_integrators import Memory
 from beamfem.validation import positive
 
 _OWN = (GeneralizedAlpha, Gauss, EnergyMomentum)  # whose modules have to be loaded to find an integrator by its name

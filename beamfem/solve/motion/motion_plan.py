@@ -11,7 +11,7 @@ from beamfem.errors import InputError
 from beamfem.model.model import Model
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.events import Event, Watch
-from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, is_scheme, require_rule
+from beamfem.solve.motion.generalized_alpha import GeneralizedAlpha, Scheme, is_scheme, require_rule
 from beamfem.solve.motion.saved_rows import SavedRows
 from beamfem.solve.motion.time_steps import Stretch, stretches
 from beamfem.solve.start.functions_of_time import FunctionOfTime, functions_of_time

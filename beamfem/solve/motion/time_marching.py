@@ -10,7 +10,7 @@ from beamfem.progress import progress
 from beamfem.solve.motion.cut_steps import Rows, StepCutter, keep_momentum
 from beamfem.solve.motion.energy_judgement import EnergyJudge
 from beamfem.solve.motion.equations_of_motion import Integrator
-from beamfem.solve.motion.integrators import Scheme, is_scheme
+from beamfem.solve.motion.generalized_alpha import Scheme, is_scheme
 from beamfem.solve.motion.saved_rows import SavedRows
 from beamfem.solve.motion.start_acceleration import initial_acceleration
 from beamfem.solve.motion.time_steps import Stretch

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from beamfem.model.joints import Joint
+from beamfem.model.joint_base import Joint
 from beamfem.model.load_base import Load
 from beamfem.model.supports import Support
 from beamfem.parts import listed_parts as parts

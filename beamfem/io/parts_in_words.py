@@ -7,7 +7,7 @@ from typing import Any
 from beamfem.damping import Damping, KelvinVoigt
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point, names
-from beamfem.model.joints import Joint
+from beamfem.model.joint_base import Joint
 from beamfem.model.model import Model
 from beamfem.model.part_units import field_units
 from beamfem.section import Layered, Section, ShapedSection, StiffnessSection

@@ -104,3 +104,96 @@ class GeneralizedAlpha:
         alpha_f = self.rho_inf / (self.rho_inf + 1.0)
         gamma = 0.5 + alpha_f - alpha_m
         return np.array([step, alpha_m, alpha_f, gamma, 0.25 * (gamma + 0.5) ** 2])
+
+
+@dataclass(frozen=True)
+class HHT:
+    """Method of Hilber, Hughes and Taylor, a member of the generalized-alpha family.
+
+    alpha_m = 0, alpha_f = -alpha, gamma = 1/2 - alpha, beta = (1 - alpha)^2 / 4, see `Scheme`. It is second order
+    accurate and unconditionally stable for linear systems.
+
+    Parameters
+    ----------
+    alpha : float, [-], default -0.05
+        Numerical damping, from -1/3 to 0; the spectral radius at infinite frequency is (1 + alpha) / (1 - alpha).
+
+    Raises
+    ------
+    InputError
+        For a value outside -1/3 to 0.
+
+    References
+    ----------
+    Hilber, Hughes and Taylor 1977.
+
+    Examples
+    --------
+    >>> motion = bf.simulate(model, duration=0.02, step=0.001, integrator=bf.HHT(alpha=-0.1))
+    """
+
+    alpha: float = -0.05
+
+    def __post_init__(self) -> None:
+        convert(self, finite, "alpha")
+        if not -1.0 / 3.0 <= self.alpha <= 0.0:
+            raise InputError(f"alpha of HHT lies between -1/3 and 0, got {self.alpha}")
+
+    def rule(self, step: float) -> np.ndarray:
+        """Return the parameters of the method, see `Scheme`."""
+        return np.array([step, 0.0, -self.alpha, 0.5 - self.alpha, 0.25 * (1.0 - self.alpha) ** 2])
+
+
+@dataclass(frozen=True)
+class Newmark:
+    """Newmark's method, a member of the generalized-alpha family.
+
+    p1 = p0 + h p0' + h^2 ((1/2 - beta) p0'' + beta p1''), p1' = p0' + h ((1 - gamma) p0'' + gamma p1'').
+
+    With gamma = 1/2 it is second order accurate, otherwise first order; with 2 beta >= gamma it is unconditionally
+    stable for linear systems. The default is the trapezoidal rule.
+
+    Parameters
+    ----------
+    beta : float, [-], default 0.25
+        Weight of the new acceleration in displacements, above 0.
+    gamma : float, [-], default 0.5
+        Weight of the new acceleration in velocities, from 1/2, without numerical damping.
+
+    Raises
+    ------
+    InputError
+        For beta that is not positive, and gamma below 1/2, which would feed energy into the motion.
+
+    References
+    ----------
+    Newmark 1959.
+
+    Examples
+    --------
+    >>> motion = bf.simulate(model, duration=0.02, step=0.001, integrator=bf.Newmark(beta=0.3025, gamma=0.6))
+    """
+
+    beta: float = 0.25
+    gamma: float = 0.5
+
+    def __post_init__(self) -> None:
+        convert(self, finite, "beta", "gamma")
+        if self.beta <= 0.0 or self.gamma < 0.5:
+            raise InputError(
+                f"Newmark needs beta above 0 and gamma of at least 1/2, got beta {self.beta} and gamma {self.gamma}"
+            )
+
+    def rule(self, step: float) -> np.ndarray:
+        """Return the parameters of the method, see `Scheme`."""
+        return np.array([step, 0.0, 0.0, self.gamma, self.beta])
+
+
+def Trapezoidal() -> Newmark:
+    """Return the trapezoidal rule: Newmark's method with beta = 1/4 and gamma = 1/2, without numerical damping.
+
+    Examples
+    --------
+    >>> motion = bf.simulate(model, duration=0.02, step=0.001, integrator=bf.Trapezoidal())
+    """
+    return Newmark()

@@ -179,3 +179,29 @@ def test_only_results_of_the_same_beams_have_its_mesh():
         bf.Model([other]).meshed(solution)
     with pytest.raises(bf.InputError, match="meshed takes a state or a solution"):
         model.meshed(model)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_true_errors_of_random_beams_are_below_the_accuracy(seed):
+    """Of 174 results 4 % were off by up to 1.4 times the accuracy, as was their estimate the other way."""
+    random = np.random.default_rng(seed)
+    length = random.uniform(0.5, 3.0)
+    curve = (bf.Line((0, 0), (1, 0.3)), bf.Arc((0, 0), 1.0, 0, length))[random.integers(2)]
+    height, taper = 10 ** random.uniform(-3, -1.2), random.uniform(-0.4, 0.4)
+    bending = STEEL.youngs_modulus * 0.02 * height**3 / 12
+    force, kind = random.uniform(-4, 4) * bending, random.integers(3)
+
+    def section(s):
+        return bf.Rectangle(0.02, height * (1 + taper * s / curve.length))
+
+    def positions(*elements, accuracy=None):
+        beam = bf.Beam(curve, *elements, section=section, material=STEEL)
+        loads = ([bf.PointForce(beam.end, (0, force))], [bf.Pressure(beam, force)], [bf.PointMoment(beam.end, force)])
+        model = bf.Model([beam], [bf.Clamp(beam.start)], loads[kind])
+        solution = bf.solve_static(model, accuracy=accuracy)
+        return np.array([solution.position(beam.at(x))[-1] for x in np.linspace(0.1, 1.0, 10)])
+
+    exact = positions(24, bf.CRBF(8))
+    for accuracy in (1e-2, 1e-4, 1e-6):
+        error = np.linalg.norm(positions("auto", accuracy=accuracy) - exact, axis=1).max()
+        assert error < accuracy * curve.length

@@ -32,6 +32,7 @@ _MOST_MESHES = 16
 # orders below are raised first, by so much at a time, and up to the highest one where most elements would be divided
 _RAISED, _STEP = 4, 2
 _MOST_PARTS = 4  # of an element from one mesh to the next: far from the limit its order promises too much
+_TRUST = 1.5  # how many times as large as its estimate an error may be
 _SAFETY = 2.0  # by how much the next mesh is to fall below the accuracy
 
 
@@ -61,7 +62,7 @@ def refined_until(
     attempt: Callable[[Model], tuple[_Result | None, float, Shares]],
     most: int = _MOST_MESHES,
 ) -> _Result:
-    """Return the result on the first mesh whose estimated error is at most an accuracy [-].
+    """Return the result on the first mesh whose estimated error is well below an accuracy [-].
 
     attempt: returns the result on a mesh, None if it is far too coarse, its relative error, and the shares (ne,) of the
     elements of each beam in it, see `error_shares`, or None for equal ones; most: number of meshes to try. Raises
@@ -79,7 +80,7 @@ def refined_until(
             ended = f"{result.statistics.ended}; the estimated error is {error:.2g} on {mesh}"
             statistics = replace(result.statistics, ended=ended, iterations=iterations)
             result = replace(result, statistics=statistics)
-        if error <= accuracy:
+        if _TRUST * error <= accuracy:
             assert result is not None
             return result
         even = [np.full(mesh.elements, 1.0 / elements) for mesh in model.meshes]

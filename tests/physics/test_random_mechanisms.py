@@ -24,7 +24,7 @@ class View:
 
 
 def mechanism(seed, view):
-    """A chain or tree of 2 to 30 bars with hinges, springs, masses, sliders, gears and bushings, hung on a spring."""
+    """A chain or tree of 2 to 30 bars with hinges, springs, masses, sliders and bushings, hung on a spring."""
     random = np.random.default_rng(seed)
     count, length = int(random.integers(2, 31)), view.size
     pressure, density = 1.0 / view.size**2, view.mass / view.size**3

@@ -62,7 +62,8 @@ class Gauss:
     """Gauss collocation with s stages: order 2 s, without numerical damping, symmetric in time.
 
     One stage is the implicit midpoint rule. Accelerations at the ends of steps are those of the equations there. If
-    supports move, the order is s, as their motion is met at the stages, which lie within a step.
+    supports move, the order falls to s for small steps, measured for one and two stages: their motion is met at the
+    stages, which lie within a step.
 
     Parameters
     ----------
@@ -103,7 +104,7 @@ class Gauss:
 def Midpoint() -> Gauss:
     """Return the implicit midpoint rule: Gauss collocation with one stage, order 2, without numerical damping.
 
-    If supports move, the order is 1, see `Gauss`.
+    If supports move, the order falls to 1 for small steps, see `Gauss`.
 
     Examples
     --------

@@ -205,3 +205,26 @@ def test_true_errors_of_random_beams_are_below_the_accuracy(seed):
     for accuracy in (1e-2, 1e-4, 1e-6):
         error = np.linalg.norm(positions("auto", accuracy=accuracy) - exact, axis=1).max()
         assert error < accuracy * curve.length
+
+
+def wave(**mesh):
+    """Clamped at one end: the moments of a moment in the middle are exact on every mesh, the axis is not."""
+    axis = bf.Parametric(lambda u: (u, 0.22 * np.sin(3.0 * np.pi * u)), 0.0, 1.0)
+    beam = bf.Beam(axis, section=SECTION, material=STEEL, **mesh)
+    return beam, bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointMoment(beam.at(0.5), -1.5 * EI)])
+
+
+def test_curved_beams_whose_moments_are_exact_are_refined_evenly():
+    accuracy = 1e-4
+    beam, model = wave()
+    solution = bf.solve_static(model, accuracy=accuracy)
+    fine_beam, fine = wave(elements=96, element=bf.CRBF(8))
+    error = solution.displacement(beam.end)[-1] - bf.solve_static(fine).displacement(fine_beam.end)[-1]
+    assert np.linalg.norm(error) < accuracy
+    assert solution.model.meshes[0].elements < 50
+
+
+def test_an_accuracy_below_round_off_ends_soon():
+    _, model = model_of(bf.CRBF(4), 2, bent)
+    with pytest.raises(bf.ConvergenceError, match="and falls no further; for an accuracy of 1e-17 it must be at most"):
+        bf.solve_static(model, accuracy=1e-17)

@@ -34,7 +34,8 @@ _RAISED, _STEP = 4, 2
 _MOST_PARTS = 4  # of an element from one mesh to the next: far from the limit its order promises too much
 _TRUST = 1.5  # how many times as large as its estimate an error may be
 _SAFETY = 2.0  # by how much the next mesh is to fall below the accuracy
-
+_FALLS = 0.5  # what a mesh is to leave of the error of the one before; the shares are of no use otherwise
+_MOST_STALLED = 3  # meshes divided evenly whose error is not the smallest so far: it is round-off
 
 _Result = TypeVar("_Result")
 Shares = list[np.ndarray] | None
@@ -70,9 +71,13 @@ def refined_until(
     """
     # a result lists its elements, and has beams with numbers of them to be saved
     model = remeshed(model, [_listed(mesh) for mesh in model.meshes])
-    iterations = 0
-    for number in range(1, most + 1):
+    iterations = elements = stalled = number = 0
+    before = smallest = np.inf
+    evenly = False
+    while number < most and stalled < _MOST_STALLED:
+        number += 1
         result, error, shares = attempt(model)
+        divided = sum(mesh.elements for mesh in model.meshes) > elements
         elements = sum(mesh.elements for mesh in model.meshes)
         if isinstance(result, Solution):
             iterations += result.iterations
@@ -83,10 +88,16 @@ def refined_until(
         if _TRUST * error <= accuracy:
             assert result is not None
             return result
+        stalled = stalled + 1 if evenly and divided and smallest <= error < np.inf else 0
+        # shares are those of stress resultants, which may be exact where the interpolated axis is not
+        evenly = shares is None or (divided and error > _FALLS * before)
+        before, smallest = error, min(error, smallest)
         even = [np.full(mesh.elements, 1.0 / elements) for mesh in model.meshes]
-        model = refined(model, even if shares is None else shares, _SAFETY * error / accuracy)
+        model = refined(model, even if evenly or shares is None else shares, _SAFETY * error / accuracy)
+    falls = ", and falls no further" if stalled else ""
     raise ConvergenceError(
-        f"the estimated error is {error:.2g} after {most} meshes, more than the accuracy {accuracy:g} asked for",
+        f"the estimated error is {error:.2g} after {number} meshes{falls}; for an accuracy of {accuracy:g} it must be "
+        f"at most {accuracy / _TRUST:.2g}",
         result if isinstance(result, Solution) else None,
     )
 

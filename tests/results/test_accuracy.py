@@ -228,3 +228,22 @@ def test_an_accuracy_below_round_off_ends_soon():
     _, model = model_of(bf.CRBF(4), 2, bent)
     with pytest.raises(bf.ConvergenceError, match="and falls no further; for an accuracy of 1e-17 it must be at most"):
         bf.solve_static(model, accuracy=1e-17)
+
+
+@pytest.mark.parametrize("turns", [8, 16])
+def test_limit_points_of_coarse_meshes_alone_are_refined_away(turns):
+    """A strip rolls up into full circles without end; two elements stop at a quarter of it."""
+    beam = auto()
+    rolled = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointMoment(beam.end, 2.0 * np.pi * turns * EI)])
+    assert np.hypot(*bf.solve_static(rolled).position(beam.end)[-1]) < 1e-4
+
+
+def test_limit_points_that_meshes_agree_on_are_told():
+    beam = bf.Beam(bf.Arc((0, 0), 1.0, np.radians(120), np.radians(60)), section=SECTION, material=STEEL)
+    arch = bf.Model([beam], [bf.Pin(beam.start), bf.Pin(beam.end)], [bf.PointForce(beam.at(0.5), (0.0, -200.0 * EI))])
+    with pytest.raises(bf.LimitPointError) as told:
+        bf.solve_static(arch)
+    finer = bf.Beam(beam.curve, 12, bf.CRBF(4), SECTION, STEEL)
+    loads = [bf.PointForce(finer.at(0.5), (0.0, -200.0 * EI))]
+    path = bf.trace_equilibrium(bf.Model([finer], [bf.Pin(finer.start), bf.Pin(finer.end)], loads), points=60)
+    assert told.value.load_factor == pytest.approx(path.limit_points[0].load_factor, rel=1e-2)

@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.assembly.system import system_of
 from beamfem.element.coordinates import Rotation
 from beamfem.element.fields import HIGHEST_ORDER, Lagrange
-from beamfem.errors import ConvergenceError, InputError, LockingWarning
+from beamfem.errors import ConvergenceError, InputError, LimitPointError, LockingWarning
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
@@ -36,6 +36,9 @@ _TRUST = 1.5  # how many times as large as its estimate an error may be
 _SAFETY = 2.0  # by how much the next mesh is to fall below the accuracy
 _FALLS = 0.5  # what a mesh is to leave of the error of the one before; the shares are of no use otherwise
 _MOST_STALLED = 3  # meshes divided evenly whose error is not the smallest so far: it is round-off
+# meshes that may have no solution, or end at limit points, before a finer one does not
+_MOST_LOST, _MOST_LIMITED = 2, 5
+_SAME_LOAD = 1e-2  # relative difference of limit points that two meshes agree on
 
 _Result = TypeVar("_Result")
 Shares = list[np.ndarray] | None
@@ -67,16 +70,24 @@ def refined_until(
 
     attempt: returns the result on a mesh, None if it is far too coarse, its relative error, and the shares (ne,) of the
     elements of each beam in it, see `error_shares`, or None for equal ones; most: number of meshes to try. Raises
-    ConvergenceError, whose `solution` is the last result, if none of them is fine enough.
+    ConvergenceError, whose `solution` is the last result, if none of them is fine enough, or that of a solve that fails
+    on finer meshes, too.
     """
     # a result lists its elements, and has beams with numbers of them to be saved
     model = remeshed(model, [_listed(mesh) for mesh in model.meshes])
     iterations = elements = stalled = number = 0
+    lost: list[ConvergenceError] = []
     before = smallest = np.inf
     evenly = False
     while number < most and stalled < _MOST_STALLED:
         number += 1
-        result, error, shares = attempt(model)
+        try:
+            result, error, shares = attempt(model)
+        except ConvergenceError as reason:
+            lost.append(reason)
+            if len(lost) > (_MOST_LIMITED if isinstance(reason, LimitPointError) else _MOST_LOST) or _agree(lost):
+                raise
+            result, error, shares = None, np.inf, None
         divided = sum(mesh.elements for mesh in model.meshes) > elements
         elements = sum(mesh.elements for mesh in model.meshes)
         if isinstance(result, Solution):
@@ -100,6 +111,12 @@ def refined_until(
         f"at most {accuracy / _TRUST:.2g}",
         result if isinstance(result, Solution) else None,
     )
+
+
+def _agree(lost: list[ConvergenceError]) -> bool:
+    """Return whether the last two meshes without a solution end at the same limit point."""
+    loads = [reason.load_factor for reason in lost[-2:] if isinstance(reason, LimitPointError)]
+    return len(loads) == 2 and abs(loads[1] - loads[0]) <= _SAME_LOAD * abs(loads[1])
 
 
 def _listed(mesh: BeamMesh) -> Beam:

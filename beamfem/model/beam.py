@@ -83,7 +83,8 @@ Tapered = Callable[[float], CrossSection]
 _SAMPLES = 32
 _ENDS = 1e-9  # of the length: tolerance of the ends of a mesh
 _ELEMENT = CRBF(order=4)
-_FIRST_ELEMENTS = 2  # of a beam whose mesh is refined to an accuracy
+_FIRST_ELEMENTS, _MOST_FIRST = 2, 256  # of a beam whose mesh is refined to an accuracy
+_LARGEST_TURN = 1.01 * np.pi  # of the axis within one of them: sections overlap where it turns further
 
 
 @dataclass(frozen=True, eq=False)
@@ -255,10 +256,21 @@ class Beam:
     def element_count(self) -> int:
         """Number of elements, before supports and loads divide any of them."""
         if self.elements == "auto":
-            return _FIRST_ELEMENTS
+            return self._first_elements
         if isinstance(self.elements, str):
             return len(cast(BSpline, self.curve).breaks) - 1
         return self.elements if isinstance(self.elements, int) else len(self.elements) - 1
+
+    @cached_property
+    def _first_elements(self) -> int:
+        """Number of equal elements that follow the axis, doubled until none of them turns too far."""
+        along = np.linspace(0.0, 1.0, 4 * _MOST_FIRST + 1)
+        tangent = self.curve.tangent(along * self.curve.length)
+        turned = np.append(0.0, np.cumsum(np.abs(np.diff(np.unwrap(np.arctan2(tangent[:, 1], tangent[:, 0]))))))
+        elements = _FIRST_ELEMENTS
+        while elements < _MOST_FIRST and np.diff(turned[:: 4 * _MOST_FIRST // elements]).max() > _LARGEST_TURN:
+            elements *= 2
+        return elements
 
     @property
     def shortest(self) -> float:

@@ -247,3 +247,15 @@ def test_limit_points_that_meshes_agree_on_are_told():
     loads = [bf.PointForce(finer.at(0.5), (0.0, -200.0 * EI))]
     path = bf.trace_equilibrium(bf.Model([finer], [bf.Pin(finer.start), bf.Pin(finer.end)], loads), points=60)
     assert told.value.load_factor == pytest.approx(path.limit_points[0].load_factor, rel=1e-2)
+
+
+@pytest.mark.parametrize("turns", [3, 6])
+def test_beams_without_elements_follow_curves_of_several_turns(turns):
+    axis = bf.Parametric(lambda u: ((1 + 0.1 * u) * np.cos(u), (1 + 0.1 * u) * np.sin(u)), 0.0, 2.0 * np.pi * turns)
+    found = []
+    for mesh in ({}, {"elements": 24 * turns, "element": bf.CRBF(8)}):
+        spiral = bf.Beam(axis, section=SECTION, material=STEEL, **mesh)
+        force = bf.PointForce(spiral.end, (0.0, 0.1 * EI / axis.length**2))
+        model = bf.Model([spiral], [bf.Clamp(spiral.start)], [force])
+        found.append(bf.solve_static(model).displacement(spiral.end)[-1])
+    assert np.linalg.norm(found[0] - found[1]) < 1e-4

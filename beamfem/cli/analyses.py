@@ -76,6 +76,11 @@ def _static(model: Model, asked: Sequence[float], steps: int = 1, at: Any = None
     rows = [k / steps for k in range(1, count("steps", steps))] if at is None else at
     if further := [value for value in asked if all(abs(value - row) > SAME for row in rows)]:
         rows = sorted([*rows, *further])
+    wanted = {name: keys.pop(name, None) for name in ("accuracy", "quantity")}
+    if wanted["accuracy"] is not None or model.automatic:
+        if at is not None or not further:
+            return solve_static(model, steps, at=None if at is None else rows, **wanted, **keys)
+        model = model.meshed(solve_static(model, steps, **wanted, **keys))
     if at is None:
         return warned(solve_through(model, rows, steps, resolved=True, **keys))
     return solve_static(model, steps, at=rows, **keys)

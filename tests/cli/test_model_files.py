@@ -10,6 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 import beamfem as bf
+from beamfem.cli.analyses import Analysis
 from beamfem.cli.app import app
 from beamfem.cli.model_file import read_model_file
 from beamfem.cli.toml_source import ModelFileError, read_source
@@ -409,3 +410,18 @@ def test_motors_in_hinges_and_at_points(tmp_path):
     file.write_text((ARM + DRIVEN).replace('["arm.end", "tip.start"]', '["arm.end"]'))
     with pytest.raises(ModelFileError, match="must be a point, or the two points of a hinge"):
         read_model_file(file)
+
+
+@pytest.mark.parametrize("keys", [{}, {"accuracy": 1e-6}, {"accuracy": 1e-6, "at": [0.5, 1.0]}])
+@pytest.mark.parametrize("asked", [(), (0.37,)])
+def test_static_analyses_of_files_refine_meshes_left_to_them(keys, asked):
+    found = []
+    for mesh in ({}, {"elements": 12, "element": bf.CRBF(8)}):
+        steel = bf.Material(2e11, 0.3, 7800.0)
+        beam = bf.Beam(bf.Line((0, 0), (1, 0)), section=bf.Rectangle(0.02, 0.01), material=steel, **mesh)
+        model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 5e4))])
+        solution = Analysis("static", keys if not mesh else {}).run(model, asked).solution
+        assert all(np.any(solution.at == load_factor) for load_factor in asked)
+        assert mesh or solution.error() < 1e-4
+        found.append(solution.displacement(beam.end)[-1])
+    assert np.linalg.norm(found[0] - found[1]) < 1e-4

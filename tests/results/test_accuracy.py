@@ -259,3 +259,38 @@ def test_beams_without_elements_follow_curves_of_several_turns(turns):
         model = bf.Model([spiral], [bf.Clamp(spiral.start)], [force])
         found.append(bf.solve_static(model).displacement(spiral.end)[-1])
     assert np.linalg.norm(found[0] - found[1]) < 1e-4
+
+
+def test_the_best_mesh_is_reported_where_no_accuracy_is_met():
+    """Finer meshes than those with errors of round-off end with larger ones, which were reported."""
+    beam = auto()
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 3.0 * EI))])
+    with pytest.raises(
+        bf.ConvergenceError, match=r"the estimated error is at best \d\.?\d*e-1[2-6] on \d+ meshes"
+    ) as caught:
+        bf.simulate(model, 0.01, 1e-3, accuracy=1e-17)
+    fine = bf.Beam(bf.Line((0, 0), (1, 0)), 16, bf.CRBF(8), SECTION, STEEL)
+    exact = bf.simulate(
+        bf.Model([fine], [bf.Clamp(fine.start)], [bf.PointForce(fine.end, (0.0, 3.0 * EI))]), 0.01, 1e-3
+    )
+    assert caught.value.solution.position(beam.end) == pytest.approx(exact.position(fine.end), abs=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("element", "elements", "expected"),
+    [(bf.ANCF(bf.Structural()), 8, 0.75), (bf.ShearRigid(), 8, 0.75), (bf.CRBF(1), 8, 1.0), (bf.CRBF(2), 8, 1.0)],
+)
+def test_the_effectivity_is_that_of_the_order(element, elements, expected):
+    """Halves of elements of order 2 leave a quarter of a small displacement's error, and a higher order leaves none."""
+
+    def small(beam):
+        return [
+            bf.PointForce(beam.end, (0.0, 1e-3 * EI)),
+            bf.DistributedLoad(beam, lambda s: (0, 1e-3 * EI * np.sin(9 * s))),
+        ]
+
+    beam, model = model_of(element, elements, small)
+    fine_beam, fine = model_of(bf.CRBF(8), 24, small) if expected == 1.0 else model_of(element, 256, small)
+    solution, exact = bf.solve_static(model), bf.solve_static(fine).displacement(fine_beam.end)[-1, 1]
+    true = exact - solution.displacement(beam.end)[-1, 1]
+    assert solution.error(beam.end)[1] / true == pytest.approx(expected, rel=0.01)

@@ -70,14 +70,15 @@ def refined_until(
 
     attempt: returns the result on a mesh, None if it is far too coarse, its relative error, and the shares (ne,) of the
     elements of each beam in it, see `error_shares`, or None for equal ones; most: number of meshes to try. Raises
-    ConvergenceError, whose `solution` is the last result, if none of them is fine enough, or that of a solve that fails
-    on finer meshes, too.
+    ConvergenceError if none of them is fine enough, whose `solution` is the result with the smallest error, or that of
+    a solve that fails on finer meshes, too.
     """
     # a result lists its elements, and has beams with numbers of them to be saved
     model = remeshed(model, [_listed(mesh) for mesh in model.meshes])
     iterations = elements = stalled = number = 0
     lost: list[ConvergenceError] = []
     before = smallest = np.inf
+    best: _Result | None = None
     evenly = False
     while number < most and stalled < _MOST_STALLED:
         number += 1
@@ -102,14 +103,16 @@ def refined_until(
         stalled = stalled + 1 if evenly and divided and smallest <= error < np.inf else 0
         # shares are those of stress resultants, which may be exact where the interpolated axis is not
         evenly = shares is None or (divided and error > _FALLS * before)
-        before, smallest = error, min(error, smallest)
+        before = error
+        if error < smallest:
+            smallest, best = error, result
         even = [np.full(mesh.elements, 1.0 / elements) for mesh in model.meshes]
         model = refined(model, even if evenly or shares is None else shares, _SAFETY * error / accuracy)
     falls = ", and falls no further" if stalled else ""
     raise ConvergenceError(
-        f"the estimated error is {error:.2g} after {number} meshes{falls}; for an accuracy of {accuracy:g} it must be "
-        f"at most {accuracy / _TRUST:.2g}",
-        result if isinstance(result, Solution) else None,
+        f"the estimated error is at best {smallest:.2g} on {number} meshes{falls}; for an accuracy of {accuracy:g} it "
+        f"must be at most {accuracy / _TRUST:.2g}",
+        best if isinstance(best, Solution) else None,
     )
 
 

@@ -77,7 +77,7 @@ def main() -> dict[str, Run]:
 
 
 def draw(runs: dict[str, Run], folder: Path) -> Path:
-    """Draw the torques and write an animation."""
+    """Draw the torques over time and return the path of the figure."""
     figure, axes = new_figure()
     for i, (name, found) in enumerate(runs.items()):
         axes.plot(found.motion.time, found.torque, color=COLOURS[i], label=name)

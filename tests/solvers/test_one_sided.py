@@ -131,3 +131,15 @@ def test_a_strip_is_held_by_floors_alone(places, level):
     sag = 5.0 * 3.0 / (384.0 * BENDING) if places == 2 else 0.0
     assert solution.displacement(strip.at(0.5))[-1, 1] == pytest.approx(level - sag, rel=1e-3, abs=1e-12)
     assert solution.stable[-1]
+
+
+@pytest.mark.parametrize("load", [bf.DistributedLoad, bf.PointForce])
+def test_a_strip_that_leaves_its_floors_is_told_to_be_held(load):
+    """It lifts off, or tips over the edge of the last floor."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 8, bf.CRBF(3), SECTION, STEEL)
+    acting = load(beam, (0.0, 5.0)) if load is bf.DistributedLoad else load(beam.end, (0.0, -5.0))
+    floors = [Floor(beam.at(k / 8), 0.0) for k in range(4)]
+    model = bf.Model([beam], [bf.Roller(beam.start, (1, 0))], [acting], connectors=floors)
+    words = "with its one-sided conditions open, beam 0 can move freely: it translates along y, .*: add a support"
+    with pytest.raises(bf.ConvergenceError, match=words):
+        bf.solve_static(model)

@@ -11,7 +11,7 @@ from scipy.sparse.linalg import ArpackError, eigsh
 from beamfem.assembly.connectors import Connector
 from beamfem.assembly.equations import STATICS
 from beamfem.assembly.rigid_velocity import RigidVelocity, set_rigid_rates
-from beamfem.assembly.system import System
+from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, FreeMotionError, InputError
 from beamfem.linalg.lapack import qr, solve_triangular
 from beamfem.model.beam import Point, beam_in_words
@@ -161,6 +161,15 @@ def require_support(system: System) -> None:
     found = free_motion(system)
     if found is not None:
         raise found.error
+
+
+def free_when_open(system: System) -> str:
+    """Return "; with its one-sided conditions open, ..." if they alone hold a model, nothing otherwise."""
+    if not len(system.connectors.one_sided):
+        return ""
+    others = [connector for connector in system.model.connectors if not is_one_sided(connector)]
+    found = free_motion(system_of(system.model.with_(connectors=others), static=True))
+    return "" if found is None else f"; with its one-sided conditions open, {found.error.reason}: add a support"
 
 
 def free_motion(system: System) -> FreeMotion | None:

@@ -15,6 +15,7 @@ from beamfem.progress import progress
 from beamfem.results.solution_checks import advice, may_turn_back, turned_back
 from beamfem.solve.continuation.steps import leaves_arc
 from beamfem.solve.newton.newton import Newton, NewtonResult, Termination, solve_equilibrium
+from beamfem.solve.start.mechanisms import free_when_open
 from beamfem.solve.statics.load_path import (
     BifurcatesError,
     OutOfReachError,
@@ -311,7 +312,8 @@ def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float],
             return
         raise ConvergenceError(
             f"the path could not be followed beyond load factor {done.reached:.6g}: {lost}"
-            + advice(done.model, done.state),
+            + advice(done.model, done.state)
+            + free_when_open(follower.system),
             done.solution(),
         ) from lost
 

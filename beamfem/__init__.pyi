@@ -1,4 +1,3 @@
-from .assembly.rigid_velocity import RigidVelocity as RigidVelocity
 from .convergence.study import converge as converge
 from .curves import Arc as Arc
 from .curves import BSpline as BSpline
@@ -28,6 +27,7 @@ from .element.forces import ContinuumMechanics as ContinuumMechanics
 from .element.forces import ElasticLine as ElasticLine
 from .element.forces import SplitContinuum as SplitContinuum
 from .element.forces import Structural as Structural
+from .equations.rigid_velocity import RigidVelocity as RigidVelocity
 from .errors import BeamfemError as BeamfemError
 from .errors import ChangedCodeWarning as ChangedCodeWarning
 from .errors import CoarseMeshWarning as CoarseMeshWarning

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 import beamfem as bf
-from beamfem.assembly import equation_numbering as layout
 from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.fields import Cubic, Lagrange
+from beamfem.equations import equation_numbering as layout
 
 FIELDS = (Cubic(), *(Lagrange(order) for order in (1, 2, 3, 5)))
 COORDINATES = (Gradients(), Rotation(), ShearFree(True), ShearFree(False))

@@ -12,8 +12,8 @@ from independent_balance import balance, floor_of
 from scipy.linalg import LinAlgError
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import STATICS, linearise
+from beamfem.equations.system import system_of
 from beamfem.results.postprocess import nodal_vectors
 from beamfem.results.solution import Statistics
 from beamfem.solve.modes.pencil import Pencil

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 import beamfem as bf
-from beamfem.assembly.system import system_of
+from beamfem.equations.system import system_of
 from beamfem.solve.motion.equations_of_motion import EquationsOfMotion
 
 _ROWS = 8

@@ -7,8 +7,8 @@ from complex_steps import cross, elastic, external, nodal_force, sprung, to_coor
 from scipy.linalg import LinAlgError
 
 import beamfem as bf
-from beamfem.assembly.equations import linearise
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import linearise
+from beamfem.equations.system import system_of
 from beamfem.results.nodal import axis, nodal_vectors
 
 # of all that acts; solvers are content with 1e-9 of the largest force

@@ -8,8 +8,8 @@ import numpy as np
 from recipes import Built, Recipe, View
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import STATICS, linearise
+from beamfem.equations.system import system_of
 
 SAME = 1e-6  # of the model: positions, and of a load factor
 FIRST_STEP = 3e-3  # load factor of the second point of the path that checks the first one

@@ -31,9 +31,9 @@ def run(
 ) -> None:
     """Solve a model file, print its outputs and write the files given as options."""
     with reported(as_json, quiet) as show, warnings.catch_warnings():
-        from beamfem.assembly.compilation_notice import announce_compilation
         from beamfem.cli.model_file import read_model_file
         from beamfem.cli.part_kinds import in_keys
+        from beamfem.equations.compilation_notice import announce_compilation
         from beamfem.io.description import describe
 
         # without lines of Python

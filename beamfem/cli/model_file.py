@@ -12,13 +12,13 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, ValidationInfo
 
-from beamfem.assembly.system import System
 from beamfem.cli.analyses import ANALYSES, CRITICAL, Analysis, Found
 from beamfem.cli.outputs import Output
 from beamfem.cli.part_kinds import ACTING, NAMED, TYPES, in_keys
 from beamfem.cli.report import print_table, summary
 from beamfem.cli.schema import Keyed, KeyFault, Kinds, Names, build, fault_at, part, reader, require_table, shown
 from beamfem.cli.toml_source import Source, read_source
+from beamfem.equations.system import System
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model

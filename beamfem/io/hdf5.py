@@ -10,8 +10,8 @@ from zlib import crc32
 
 import numpy as np
 
-from beamfem.assembly.callbacks import Deferred
 from beamfem.atomic_write import whole
+from beamfem.equations.callbacks import Deferred
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.assembly.callbacks import uninterrupted
 from beamfem.atomic_write import path_of, readable
+from beamfem.equations.callbacks import uninterrupted
 from beamfem.errors import FileError, InputError
 from beamfem.io.description import describe, rebuild
 from beamfem.io.hdf5 import (

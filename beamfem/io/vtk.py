@@ -17,8 +17,8 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from beamfem.assembly.callbacks import Deferred, uninterrupted
 from beamfem.atomic_write import make_folder, path_ending, path_of, whole
+from beamfem.equations.callbacks import Deferred, uninterrupted
 from beamfem.errors import FileError, InputError
 from beamfem.extras import needed_for
 from beamfem.io.hdf5 import write_hdf5

@@ -14,8 +14,8 @@ import numpy as np
 from scipy.sparse import coo_array, csc_array, csr_array
 from scipy.sparse.linalg import SuperLU
 
-from beamfem.assembly.system import System
 from beamfem.cached_properties import cached_property
+from beamfem.equations.system import System
 from beamfem.linalg.lapack import LinAlgError, superlu
 from beamfem.linalg.negative_eigenvalues import negative_eigenvalues
 from beamfem.linalg.tangent import Rotated, Stresses, Tangent, rotation_to_normals

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.applied_loads import LoadsAt
-from beamfem.assembly.equations import (
+from beamfem.equations.applied_loads import LoadsAt
+from beamfem.equations.equations import (
     ROUND_OFF,
     STATICS,
     linearise,
@@ -16,9 +16,9 @@ from beamfem.assembly.equations import (
     sizes,
     with_stresses,
 )
-from beamfem.assembly.imposed_forces import imposed_forces
-from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
-from beamfem.assembly.system import Proven, System
+from beamfem.equations.imposed_forces import imposed_forces
+from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
+from beamfem.equations.system import Proven, System
 
 _CORRECTIONS = 12
 LAST_DIGITS = 1e-7  # of the model size: a state with a larger correction is wrong in more than its last digits

@@ -5,10 +5,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from beamfem.assembly.applied_loads import shape_tables
-from beamfem.assembly.frame_inertia import seen_from_rest
-from beamfem.assembly.system import System
 from beamfem.element.fields import cross
+from beamfem.equations.applied_loads import shape_tables
+from beamfem.equations.frame_inertia import seen_from_rest
+from beamfem.equations.system import System
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import inertia_points, length_points
 from beamfem.physics.compiled_connections import in_python
@@ -22,7 +22,7 @@ from beamfem.results.solution_system import loading
 class Rows:
     """Rows of a solution and the forces that act in them.
 
-    p, v, a (steps, n): seen from rest, see `assembly.frame_inertia`; body (steps, beams, 4): see `System.body`;
+    p, v, a (steps, n): seen from rest, see `equations.frame_inertia`; body (steps, beams, 4): see `System.body`;
     values: for each block (steps, nl, 3), see `Actions`; imposing (steps, k): factors of the loads that impose strains.
     """
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.cached_properties import cached_property
+from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.model.load_base import Load, factor
 from beamfem.reprs import brief
 from beamfem.results.displacements import Displacements

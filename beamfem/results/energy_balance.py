@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamfem.assembly.connectors import Connectors
-from beamfem.assembly.equations import INERTIA, ROUND_OFF, linearise, sizes
-from beamfem.assembly.system import System, system_of
+from beamfem.equations.connectors import Connectors
+from beamfem.equations.equations import INERTIA, ROUND_OFF, linearise, sizes
+from beamfem.equations.system import System, system_of
 from beamfem.kernels.motion_record import MotionLimits
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.load_base import CompositeLoad

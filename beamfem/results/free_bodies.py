@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from beamfem.assembly.blocks import classes_of
-from beamfem.assembly.stress_resultants import elastic_forces
 from beamfem.element.fields import cross, dot
+from beamfem.equations.blocks import classes_of
+from beamfem.equations.stress_resultants import elastic_forces
 from beamfem.kernels.block import Block
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import interpolate

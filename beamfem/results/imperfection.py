@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.assembly.system import system_of
 from beamfem.curves import Chain, Curve, spline_through_hermite
 from beamfem.element.coordinates import across
+from beamfem.equations.system import system_of
 from beamfem.errors import InputError
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.along_beam import functions_along

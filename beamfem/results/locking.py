@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.assembler import Equations
-from beamfem.assembly.blocks import build_block
-from beamfem.assembly.equations import STATICS, linearise, predicted_stresses, residual
-from beamfem.assembly.system import System, system_of
 from beamfem.element.coordinates import KINEMATICS, Gradients, ShearFree, labels
 from beamfem.element.element import Element, has_stations
+from beamfem.equations.assembler import Equations
+from beamfem.equations.blocks import build_block
+from beamfem.equations.equations import STATICS, linearise, predicted_stresses, residual
+from beamfem.equations.system import System, system_of
 from beamfem.errors import LockingWarning
 from beamfem.kernels.block import GREEN_LAGRANGE, Block
 from beamfem.mesh.beam_mesh import BeamMesh

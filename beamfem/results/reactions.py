@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beamfem.assembly.connectors import Connector, Connectors, Motion
-from beamfem.assembly.equations import residual
-from beamfem.assembly.frame_inertia import seen_from_rest
-from beamfem.assembly.model_coordinates import COORDINATES, coordinate_of
+from beamfem.equations.connectors import Connector, Connectors, Motion
+from beamfem.equations.equations import residual
+from beamfem.equations.frame_inertia import seen_from_rest
+from beamfem.equations.model_coordinates import COORDINATES, coordinate_of
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
 from beamfem.model.contribution import Contribution

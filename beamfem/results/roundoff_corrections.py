@@ -1,15 +1,15 @@
 """Corrections smaller than the last digit of the coordinates of a static solution, and their effect on its forces.
 
 In a stiff part of a model the last digit of a position may amount to a force larger than the applied loads. The state
-is still the equilibrium; the correction is found from the residual (`assembly.round_off.remainder`) and stored apart.
+is still the equilibrium; the correction is found from the residual (`equations.round_off.remainder`) and stored apart.
 """
 
 from collections.abc import Callable
 
 import numpy as np
 
-from beamfem.assembly.differences import changed, widths
-from beamfem.assembly.system import system_of
+from beamfem.equations.differences import changed, widths
+from beamfem.equations.system import system_of
 from beamfem.precision.roundoff import digits_of, remainder
 from beamfem.results.solution import Solution
 

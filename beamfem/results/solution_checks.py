@@ -7,9 +7,9 @@ from typing import TypeVar
 
 import numpy as np
 
-from beamfem.assembly.system import System
 from beamfem.curves import Line
 from beamfem.element.element import Element
+from beamfem.equations.system import System
 from beamfem.errors import CuspWarning, EnergyWarning, InputError, LargeStrainWarning, LockingWarning, warn
 from beamfem.kernels.block import ELASTIC_LINE, GREEN_LAGRANGE, STRUCTURAL
 from beamfem.kernels.neighbouring_nodes import LOCKED, STRAINED, exceeds

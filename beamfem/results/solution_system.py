@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.assembly.system import System, system_of
+from beamfem.equations.system import System, system_of
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.results.solution import Solution
 

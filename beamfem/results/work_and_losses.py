@@ -5,9 +5,9 @@ from typing import Any, cast
 
 import numpy as np
 
-from beamfem.assembly.connectors import Connectors, follows_time
-from beamfem.assembly.equations import residual
-from beamfem.assembly.system import System, system_of
+from beamfem.equations.connectors import Connectors, follows_time
+from beamfem.equations.equations import residual
+from beamfem.equations.system import System, system_of
 from beamfem.model.load_base import CompositeLoad, Load
 from beamfem.results.reactions import energies_of
 from beamfem.results.solution import Solution

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.connectors import (
+from beamfem.equations.connectors import (
     AGREE,
     COMPLEX_STEP,
     ROUND_OFF,

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.assembly.callbacks import uninterrupted
-from beamfem.assembly.system import system_of
+from beamfem.equations.callbacks import uninterrupted
+from beamfem.equations.system import system_of
 from beamfem.errors import InputError
 from beamfem.model.model import Model
 from beamfem.results import extremes

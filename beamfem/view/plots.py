@@ -3,8 +3,8 @@
 from os import PathLike
 from typing import Any
 
-from beamfem.assembly.callbacks import uninterrupted
 from beamfem.atomic_write import path_of, whole
+from beamfem.equations.callbacks import uninterrupted
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
 

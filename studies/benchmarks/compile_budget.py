@@ -25,7 +25,7 @@ _IMPORTS += "b = time.process_time(); import beamfem; c = time.process_time(); p
 def first_solves() -> dict[str, Any]:
     """Solve first problems one after the other; return seconds of each and of each kernel that was compiled."""
     import beamfem as bf
-    from beamfem.assembly.compilation_notice import compiled_here
+    from beamfem.equations.compilation_notice import compiled_here
 
     section, material = bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0)
 

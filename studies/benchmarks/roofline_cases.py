@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 import beamfem as bf
-from beamfem.assembly.assembler import Assembler
-from beamfem.assembly.system import System, system_of
+from beamfem.equations.assembler import Assembler
+from beamfem.equations.system import System, system_of
 from beamfem.kernels.block import Block, Layout
 from studies.benchmarks.peer_cases import STRUCTURAL, pendulum
 

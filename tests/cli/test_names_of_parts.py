@@ -9,7 +9,7 @@ import beamfem as bf
 
 ROOT = Path(bf.__file__).parent
 BASES = ROOT / "parts" / "at_points.py"
-FILES = sorted(path for folder in ("assembly", "kernels") for path in (ROOT / folder).rglob("*.py"))
+FILES = sorted(path for folder in ("equations", "kernels") for path in (ROOT / folder).rglob("*.py"))
 
 
 def names_of_parts():

@@ -11,9 +11,9 @@ from scipy.linalg import eig, eigh
 from section_laws import RambergOsgood
 
 import beamfem as bf
-from beamfem.assembly.equations import linearise, residual
-from beamfem.assembly.system import system_of
 from beamfem.cli.model_file import read_model_file
+from beamfem.equations.equations import linearise, residual
+from beamfem.equations.system import system_of
 from beamfem.io.parts_in_words import beam_in_words
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.solve.motion.initial_velocity import start_velocity

@@ -7,8 +7,8 @@ from scipy.special import ellipk
 from test_path import LIMIT_HEIGHT, SOFT, bar_force
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import STATICS, linearise
+from beamfem.equations.system import system_of
 from beamfem.solve.modes.pencil import UNROTATED
 from beamfem.solve.paths.trace import trace_equilibrium
 

@@ -19,9 +19,9 @@ from connectors import (
 from section_laws import LinearLaw
 
 import beamfem as bf
-from beamfem.assembly import equation_numbering as layout
-from beamfem.assembly.equations import linearise
-from beamfem.assembly.system import System, system_of
+from beamfem.equations import equation_numbering as layout
+from beamfem.equations.equations import linearise
+from beamfem.equations.system import System, system_of
 from beamfem.linalg.bordered import Border, BorderedFactors, BorderedTangent
 from beamfem.linalg.lapack import LinAlgError
 from beamfem.linalg.tangent import UNROTATED, BandTangent

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import ArpackNoConvergence
 
 import beamfem as bf
-from beamfem.assembly.system import system_of
+from beamfem.equations.system import system_of
 from beamfem.linalg import eigenpairs
 from beamfem.solve.continuation.steps import Refused
 from beamfem.solve.modes.pencil import Pencil

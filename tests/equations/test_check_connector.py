@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly.connectors import connectors_of
+from beamfem.equations.connectors import connectors_of
 from beamfem.testing import check_connector
 from tests.connectors import STEEL, Anchor, RigidLink, SpringDamper, beam
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly.equations import residual
-from beamfem.assembly.system import System
+from beamfem.equations.equations import residual
+from beamfem.equations.system import System
 from beamfem.precision.roundoff import round_off_floor
 
 

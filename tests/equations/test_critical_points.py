@@ -9,8 +9,8 @@ from numpy.linalg import LinAlgError
 from test_path import cantilever
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise
-from beamfem.assembly.system import System
+from beamfem.equations.equations import STATICS, linearise
+from beamfem.equations.system import System
 from beamfem.results.status import Statistics
 from beamfem.solve.continuation import bifurcations as found_by
 from beamfem.solve.continuation.continuation import begin

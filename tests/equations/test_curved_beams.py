@@ -6,9 +6,9 @@ from conftest import ELEMENTS, identify
 from test_kernels import dense
 
 import beamfem as bf
-from beamfem.assembly.equations import linearise, residual
-from beamfem.assembly.model_coordinates import coordinate_columns
-from beamfem.assembly.system import System
+from beamfem.equations.equations import linearise, residual
+from beamfem.equations.model_coordinates import coordinate_columns
+from beamfem.equations.system import System
 from beamfem.mesh.reference import energy_points, reference_axis
 from beamfem.results.nodal import axis, nodal_vectors, nodal_velocities
 from beamfem.results.postprocess import strain_energy

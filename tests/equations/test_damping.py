@@ -7,8 +7,8 @@ from integrators import Radau
 from section_laws import RambergOsgood
 
 import beamfem as bf
-from beamfem.assembly.equations import linearise, residual
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import linearise, residual
+from beamfem.equations.system import system_of
 from beamfem.results.postprocess import strain_energy
 
 TIME = 0.02

@@ -8,9 +8,9 @@ import pytest
 from connectors import Barrier
 
 import beamfem as bf
-from beamfem.assembly.data_derivatives import residual_derivative
-from beamfem.assembly.equations import STATICS, linearise, residual
-from beamfem.assembly.system import system_of
+from beamfem.equations.data_derivatives import residual_derivative
+from beamfem.equations.equations import STATICS, linearise, residual
+from beamfem.equations.system import system_of
 from beamfem.parts.parts_by_role import listed_parts
 from beamfem.section.moments import StiffnessSection
 

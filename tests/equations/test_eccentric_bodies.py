@@ -7,7 +7,7 @@ import pytest
 from eccentric import Eccentric
 
 import beamfem as bf
-from beamfem.assembly.system import system_of
+from beamfem.equations.system import system_of
 
 LIGHT = bf.Material(youngs_modulus=2.1e11, poisson_ratio=0.3, density=1e-3)
 SQUARE = bf.Rectangle(0.01, 0.01)

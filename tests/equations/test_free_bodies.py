@@ -5,7 +5,7 @@ import pytest
 
 import beamfem as bf
 import beamfem.solve.start.mechanisms
-from beamfem.assembly.system import System
+from beamfem.equations.system import System
 from beamfem.solve.start.mechanisms import Conditions, bodies_of, mechanisms
 
 

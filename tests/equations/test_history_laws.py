@@ -22,8 +22,8 @@ from history_laws import (
 from section_laws import LinearLaw
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise, residual
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import STATICS, linearise, residual
+from beamfem.equations.system import system_of
 from beamfem.section import StiffnessSection
 from tests.connectors import Rest
 

@@ -8,8 +8,8 @@ from history_laws import LIGHT, SECTION, YIELDING, Creeping, Viscous, there_and_
 from law_elements import LINE, LOBATTO, NEW, TAKEN, arm, at_tip, ids
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise, residual
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import STATICS, linearise, residual
+from beamfem.equations.system import system_of
 
 every = pytest.mark.parametrize("element", TAKEN, **ids)
 new = pytest.mark.parametrize("element", NEW, **ids)

@@ -5,9 +5,9 @@ import pytest
 from integrators import Radau
 
 import beamfem as bf
-from beamfem.assembly.equations import residual
-from beamfem.assembly.system import system_of
 from beamfem.cli.model_file import read_model_file
+from beamfem.equations.equations import residual
+from beamfem.equations.system import system_of
 
 STEEL = bf.Material(2e11, 0.3, 7800.0, thermal_expansion=1.2e-5)
 SQUARE = bf.Rectangle(0.01, 0.01)

@@ -6,10 +6,10 @@ from conftest import USUAL, beam, identify
 from section_laws import RambergOsgood
 
 import beamfem as bf
-from beamfem.assembly.equations import linearise, residual
-from beamfem.assembly.system import system_of
 from beamfem.element.coordinates import Gradients, ShearFree
 from beamfem.element.fields import Lagrange
+from beamfem.equations.equations import linearise, residual
+from beamfem.equations.system import system_of
 from beamfem.io.vtk_cells import bodies
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics

@@ -6,8 +6,8 @@ from scipy.linalg import eigh
 from test_snap import toggle
 
 import beamfem as bf
-from beamfem.assembly.equations import INERTIA, STATICS, linearise
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import INERTIA, STATICS, linearise
+from beamfem.equations.system import system_of
 from beamfem.solve.modes.pencil import UNROTATED
 from beamfem.solve.statics import snap_through as snap
 

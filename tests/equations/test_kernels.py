@@ -6,9 +6,9 @@ from conftest import ELEMENTS, beam, identify
 from scipy.linalg import solve_banded
 
 import beamfem as bf
-from beamfem.assembly.equations import linearise, predicted_stresses
-from beamfem.assembly.model_coordinates import coordinate_columns
-from beamfem.assembly.system import System
+from beamfem.equations.equations import linearise, predicted_stresses
+from beamfem.equations.model_coordinates import coordinate_columns
+from beamfem.equations.system import System
 from beamfem.linalg.tangent import BandTangent, _solve_pivoted
 from beamfem.mesh.reference import stations
 from beamfem.results.nodal import axis, nodal_vectors

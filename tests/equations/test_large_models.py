@@ -10,8 +10,8 @@ from scipy.sparse.linalg import splu
 from test_sparse import MATERIAL, SECTION, grid, tangent_at
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise
-from beamfem.assembly.system import System
+from beamfem.equations.equations import STATICS, linearise
+from beamfem.equations.system import System
 from beamfem.mesh.beam_grid import Grid, distances, make_grid, make_grids, nearest
 from beamfem.model.beam import reference_positions
 from beamfem.results import neighbouring_beams, postprocess

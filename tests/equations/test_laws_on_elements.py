@@ -9,9 +9,9 @@ from law_elements import LINE, LOBATTO, NEW, REFUSED, SHEARING, TAKEN, arm, at_t
 from section_laws import LinearLaw, RambergOsgood, Softening
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise, residual
-from beamfem.assembly.strain_rates import strain_rates
-from beamfem.assembly.system import System, system_of
+from beamfem.equations.equations import STATICS, linearise, residual
+from beamfem.equations.strain_rates import strain_rates
+from beamfem.equations.system import System, system_of
 from beamfem.results.postprocess import strain_energy
 from beamfem.section import StiffnessSection
 

@@ -5,8 +5,8 @@ import pytest
 from scipy.linalg import eigh
 
 import beamfem as bf
-from beamfem.assembly.equations import residual
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import residual
+from beamfem.equations.system import system_of
 from tests.eccentric import Eccentric
 
 STEEL = bf.Material(2.1e11, 0.3, 7850.0)

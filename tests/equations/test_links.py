@@ -5,8 +5,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise, residual
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import STATICS, linearise, residual
+from beamfem.equations.system import system_of
 from tests.connectors import (
     AREA,
     BENDING,

@@ -6,9 +6,9 @@ from conftest import beam as small_beam
 from shooting import Member, solved
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise, residual
-from beamfem.assembly.system import System
 from beamfem.element.coordinates import Gradients
+from beamfem.equations.equations import STATICS, linearise, residual
+from beamfem.equations.system import System
 
 
 def cantilever(loads, supports=(), slenderness=5000, elements=12, order=4):

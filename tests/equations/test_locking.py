@@ -9,10 +9,10 @@ from conftest import COORDINATES, ELEMENTS, FORCES, identify
 from shooting import Member, solved
 
 import beamfem as bf
-from beamfem.assembly.equations import linearise
-from beamfem.assembly.system import System
 from beamfem.element.coordinates import Gradients, ShearFree
 from beamfem.element.fields import Cubic
+from beamfem.equations.equations import linearise
+from beamfem.equations.system import System
 from beamfem.kernels import block
 from beamfem.results.nodal import axis, nodal_vectors
 from beamfem.results.postprocess import strain_energy

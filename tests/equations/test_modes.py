@@ -6,8 +6,8 @@ from scipy.linalg import eigh
 from scipy.sparse.linalg import ArpackNoConvergence
 
 import beamfem as bf
-from beamfem.assembly.equations import INERTIA, STATICS, linearise
-from beamfem.assembly.system import System, system_of
+from beamfem.equations.equations import INERTIA, STATICS, linearise
+from beamfem.equations.system import System, system_of
 from beamfem.linalg.eigenpairs import first_that_works, general_pairs, nothing_known
 from beamfem.solve.modes.modes import _rates
 from beamfem.solve.modes.pencil import UNROTATED, Pencil

@@ -5,7 +5,7 @@ import pytest
 from connectors import Anchor, RigidLink
 
 import beamfem as bf
-from beamfem.assembly.system import System
+from beamfem.equations.system import System
 from beamfem.solve.motion.constraints import impact
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly.system import system_of
+from beamfem.equations.system import system_of
 from beamfem.solve.start.functions_of_time import functions_of_time
 from tests.own_parts import Bracket, Growth, Guide, HalfWave, Traction, Weld
 

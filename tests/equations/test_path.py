@@ -5,7 +5,7 @@ import pytest
 from scipy.special import ellipk
 
 import beamfem as bf
-from beamfem.assembly.system import System
+from beamfem.equations.system import System
 from beamfem.solve.continuation.bifurcations import bifurcations
 from beamfem.solve.continuation.continuation import begin
 from beamfem.solve.continuation.critical_points import Segment

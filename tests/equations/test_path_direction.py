@@ -8,7 +8,7 @@ from judged import outcome, reference
 from random_models import random_recipe
 
 import beamfem as bf
-from beamfem.assembly.system import system_of
+from beamfem.equations.system import system_of
 from beamfem.solve.statics.load_steps import leaves_path
 
 

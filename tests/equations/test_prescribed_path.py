@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise, load_slope
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import STATICS, linearise, load_slope
+from beamfem.equations.system import system_of
 
 
 def _strip(slenderness, element, unit=1.0):

@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise, residual
-from beamfem.assembly.system import System
+from beamfem.equations.equations import STATICS, linearise, residual
+from beamfem.equations.system import System
 from beamfem.forms import axis_basis, nodal_numbers, pressure_load
 from beamfem.results.nodal import nodal_vectors, nodal_velocities
 from beamfem.solve.newton.newton import NewtonResult, solve_equilibrium

@@ -8,8 +8,8 @@ from recipes import View
 from strategies import CONSERVATIVE, SHARING, between, recipes, views
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import STATICS, linearise
+from beamfem.equations.system import system_of
 from beamfem.solve.statics.statics import solve_through
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*unstable equilibria:beamfem.errors.UnstableWarning")

@@ -7,9 +7,9 @@ from integrated import Cantilever
 from scipy.integrate import quad
 
 import beamfem as bf
-from beamfem.assembly.equations import residual
-from beamfem.assembly.model_coordinates import coordinate_columns
-from beamfem.assembly.system import System
+from beamfem.equations.equations import residual
+from beamfem.equations.model_coordinates import coordinate_columns
+from beamfem.equations.system import System
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 SOFT = bf.Material(2e5, 0.3, 1000.0)

@@ -5,8 +5,8 @@ import pytest
 from scipy.linalg import eigh
 
 import beamfem as bf
-from beamfem.assembly.equations import INERTIA, STATICS, linearise, residual
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import INERTIA, STATICS, linearise, residual
+from beamfem.equations.system import system_of
 from beamfem.linalg.tangent import UNROTATED
 
 STEEL = bf.Material(2.1e11, 0.3, 7850.0)

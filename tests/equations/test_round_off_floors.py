@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise
-from beamfem.assembly.model_coordinates import coordinate_columns
-from beamfem.assembly.system import System
+from beamfem.equations.equations import STATICS, linearise
+from beamfem.equations.model_coordinates import coordinate_columns
+from beamfem.equations.system import System
 from beamfem.precision.roundoff import _digits, remainder
 
 SECTION, SOFT = bf.Rectangle(0.1, 0.1), bf.Material(1e6, 0.3, 1.0)

@@ -7,8 +7,8 @@ import pytest
 from section_laws import LinearLaw, RambergOsgood, Softening
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise, residual
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import STATICS, linearise, residual
+from beamfem.equations.system import system_of
 from beamfem.section import StiffnessSection
 from beamfem.testing import check_law
 

@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import dblquad, quad
 
 import beamfem as bf
-from beamfem.assembly.equations import INERTIA, linearise
-from beamfem.assembly.system import System
+from beamfem.equations.equations import INERTIA, linearise
+from beamfem.equations.system import System
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 ALUMINIUM = bf.Material(7e10, 0.33, 2700.0)

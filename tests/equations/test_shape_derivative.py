@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise, residual
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import STATICS, linearise, residual
+from beamfem.equations.system import system_of
 
 SECTION, MATERIAL = bf.Rectangle(0.02, 0.04), bf.Material(2e9, 0.3, 1000.0)
 NODES = np.array([[0.0, 0.0], [0.5, 0.2], [1.1, 0.3], [1.6, 0.1]])

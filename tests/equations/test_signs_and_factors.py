@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly.model_coordinates import coordinate_columns
-from beamfem.assembly.system import System
+from beamfem.equations.model_coordinates import coordinate_columns
+from beamfem.equations.system import System
 from beamfem.mesh.reference import reference_axis
 from beamfem.results.nodal import axis, nodal_vectors
 from beamfem.results.postprocess import green_strain

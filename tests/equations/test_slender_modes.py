@@ -7,7 +7,7 @@ import pytest
 from scipy.sparse.linalg import ArpackNoConvergence
 
 import beamfem as bf
-from beamfem.assembly.system import Proven, system_of
+from beamfem.equations.system import Proven, system_of
 from beamfem.linalg import eigenpairs
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)

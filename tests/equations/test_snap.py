@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly.system import System, system_of
+from beamfem.equations.system import System, system_of
 from beamfem.solve.continuation.continuation import begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 from beamfem.solve.continuation.steps import take_step

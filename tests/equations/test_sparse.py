@@ -9,10 +9,10 @@ from conftest import beam as small_beam
 from scipy.sparse import csc_array
 
 import beamfem as bf
-from beamfem.assembly.equation_numbering import Unknowns
-from beamfem.assembly.equations import STATICS, linearise
-from beamfem.assembly.system import System
 from beamfem.element.fields import cross
+from beamfem.equations.equation_numbering import Unknowns
+from beamfem.equations.equations import STATICS, linearise
+from beamfem.equations.system import System
 from beamfem.linalg.lapack import LinAlgError, superlu
 from beamfem.mesh.reference import energy_points
 from beamfem.results.nodal import axis, nodal_vectors
@@ -24,7 +24,7 @@ MATERIAL = bf.Material(1e7, 0.3, 1000.0)
 @pytest.fixture
 def force_sparse(monkeypatch):
     """Return a function that makes every model from now on sparse."""
-    return lambda: monkeypatch.setattr("beamfem.assembly.equation_numbering._WIDEST_BAND", -1)
+    return lambda: monkeypatch.setattr("beamfem.equations.equation_numbering._WIDEST_BAND", -1)
 
 
 def portal(loads=True):

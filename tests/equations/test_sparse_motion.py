@@ -5,8 +5,8 @@ import pytest
 from test_sparse import MATERIAL, SECTION, grid
 
 import beamfem as bf
-from beamfem.assembly.equations import tangent_of
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import tangent_of
+from beamfem.equations.system import system_of
 from beamfem.solve.motion import coupled_stages
 
 

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from shooting import Member, solved
 
 import beamfem as bf
-from beamfem.assembly.system import System
+from beamfem.equations.system import System
 from beamfem.solve.newton.newton import NewtonResult, Termination
 from beamfem.solve.statics.load_steps import skips_limit_points
 from beamfem.solve.statics.static_record import StaticRecord

@@ -8,8 +8,8 @@ from scipy.sparse import csr_array
 from shooting import Member, solved
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import STATICS
+from beamfem.equations.system import system_of
 from beamfem.linalg.negative_eigenvalues import negative_eigenvalues
 from beamfem.precision.roundoff import lost_digits
 

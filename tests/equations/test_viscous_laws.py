@@ -8,9 +8,9 @@ from connectors import PointMass, RigidLink
 from history_laws import SECTION, YIELDING, Creeping, Viscous, arm
 
 import beamfem as bf
-from beamfem.assembly.equations import linearise
-from beamfem.assembly.system import system_of
-from beamfem.assembly.viscosity import viscous_stiffness, viscous_tangent
+from beamfem.equations.equations import linearise
+from beamfem.equations.system import system_of
+from beamfem.equations.viscosity import viscous_stiffness, viscous_tangent
 from beamfem.section import StiffnessSection
 from beamfem.section.law import ConstitutiveLaw
 from beamfem.solve.motion.start_acceleration import initial_acceleration

@@ -10,7 +10,7 @@ import pytest
 from connectors import SpringDamper
 
 import beamfem as bf
-from beamfem.assembly.system import Proven, System, shared_table, system_of
+from beamfem.equations.system import Proven, System, shared_table, system_of
 
 STEEL = bf.Material(2.1e11, 0.3, 7850.0, thermal_expansion=1.2e-5)
 

@@ -15,8 +15,8 @@ from section_laws import LinearLaw
 from typer.testing import CliRunner
 
 import beamfem as bf
-from beamfem.assembly.callbacks import Deferred
 from beamfem.cli.app import app
+from beamfem.equations.callbacks import Deferred
 from beamfem.solve.motion.compiled_steps import CompiledSteps
 from beamfem.solve.statics import load_steps
 

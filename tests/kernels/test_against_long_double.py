@@ -26,8 +26,8 @@ from numpy.lib.stride_tricks import as_strided
 from scipy.linalg import solve_banded
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise, linearise_after
-from beamfem.assembly.system import Proven, system_of
+from beamfem.equations.equations import STATICS, linearise, linearise_after
+from beamfem.equations.system import Proven, system_of
 from beamfem.kernels.band import band
 from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 from beamfem.precision.roundoff import LOSES, lost_digits

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly.equations import STATICS, linearise
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import STATICS, linearise
+from beamfem.equations.system import system_of
 from beamfem.kernels.band import KNOWN, band
 from beamfem.kernels.bidirectional_lu import bidirectional_lu
 
@@ -25,7 +25,7 @@ def matrix(n, w, rng, sign=1.0):
 
 
 def whole_band(n, w):
-    """Return the envelope of a band without zeros in it, see `assembly.layout.reaches`."""
+    """Return the envelope of a band without zeros in it, see `equations.layout.reaches`."""
     down = np.minimum(np.arange(n) + w + 1, n).astype(np.int32)
     return np.array([down, down[::-1]])
 

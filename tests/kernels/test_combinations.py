@@ -8,9 +8,9 @@ from conftest import ELEMENTS, identify
 from integrated import Cantilever
 
 import beamfem as bf
-from beamfem.assembly.equations import residual
-from beamfem.assembly.model_coordinates import coordinate_columns
-from beamfem.assembly.system import System
+from beamfem.equations.equations import residual
+from beamfem.equations.model_coordinates import coordinate_columns
+from beamfem.equations.system import System
 from beamfem.results.postprocess import nodal_vectors
 from beamfem.results.solution import Solution, Statistics
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from beamfem.assembly.routines import MEASURE_PASSES
 from beamfem.element.fields import Axis
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, Structural
+from beamfem.equations.routines import MEASURE_PASSES
 from beamfem.kernels import point
 from beamfem.kernels.block import ELASTIC_LINE, GREEN_LAGRANGE, STRUCTURAL
 from beamfem.kernels.record import ROW

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly.system import system_of
+from beamfem.equations.system import system_of
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly.assembler import Assembler
-from beamfem.assembly.equations import linearise, predicted_stresses, residual
-from beamfem.assembly.system import System
+from beamfem.equations.assembler import Assembler
+from beamfem.equations.equations import linearise, predicted_stresses, residual
+from beamfem.equations.system import System
 
 KINDS = (bf.BilinearCRBF(), bf.BilinearANCF(), bf.CRBF(3), bf.CRBF(2), bf.ANCF(), bf.ANCFCRBF(), bf.ShearRigid())
 WEIGHTS = {"statics": (1.0, 0.0, 0.0), "motion": (1.0, 30.0, 900.0)}

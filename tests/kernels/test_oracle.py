@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from beamfem import ContinuumMechanics, Element, Gravity, Line, Material, Model, Pin, Section
-from beamfem.assembly.equations import INERTIA, STATICS, linearise, residual
-from beamfem.assembly.system import System
 from beamfem.element.coordinates import Gradients, Rotation, labels
 from beamfem.element.fields import Cubic, Field, Lagrange
+from beamfem.equations.equations import INERTIA, STATICS, linearise, residual
+from beamfem.equations.system import System
 from beamfem.forms import (
     beam_basis,
     elastic_force,

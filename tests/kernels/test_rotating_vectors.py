@@ -5,8 +5,8 @@ import pytest
 from conftest import USUAL, beam, identify
 
 import beamfem as bf
-from beamfem.assembly.rotating_vectors import runs_of
-from beamfem.assembly.system import system_of
+from beamfem.equations.rotating_vectors import runs_of
+from beamfem.equations.system import system_of
 
 
 def spread(runs):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly import assembler, band_workspace
+from beamfem.equations import assembler, band_workspace
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 

@@ -7,7 +7,7 @@ import pytest
 from fuzz_steps import faults_of_steps
 
 import beamfem as bf
-from beamfem.assembly.system import system_of
+from beamfem.equations.system import system_of
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.kernels.motion_steps import check_convergence
 from beamfem.solve.motion.compiled_steps import CompiledSteps

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly.equations import residual
-from beamfem.assembly.system import System
+from beamfem.equations.equations import residual
+from beamfem.equations.system import System
 from beamfem.results.element_loads import acting_on, rows_of
 from beamfem.results.nodal import nodal_vectors
 from beamfem.results.solution import Solution

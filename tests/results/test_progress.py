@@ -8,7 +8,7 @@ import pytest
 from bad_inputs import CANTILEVER
 
 import beamfem as bf
-from beamfem.assembly.compilation_notice import announce_compilation
+from beamfem.equations.compilation_notice import announce_compilation
 
 
 class Terminal(io.StringIO):
@@ -57,8 +57,8 @@ def test_a_pipe_is_shown_no_bar(capsys):
 def test_the_first_solve_says_once_that_kernels_are_compiled(solve, folder, words, monkeypatch):
     terminal = a_terminal(monkeypatch)
     monkeypatch.setattr("beamfem.progress._held", ContextVar("held", default=True))  # no bars
-    monkeypatch.setattr("beamfem.assembly.compilation_notice.kept", lambda: 0)
-    monkeypatch.setattr("beamfem.assembly.compilation_notice.cache_folder", lambda: folder)
+    monkeypatch.setattr("beamfem.equations.compilation_notice.kept", lambda: 0)
+    monkeypatch.setattr("beamfem.equations.compilation_notice.cache_folder", lambda: folder)
     announce_compilation.cache_clear()
     solve(CANTILEVER)
     solve(CANTILEVER)

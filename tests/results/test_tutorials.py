@@ -37,7 +37,7 @@ def test_a_first_solve_in_a_kernel_says_that_it_compiles(tmp_path, monkeypatch):
     monkeypatch.setenv("BEAMFEM_CACHE_DIR", str(tmp_path))
     lines = [
         "import beamfem as bf",
-        "from beamfem.assembly.compilation_notice import announce_compilation",
+        "from beamfem.equations.compilation_notice import announce_compilation",
         "announce_compilation()",
         "announce_compilation()",
     ]

@@ -6,9 +6,9 @@ from typing import TypeVar
 
 import numpy as np
 
-from beamfem.assembly.system import system_of
 from beamfem.element.coordinates import Rotation
 from beamfem.element.fields import HIGHEST_ORDER, Lagrange
+from beamfem.equations.system import system_of
 from beamfem.errors import ConvergenceError, InputError, LimitPointError, LockingWarning
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.beam import Beam

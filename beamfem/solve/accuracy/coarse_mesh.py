@@ -5,10 +5,10 @@ from math import comb
 
 import numpy as np
 
-from beamfem.assembly.system import System, system_of
 from beamfem.element.coordinates import Rotation
 from beamfem.element.element import Element
 from beamfem.element.fields import Lagrange
+from beamfem.equations.system import System, system_of
 from beamfem.errors import CoarseMeshWarning, ConvergenceError, InputError, LockingWarning
 from beamfem.kernels.bent_elements import WEIGHTS, coarseness
 from beamfem.kernels.pointers import address_of

@@ -8,12 +8,12 @@ from typing import Any, cast
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.equations import predicted_stresses
-from beamfem.assembly.model_coordinates import coordinate_columns
-from beamfem.assembly.system import System, system_of
 from beamfem.cached_properties import cached_property
 from beamfem.element.element import Element
 from beamfem.element.fields import Lagrange
+from beamfem.equations.equations import predicted_stresses
+from beamfem.equations.model_coordinates import coordinate_columns
+from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.kernels.block import ROTATED_GRADIENTS
 from beamfem.linalg.tangent import Stresses

@@ -13,8 +13,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.equations import linearise_at_rest, residual_at_rest
 from beamfem.cached_properties import cached_property
+from beamfem.equations.equations import linearise_at_rest, residual_at_rest
 from beamfem.solve.continuation.continuation import Continuation, PathPoint
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError, interpolation_weights
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes

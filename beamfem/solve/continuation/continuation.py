@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.equations import linearise_at_rest, load_change, predicted_stresses, residual_at_rest
-from beamfem.assembly.imposed_forces import imposed_forces
-from beamfem.assembly.system import System
 from beamfem.cached_properties import cached_property
+from beamfem.equations.equations import linearise_at_rest, load_change, predicted_stresses, residual_at_rest
+from beamfem.equations.imposed_forces import imposed_forces
+from beamfem.equations.system import System
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.linalg.tangent import Factorised
 from beamfem.precision.roundoff import loses_digits

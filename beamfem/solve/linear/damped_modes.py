@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.sparse import csr_array
 
-from beamfem.assembly.system import system_of
+from beamfem.equations.system import system_of
 from beamfem.errors import InputError
 from beamfem.linalg.eigenpairs import digits_for
 from beamfem.linalg.lapack import cholesky, solve_triangular

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beamfem.assembly.applied_loads import LoadsAt
-from beamfem.assembly.system import System
+from beamfem.equations.applied_loads import LoadsAt
+from beamfem.equations.system import System
 from beamfem.model.imposed_strains import ImposedStrain
 from beamfem.model.load_base import BodyLoad, LineLoad, Load, factor, forces_of
 

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 from scipy.sparse import csc_array, csr_array, dia_array
 
-from beamfem.assembly.system import system_of
+from beamfem.equations.system import system_of
 from beamfem.errors import InputError
 from beamfem.linalg.lapack import superlu
 from beamfem.model.load_base import Load

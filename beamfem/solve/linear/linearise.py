@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from beamfem.assembly import equations
-from beamfem.assembly.equations import INERTIA, STATICS
-from beamfem.assembly.system import System, system_of
+from beamfem.equations import equations
+from beamfem.equations.equations import INERTIA, STATICS
+from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.beam import beam_in_words

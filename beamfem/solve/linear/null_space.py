@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from beamfem.assembly.system import System
+from beamfem.equations.system import System
 from beamfem.errors import InputError
 from beamfem.linalg.lapack import qr, solve_triangular
 from beamfem.solve.start.mechanisms import dependent

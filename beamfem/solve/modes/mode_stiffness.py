@@ -3,9 +3,9 @@
 import numpy as np
 from scipy.sparse import csr_array
 
-from beamfem.assembly.equations import linearise_at_rest, predicted_stresses
-from beamfem.assembly.stress_resultants import free_group, resultants
-from beamfem.assembly.system import System
+from beamfem.equations.equations import linearise_at_rest, predicted_stresses
+from beamfem.equations.stress_resultants import free_group, resultants
+from beamfem.equations.system import System
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.model import Model
 from beamfem.results.nodal import nodal_vectors, nodal_velocities

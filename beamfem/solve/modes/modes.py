@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.assembly.rigid_velocity import RigidVelocity
-from beamfem.assembly.system import Proven, system_of
 from beamfem.cached_properties import cached_property
+from beamfem.equations.rigid_velocity import RigidVelocity
+from beamfem.equations.system import Proven, system_of
 from beamfem.errors import InputError
 from beamfem.linalg.eigenpairs import Pairs, digits_for, general_pairs, nothing_known
 from beamfem.linalg.tangent import UNROTATED

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from beamfem.assembly.equations import residual
-from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import residual
+from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
+from beamfem.equations.system import system_of
 from beamfem.errors import InputError
 from beamfem.results.solution import State
 from beamfem.validation import vector

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
-from beamfem.assembly.equations import INERTIA, STATICS, linearise, residual_at_rest, with_stresses
-from beamfem.assembly.system import Proven, System
 from beamfem.cached_properties import cached_property
+from beamfem.equations.equations import INERTIA, STATICS, linearise, residual_at_rest, with_stresses
+from beamfem.equations.system import Proven, System
 from beamfem.errors import ConvergenceError
 from beamfem.linalg.eigenpairs import Pairs, largest_pairs, nothing_known
 from beamfem.linalg.lapack import LinAlgError, cholesky, eigh, solve_triangular

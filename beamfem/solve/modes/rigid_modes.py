@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from beamfem.assembly.equations import residual_at_rest
-from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
+from beamfem.equations.equations import residual_at_rest
+from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.linalg.lapack import cholesky, null_space, solve_triangular, svd
 from beamfem.model.beam import beam_in_words
 from beamfem.precision.roundoff import round_off_floor

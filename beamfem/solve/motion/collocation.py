@@ -10,8 +10,8 @@ from scipy.linalg.lapack import get_lapack_funcs
 from scipy.sparse import csr_array
 from scipy.special import roots_jacobi
 
-from beamfem.assembly.equations import INERTIA, STATICS, linearise
-from beamfem.assembly.system import system_of
+from beamfem.equations.equations import INERTIA, STATICS, linearise
+from beamfem.equations.system import system_of
 from beamfem.errors import ConvergenceError
 from beamfem.linalg.tangent import BandTangent, Tangent, diagonals
 from beamfem.quadrature import gauss

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from beamfem.assembly.callbacks import Deferred
-from beamfem.assembly.motion_workspace import MotionWorkspace
-from beamfem.assembly.system import System
+from beamfem.equations.callbacks import Deferred
+from beamfem.equations.motion_workspace import MotionWorkspace
+from beamfem.equations.system import System
 from beamfem.kernels.motion_record import MotionLimits, MotionStatistics, Rule
 from beamfem.kernels.time_loop import march
 from beamfem.solve.motion.coupled_stages import CoupledStages, is_weak

@@ -4,9 +4,9 @@ import numpy as np
 from scipy.linalg import LinAlgError
 from scipy.sparse import block_array, csc_array
 
-from beamfem.assembly.connectors import SHORT_TIME, Motion
-from beamfem.assembly.equations import INERTIA, STATICS, linearise, residual
-from beamfem.assembly.system import System
+from beamfem.equations.connectors import SHORT_TIME, Motion
+from beamfem.equations.equations import INERTIA, STATICS, linearise, residual
+from beamfem.equations.system import System
 from beamfem.errors import InputError
 from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.model.contribution import is_one_sided

@@ -7,10 +7,10 @@ from typing import Any, Protocol
 import numpy as np
 from scipy.sparse import csc_array
 
-from beamfem.assembly.callbacks import Deferred, KeptErrors
-from beamfem.assembly.equations import linearise, tangent_of
-from beamfem.assembly.motion_workspace import MotionWorkspace
-from beamfem.assembly.system import System
+from beamfem.equations.callbacks import Deferred, KeptErrors
+from beamfem.equations.equations import linearise, tangent_of
+from beamfem.equations.motion_workspace import MotionWorkspace
+from beamfem.equations.system import System
 from beamfem.kernels import motion_stages, motion_steps, rollers
 from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 from beamfem.kernels.pointers import address_of

@@ -9,8 +9,8 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from beamfem.assembly.motion_workspace import motion_workspace
-from beamfem.assembly.system import System
+from beamfem.equations.motion_workspace import motion_workspace
+from beamfem.equations.system import System
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.solve.motion.compiled_steps import CompiledSteps
 from beamfem.solve.motion.energy_judgement import CHUNK, EnergyJudge

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.assembly.system import System
+from beamfem.equations.system import System
 
 
 def between(system: System, times: np.ndarray, states: np.ndarray, at: np.ndarray, smooth: bool = False) -> np.ndarray:

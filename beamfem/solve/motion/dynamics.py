@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.assembly.rigid_velocity import RigidVelocity
-from beamfem.assembly.system import System
+from beamfem.equations.rigid_velocity import RigidVelocity
+from beamfem.equations.system import System
 from beamfem.errors import ConvergenceError, EnergyWarning, InputError, warn
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.model.model import Model

@@ -5,8 +5,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from beamfem.assembly.system import System
 from beamfem.cached_properties import cached_property
+from beamfem.equations.system import System
 from beamfem.results.energy_balance import Balance, balance, driven, masses, takes_amplitudes
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import block_diag, coo_array, csr_array, dia_array, kron
 
-from beamfem.assembly.equations import linearise
-from beamfem.assembly.system import System, system_of
+from beamfem.equations.equations import linearise
+from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.kernels.block import ELASTIC_LINE, GRADIENTS, ROTATED_GRADIENTS, ROTATION, STRUCTURAL, Block
 from beamfem.physics.connections import MASS

@@ -8,8 +8,8 @@ import numpy as np
 from scipy.linalg import LinAlgError
 from scipy.sparse import block_array, block_diag, csc_array, csr_array, dia_array
 
-from beamfem.assembly.equations import linearise, residual
-from beamfem.assembly.system import System, system_of
+from beamfem.equations.equations import linearise, residual
+from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.linalg.lapack import superlu
 from beamfem.linalg.tangent import UNROTATED, rotation_to_normals

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from beamfem.assembly.system import System
+from beamfem.equations.system import System
 from beamfem.errors import InputError
 from beamfem.results.motion_state import MotionState
 from beamfem.solve.motion.dense_output import between

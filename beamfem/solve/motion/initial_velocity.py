@@ -4,11 +4,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from beamfem.assembly.model_coordinates import coordinate_of
-from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
-from beamfem.assembly.system import System
 from beamfem.element.coordinates import labels
 from beamfem.element.fields import cross, dot
+from beamfem.equations.model_coordinates import coordinate_of
+from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
+from beamfem.equations.system import System
 from beamfem.errors import InputError
 from beamfem.kernels.block import SHEAR_RIGID, STRETCH
 from beamfem.mesh.beam_mesh import BeamMesh

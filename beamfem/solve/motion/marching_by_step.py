@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.system import System
+from beamfem.equations.system import System
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.results.solution import State
 from beamfem.solve.motion.equations_of_motion import EquationsOfMotion, Integrator, driven

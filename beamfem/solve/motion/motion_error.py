@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from beamfem.assembly.system import system_of
+from beamfem.equations.system import system_of
 from beamfem.model.model import Model
 from beamfem.results.locking import locking
 from beamfem.results.solution import Solution

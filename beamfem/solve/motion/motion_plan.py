@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.assembly.compilation_notice import announce_compilation
-from beamfem.assembly.system import System, system_of
+from beamfem.equations.compilation_notice import announce_compilation
+from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError
 from beamfem.model.model import Model
 from beamfem.solve.motion.equations_of_motion import Integrator

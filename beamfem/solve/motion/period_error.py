@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beamfem.assembly.system import System, system_of
+from beamfem.equations.system import System, system_of
 from beamfem.errors import TimeStepWarning, warn
 from beamfem.results.solution import Solution
 from beamfem.solve.start.functions_of_time import FunctionOfTime

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from beamfem.assembly.system import System
+from beamfem.equations.system import System
 from beamfem.errors import InputError
 from beamfem.model.sampled_functions import Sampled
 

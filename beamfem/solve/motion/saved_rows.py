@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from beamfem.assembly.system import System
+from beamfem.equations.system import System
 from beamfem.kernels.motion_steps import count_rotations
 from beamfem.results.motion_state import Occurrence
 from beamfem.solve.motion.cut_steps import Rows

@@ -3,10 +3,10 @@
 import numpy as np
 from scipy.sparse import csc_array
 
-from beamfem.assembly.connectors import Motion
-from beamfem.assembly.equations import INERTIA, linearise, residual
-from beamfem.assembly.system import System
-from beamfem.assembly.viscosity import viscous_tangent
+from beamfem.equations.connectors import Motion
+from beamfem.equations.equations import INERTIA, linearise, residual
+from beamfem.equations.system import System
+from beamfem.equations.viscosity import viscous_tangent
 from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.solve.motion.constraints import constrained_acceleration
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.assembly.system import System
+from beamfem.equations.system import System
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.progress import progress
 from beamfem.solve.motion.cut_steps import Rows, StepCutter, keep_momentum

@@ -10,8 +10,9 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.band_workspace import band_workspace
-from beamfem.assembly.equations import (
+from beamfem.cached_properties import cached_property
+from beamfem.equations.band_workspace import band_workspace
+from beamfem.equations.equations import (
     STATICS,
     inactive_after,
     inactive_conditions,
@@ -23,8 +24,7 @@ from beamfem.assembly.equations import (
     residual_change,
     without,
 )
-from beamfem.assembly.system import Proven, System
-from beamfem.cached_properties import cached_property
+from beamfem.equations.system import Proven, System
 from beamfem.errors import InputError
 from beamfem.kernels import newton_loop
 from beamfem.kernels.newton_record import STALLED

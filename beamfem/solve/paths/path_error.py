@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.assembly.system import system_of
+from beamfem.equations.system import system_of
 from beamfem.results.locking import locking
 from beamfem.results.path import Path
 from beamfem.results.solution import Solution

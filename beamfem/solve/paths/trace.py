@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.system import System, system_of
+from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
 from beamfem.precision.roundoff import FEW_DIGITS, remainder

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.system import system_of
+from beamfem.equations.system import system_of
 from beamfem.errors import ConvergenceError, InputError, RoundOffWarning
 from beamfem.linalg.eigenpairs import digits_for
 from beamfem.model.beam import Beam

@@ -6,11 +6,11 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array, eye_array
 from scipy.sparse.linalg import LinearOperator, eigs
 
-from beamfem.assembly.connectors import Connector
-from beamfem.assembly.differences import differentiated
-from beamfem.assembly.equations import STATICS, linearise_at_rest, load_change, predicted_stresses, residual_at_rest
-from beamfem.assembly.stress_resultants import free_group, resultants
-from beamfem.assembly.system import System
+from beamfem.equations.connectors import Connector
+from beamfem.equations.differences import differentiated
+from beamfem.equations.equations import STATICS, linearise_at_rest, load_change, predicted_stresses, residual_at_rest
+from beamfem.equations.stress_resultants import free_group, resultants
+from beamfem.equations.system import System
 from beamfem.errors import InputError
 from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS
 from beamfem.linalg.eigenpairs import MOST_RESTARTS, Pairs, first_that_works, first_vector, lanczos_vectors, repeated

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from beamfem.assembly.equations import STATICS, linearise_at_rest, load_change, with_stresses
-from beamfem.assembly.system import System, system_of
+from beamfem.equations.equations import STATICS, linearise_at_rest, load_change, with_stresses
+from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.precision.mixed_tangent import MixedTangent
 from beamfem.precision.roundoff import counts_with_stresses

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamfem.assembly.system import System
+from beamfem.equations.system import System
 from beamfem.errors import warn
 from beamfem.model.beam import Beam, beam_in_words
 from beamfem.model.load_base import Load

@@ -8,10 +8,10 @@ from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import ArpackError, eigsh
 
-from beamfem.assembly.connectors import Connector
-from beamfem.assembly.equations import STATICS
-from beamfem.assembly.rigid_velocity import RigidVelocity, set_rigid_rates
-from beamfem.assembly.system import System, system_of
+from beamfem.equations.connectors import Connector
+from beamfem.equations.equations import STATICS
+from beamfem.equations.rigid_velocity import RigidVelocity, set_rigid_rates
+from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, FreeMotionError, InputError
 from beamfem.linalg.lapack import qr, solve_triangular
 from beamfem.model.beam import Point, beam_in_words

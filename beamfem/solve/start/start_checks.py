@@ -3,9 +3,9 @@
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.connectors import damps_at_rest
-from beamfem.assembly.equations import linearise_at_rest, residual_at_rest
-from beamfem.assembly.system import System
+from beamfem.equations.connectors import damps_at_rest
+from beamfem.equations.equations import linearise_at_rest, residual_at_rest
+from beamfem.equations.system import System
 from beamfem.errors import InputError
 from beamfem.installed_memory import USABLE_FRACTION, in_gib, installed_memory
 from beamfem.precision.roundoff import digits_of, load_size, remainder, row_floors

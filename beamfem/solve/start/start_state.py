@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from beamfem.assembly.model_coordinates import coordinate_columns
-from beamfem.assembly.system import System, system_of
 from beamfem.element.coordinates import across
 from beamfem.element.fields import cross, dot
+from beamfem.equations.model_coordinates import coordinate_columns
+from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError, warn
 from beamfem.kernels.block import ROTATED_GRADIENTS
 from beamfem.mesh.beam_mesh import BeamMesh

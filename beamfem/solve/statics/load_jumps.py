@@ -3,7 +3,7 @@
 from copy import copy
 from dataclasses import dataclass
 
-from beamfem.assembly.system import System, system_of
+from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, LimitPointError
 from beamfem.model.load_base import CompositeLoad, Load, MovingLoad, factor
 from beamfem.model.model import Model

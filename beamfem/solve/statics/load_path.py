@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.system import System
 from beamfem.cached_properties import cached_property
+from beamfem.equations.system import System
 from beamfem.errors import BeamfemError
 from beamfem.solve.continuation.bifurcations import Crossing
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin

@@ -6,8 +6,8 @@ from typing import Literal
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.equations import linearise_at_rest, load_slope, predicted_stresses
-from beamfem.assembly.system import Proven, System
+from beamfem.equations.equations import linearise_at_rest, load_slope, predicted_stresses
+from beamfem.equations.system import Proven, System
 from beamfem.errors import ConvergenceError, LimitPointError
 from beamfem.physics.stations import FOLLOWING, STRETCHING
 from beamfem.precision.roundoff import ENOUGH, digits_of, largest_force

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from beamfem.assembly.equations import INERTIA, linearise, residual_at_rest
-from beamfem.assembly.system import System
+from beamfem.equations.equations import INERTIA, linearise, residual_at_rest
+from beamfem.equations.system import System
 from beamfem.errors import LimitPointError
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.solve.newton.newton import (

@@ -9,9 +9,9 @@ from scipy.linalg import LinAlgError
 from scipy.sparse import block_array, csc_array
 from scipy.sparse.linalg import splu
 
-from beamfem.assembly.compilation_notice import announce_compilation
-from beamfem.assembly.equations import linearise_at_rest, residual_at_rest
-from beamfem.assembly.system import Proven, System, system_of
+from beamfem.equations.compilation_notice import announce_compilation
+from beamfem.equations.equations import linearise_at_rest, residual_at_rest
+from beamfem.equations.system import Proven, System, system_of
 from beamfem.errors import ConvergenceError, InputError, LimitPointError
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.model import Model

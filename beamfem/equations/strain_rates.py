@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamfem.assembly.element_group import ElementGroup
-from beamfem.assembly.stress_resultants import free_group, resultants
+from beamfem.equations.element_group import ElementGroup
+from beamfem.equations.stress_resultants import free_group, resultants
 from beamfem.kernels.block import Block
 
 

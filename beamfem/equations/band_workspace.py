@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from typing import Any
 
-from beamfem.assembly.applied_loads import LoadsAt
-from beamfem.assembly.assembler import Scratch, lend_scratch, take_back_scratch
-from beamfem.assembly.connector_equilibrium import ConnectedBalance
-from beamfem.assembly.equations import STATICS
-from beamfem.assembly.system import System
+from beamfem.equations.applied_loads import LoadsAt
+from beamfem.equations.assembler import Scratch, lend_scratch, take_back_scratch
+from beamfem.equations.connector_equilibrium import ConnectedBalance
+from beamfem.equations.equations import STATICS
+from beamfem.equations.system import System
 from beamfem.kernels.records import aligned
 from beamfem.linalg.bordered import condensed_record
 

@@ -15,10 +15,10 @@ from itertools import pairwise
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from beamfem.assembly.connectors import TIMES, Connector, gravity_of, resting_near
-from beamfem.assembly.model_coordinates import columns_of
-from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
-from beamfem.assembly.system import System
+from beamfem.equations.connectors import TIMES, Connector, gravity_of, resting_near
+from beamfem.equations.model_coordinates import columns_of
+from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
+from beamfem.equations.system import System
 from beamfem.errors import InputError
 
 _NEGLIGIBLE = 1e-9  # of the power of single forces: that of all forces of a rigid rotation

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from beamfem.assembly.applied_loads import LoadsAt
-from beamfem.assembly.equations import STATICS
-from beamfem.assembly.system import System
+from beamfem.equations.applied_loads import LoadsAt
+from beamfem.equations.equations import STATICS
+from beamfem.equations.system import System
 
 
 def imposed_forces(system: System, loads: LoadsAt) -> np.ndarray:

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamfem.assembly.connectors import first_value
 from beamfem.element.coordinates import across, labels
+from beamfem.equations.connectors import first_value
 from beamfem.errors import InputError
 from beamfem.kernels.block import ROTATED_GRADIENTS, Block
 from beamfem.mesh.beam_mesh import BeamMesh

@@ -3,9 +3,9 @@
 import numpy as np
 from scipy.sparse import bsr_array, csr_array
 
-from beamfem.assembly.strain_rates import strain_rates
-from beamfem.assembly.stress_resultants import resultants
-from beamfem.assembly.system import System
+from beamfem.equations.strain_rates import strain_rates
+from beamfem.equations.stress_resultants import resultants
+from beamfem.equations.system import System
 from beamfem.section.law import ConstitutiveLaw
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamfem.assembly.routines import Routines, routines
+from beamfem.equations.routines import Routines, routines
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.block import (
     ELASTIC_LINE,

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.assembly.applied_loads import LoadsAt
-from beamfem.assembly.callbacks import Deferred
-from beamfem.assembly.element_group import ElementGroup
+from beamfem.equations.applied_loads import LoadsAt
+from beamfem.equations.callbacks import Deferred
+from beamfem.equations.element_group import ElementGroup
 from beamfem.kernels import element_passes, model_passes, node_passes, record
 from beamfem.kernels.connection_passes import add_parts
 from beamfem.kernels.pointers import address_of

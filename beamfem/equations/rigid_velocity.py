@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.assembly.model_coordinates import Columns, columns_of, coordinate_columns
-from beamfem.assembly.system import System
+from beamfem.equations.model_coordinates import Columns, columns_of, coordinate_columns
+from beamfem.equations.system import System
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.validation import convert, finite, squared, vector
 

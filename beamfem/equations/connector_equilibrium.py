@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.assembly.assembler import Assembler
-from beamfem.assembly.callbacks import Deferred, KeptErrors
-from beamfem.assembly.equations import STATICS, add_coupled
-from beamfem.assembly.system import System
+from beamfem.equations.assembler import Assembler
+from beamfem.equations.callbacks import Deferred, KeptErrors
+from beamfem.equations.equations import STATICS, add_coupled
+from beamfem.equations.system import System
 from beamfem.kernels import model_passes
 
 _Balance = CFUNCTYPE(None, c_int64)

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.assembly.equation_numbering import Unknowns
+from beamfem.equations.equation_numbering import Unknowns
 from beamfem.kernels.band import band
 from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 from beamfem.kernels.motion_record import MotionRoutines, MotionSolver

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.assembly.connectors import Connectors, Motion
-from beamfem.assembly.element_group import ElementGroup
-from beamfem.assembly.stress_resultants import free_group, resultants
 from beamfem.cached_properties import cached_property
+from beamfem.equations.connectors import Connectors, Motion
+from beamfem.equations.element_group import ElementGroup
+from beamfem.equations.stress_resultants import free_group, resultants
 from beamfem.kernels.block import Block
 from beamfem.section.law import ConstitutiveLaw
 

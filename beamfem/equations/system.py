@@ -7,31 +7,31 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from beamfem.assembly import equation_numbering as layout
-from beamfem.assembly.applied_loads import (
+from beamfem.cached_properties import cached_property
+from beamfem.equations import equation_numbering as layout
+from beamfem.equations.applied_loads import (
     Actions,
     LoadsAt,
     body_loads,
     build_actions,
     pressures_have_potential,
 )
-from beamfem.assembly.assembler import Assembler, Equations
-from beamfem.assembly.blocks import build_block
-from beamfem.assembly.connection_table import Alike, alike, springs_to_ground
-from beamfem.assembly.connectors import Connectors, connectors_of
-from beamfem.assembly.element_group import make_group
-from beamfem.assembly.equation_numbering import Unknowns
-from beamfem.assembly.history_variables import History
-from beamfem.assembly.model_coordinates import (
+from beamfem.equations.assembler import Assembler, Equations
+from beamfem.equations.blocks import build_block
+from beamfem.equations.connection_table import Alike, alike, springs_to_ground
+from beamfem.equations.connectors import Connectors, connectors_of
+from beamfem.equations.element_group import make_group
+from beamfem.equations.equation_numbering import Unknowns
+from beamfem.equations.history_variables import History
+from beamfem.equations.model_coordinates import (
     PrescribedCoordinate,
     inclined_normals,
     prescribed_coordinates,
     stress_free,
 )
-from beamfem.assembly.rotating_vectors import rotating_vectors
-from beamfem.assembly.solver_table import motion_solver, newton_solver
-from beamfem.assembly.strain_rates import StrainRates, strain_rates
-from beamfem.cached_properties import cached_property
+from beamfem.equations.rotating_vectors import rotating_vectors
+from beamfem.equations.solver_table import motion_solver, newton_solver
+from beamfem.equations.strain_rates import StrainRates, strain_rates
 from beamfem.errors import InputError
 from beamfem.kernels.block import Block, Layout, Stations
 from beamfem.kernels.motion_record import MotionSolver

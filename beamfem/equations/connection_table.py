@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamfem.assembly.connectors import Connector
-from beamfem.assembly.equation_numbering import Unknowns
-from beamfem.assembly.model_coordinates import COORDINATES
+from beamfem.equations.connectors import Connector
+from beamfem.equations.equation_numbering import Unknowns
+from beamfem.equations.model_coordinates import COORDINATES
 from beamfem.kernels.record import Parts
 from beamfem.model.model import Model
 from beamfem.parts.at_points import ANALYTIC

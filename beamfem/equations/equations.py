@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.sparse import coo_array, csc_array, csr_array, hstack
 
-from beamfem.assembly.assembler import Assembler, Equations
-from beamfem.assembly.differences import differentiated
-from beamfem.assembly.frame_inertia import absolute, right_angle, right_angle_of_unknowns, speeds
-from beamfem.assembly.system import Proven, System
+from beamfem.equations.assembler import Assembler, Equations
+from beamfem.equations.differences import differentiated
+from beamfem.equations.frame_inertia import absolute, right_angle, right_angle_of_unknowns, speeds
+from beamfem.equations.system import Proven, System
 from beamfem.linalg.bordered import Border, BorderedTangent
 from beamfem.linalg.tangent import UNROTATED, BandTangent, SparseTangent, Tangent
 from beamfem.precision.mixed_tangent import MixedTangent, mixed

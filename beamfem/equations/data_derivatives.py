@@ -7,9 +7,9 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from beamfem.assembly.connectors import COMPLEX_STEP, Connector, Motion, connectors_of
-from beamfem.assembly.equations import residual
-from beamfem.assembly.system import System, system_of
+from beamfem.equations.connectors import COMPLEX_STEP, Connector, Motion, connectors_of
+from beamfem.equations.equations import residual
+from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError
 from beamfem.model.model import Model
 from beamfem.physics.compiled_connections import in_python

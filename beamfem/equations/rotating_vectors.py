@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beamfem.assembly.element_group import storage_order, stored
+from beamfem.equations.element_group import storage_order, stored
 from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, Block
 
 _GRADIENTS = (GRADIENTS, ROTATED_GRADIENTS)

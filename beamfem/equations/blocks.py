@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.assembly.imposed_strain_tables import imposed_on
-from beamfem.assembly.law_pass import LawPass
 from beamfem.element.coordinates import Gradients
 from beamfem.element.element import Element
+from beamfem.equations.imposed_strain_tables import imposed_on
+from beamfem.equations.law_pass import LawPass
 from beamfem.kernels.block import NO_HISTORY, Block
 from beamfem.mesh.beam_mesh import BeamMesh, Classes, likenesses
 from beamfem.model.imposed_strains import ImposedStrain

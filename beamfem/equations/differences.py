@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from beamfem.assembly.system import System
+from beamfem.equations.system import System
 
 _STRAIN = 1e-3
 _DIFFERENCE = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))  # offset and weight

@@ -4,8 +4,8 @@ from ctypes import CFUNCTYPE, c_int64, c_void_p, cast
 
 import numpy as np
 
-from beamfem.assembly.callbacks import KeptErrors
 from beamfem.element.thickness_law import THICKNESS, ThicknessLaw
+from beamfem.equations.callbacks import KeptErrors
 from beamfem.kernels.compiler.value_types import REALS
 from beamfem.kernels.point import POINT_ROWS, RESULTANT, STIFFNESS, STRAIN
 from beamfem.kernels.record import ROW, Group, System

@@ -5,8 +5,8 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from beamfem.assembly.rotating_vectors import runs_of
-from beamfem.assembly.system import System
+from beamfem.equations.rotating_vectors import runs_of
+from beamfem.equations.system import System
 from beamfem.kernels.predictor import difference_rows, padded
 from beamfem.kernels.records import aligned
 

@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from beamfem.assembly.assembler import Assembler, Equations
-from beamfem.assembly.element_group import ElementGroup, make_group
+from beamfem.equations.assembler import Assembler, Equations
+from beamfem.equations.element_group import ElementGroup, make_group
 from beamfem.kernels.block import Block, Layout, Stations
 from beamfem.kernels.record import CONSTANTS
 

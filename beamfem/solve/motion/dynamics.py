@@ -16,7 +16,7 @@ from beamfem.progress import ends_as_a_whole, kept, returned_on_interrupt
 from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.full_turns import first_turns
 from beamfem.results.solution import Solution, State
-from beamfem.results.solution_checks import warned
+from beamfem.results.solution_checks import advice, warned
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.accuracy.adapted_mesh import prepared, refined_until
 from beamfem.solve.motion.constraints import impact, require_met, stopped_by_conditions
@@ -197,7 +197,7 @@ def simulate(
     if failed is not None:
         raise ConvergenceError(
             f"the iteration of the step from {failed.begin:.6g} {second} to {failed.end:.6g} {second} did not "
-            f"converge: {failed.why}",
+            f"converge: {failed.why}{advice(model, state[0])}",
             solution,
         )
     if solution is None:

@@ -21,7 +21,7 @@ from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.model.model import Model
 from beamfem.progress import kept, progress, returned_on_interrupt
 from beamfem.results.solution import Solution
-from beamfem.results.solution_checks import warned
+from beamfem.results.solution_checks import advice, warned
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.motion.collocation import Gauss
 from beamfem.solve.motion.cut_steps import StepCutter, keep_momentum
@@ -233,11 +233,11 @@ def _run(file: MotionFile, plan: MotionPlan, checkpoint: Checkpoint, saved: Save
                 commit()
         commit()
     if failed is not None:
-        unit = plan.system.model.unit("s")
+        unit, solution = plan.system.model.unit("s"), _loaded(file)
         raise ConvergenceError(
             f"the iteration of the step from {failed.begin:.6g} {unit} to {failed.end:.6g} {unit} did not converge: "
-            f"{failed.why}",
-            _loaded(file),
+            f"{failed.why}{advice(solution.model, solution.p[-1])}",
+            solution,
         )
     file.describe(plan.system.model)
     done = _described(plan.settings, False)

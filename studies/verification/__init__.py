@@ -1,0 +1,1 @@
+"""Verification manual: published and independent values, and what beamfem gives."""

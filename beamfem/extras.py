@@ -15,7 +15,6 @@ _EXTRAS = {
     "meshio": "mesh",
     "pillow": "plot",
     "pyvista": "vtk",
-    "sympy": "test",
     "vtk": "vtk",
     "xarray": "xarray",
 }

@@ -6,11 +6,14 @@ numbers, one per element, so that loops along rows use vector instructions. Node
 
 from typing import Annotated
 
+from beamfem.kernels.compiler.value_types import signature_of
 from beamfem.kernels.records import Reals, Record, Several, Slots, Table, Wholes, calls
 
 CONSTANTS = 4  # of a station
 LANES = 64
 ROW = 72  # longer than a batch, so that rows do not all map to the same cache sets
+POINT_FORCE = signature_of("rrrrrrrr")  # of q, v, a, own, turned, data, gravity and the result
+POINT_TANGENT = signature_of("rrrrrrrdddr")  # likewise, with ck, cv and ca before the result
 
 
 class Run(Record):
@@ -81,8 +84,8 @@ class GroupRoutines(Record):
 class StationPasses(Record):
     """The compiled functions of a kind of station."""
 
-    force = calls("generated.connection_forces:dead_force")
-    tangent = calls("generated.connection_forces:dead_tangent")
+    force = calls(POINT_FORCE)
+    tangent = calls(POINT_TANGENT)
 
 
 class Group(Record):
@@ -188,8 +191,8 @@ class Parts(Record):
     history_size: int
     history: Annotated[Wholes, "count", "history_size"]  # coordinates that are its history variables
     places: Annotated[Wholes, "count", "unknowns", "unknowns"]  # of the tangent's entries in the matrix, -1 for none
-    force = calls("generated.connection_forces:mass_force")
-    tangent = calls("generated.connection_forces:mass_tangent")
+    force = calls(POINT_FORCE)
+    tangent = calls(POINT_TANGENT)
 
 
 class System(Record):

@@ -137,7 +137,7 @@ class _Address(_Number):
 
 
 class _Function:
-    """The routine that gives the signature of a function whose address is in a field."""
+    """The routine or signature of a function whose address is in a field."""
 
     def __init__(self, like: Any, tasks: tuple[str, ...]) -> None:
         self._like, self.tasks = like, tasks
@@ -149,14 +149,14 @@ class _Function:
 
     def signature(self) -> Signature:
         """Return the kinds of arguments and result."""
-        signature: Signature = self.routine.signature
+        signature: Signature = self._like if isinstance(self._like, Signature) else self.routine.signature
         return signature
 
 
 def calls(like: Any, *tasks: str) -> Any:
     """Return a field for the address of a function like a given routine, which may be named: "field:interpolate".
 
-    tasks: what the function is needed for, if not always.
+    like: may also be a signature; tasks: what the function is needed for, if not always.
     """
     return _Function(like, tasks)
 

@@ -29,7 +29,7 @@ class PartAtPoints:
         Values of the conditions that have one, see `Connection.prescribed`: numbers, which grow with the load factor in
         statics, or functions of time [s], in statics of the load factor.
     connection : Connection
-        Its definition. Other definitions than those of the package need sympy.
+        Its definition.
     """
 
     __slots__ = ()

@@ -1,20 +1,21 @@
-"""Compiled force and tangent of a part at points: generated for those of the package, derived for a user's own."""
+"""Compiled force and tangent of a part at points: derived from its definition."""
 
 import linecache
 from collections.abc import Callable
 from ctypes import CFUNCTYPE, c_double, c_void_p
 from functools import cache
+from hashlib import sha256
 from types import FunctionType
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from beamfem import kernels
 from beamfem.errors import InputError
-from beamfem.extras import needed_for
 from beamfem.kernels.compiling import Routine
 from beamfem.kernels.connection_passes import MOST, MOST_DATA
-from beamfem.kernels.generated import connection_forces
 from beamfem.kernels.pointers import address_of
+from beamfem.physics.connection_source import HEADER, connection_source
 from beamfem.physics.connections import Connection
 from beamfem.physics.stations import GENERATED
 
@@ -42,8 +43,6 @@ class Passes(NamedTuple):
 @cache
 def passes_of(connection: Connection) -> Passes:
     """Return the compiled force and tangent. Raises InputError for energies that cannot be derived."""
-    if connection in GENERATED:
-        return Passes(*(getattr(connection_forces, f"{connection.name}_{what}") for what in ("force", "tangent")))
     if not connection.name.isidentifier():
         raise InputError(f"the name of a Connection must be one word of letters, digits and _, got {connection.name!r}")
     if max(connection.points * connection.coordinates, connection.multipliers + connection.prescribed) > MOST:
@@ -54,8 +53,6 @@ def passes_of(connection: Connection) -> Passes:
         )
     if connection.compiled is not None:
         return Passes(Foreign(connection.compiled[0], 0), Foreign(connection.compiled[1], 3))
-    with needed_for("a part defined by its energies"):
-        from beamfem.physics.connection_source import HEADER, connection_source
     try:
         source = HEADER + connection_source(connection)
     except Exception as error:
@@ -65,7 +62,10 @@ def passes_of(connection: Connection) -> Passes:
         ) from error
     file = f"<{connection.name} of {id(connection)}>"
     linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
-    found: dict[str, Any] = {"__name__": f"connection_{connection.name}"}
+    digest = sha256(source.encode()).hexdigest()[:16]
+    # machine code is kept on disk by the names of module and function
+    module = f"{kernels.__name__}.{digest}" if connection in GENERATED else "user_connections"
+    found: dict[str, Any] = {"__name__": module}
     exec(compile(source, file, "exec"), found)
     return Passes(*(found[f"{connection.name}_{what}"] for what in ("force", "tangent")))
 

@@ -3,7 +3,7 @@
 A connection has m points with coordinates q: x, y and, if it depends on rotations, the angle from the reference. Its
 forces, with the sign of internal forces, are those of Lagrange's equations, d/dt dT/dv - dT/dq + dV/dq + dR/dv +
 (dg/dq)' l, with its kinetic energy T(q, v), potential V(q), dissipation function R(q, v), and conditions g(q) = 0 with
-their multipliers l, and forces given directly; `generate` derives them with sympy. Conditions whose value is prescribed
+their multipliers l, and forces given directly; `connection_source` derives them. Conditions whose value is prescribed
 as a function of time are g(q) = u, with u as a further coordinate, which a support could move: its reaction is -l.
 """
 
@@ -56,7 +56,7 @@ class Connection(NamedTuple):
     remember : callable, optional
         History variables after an accepted step, h(q, v, data, f), a tuple in the order of `memory`.
     compiled : (int, int), optional
-        Addresses of C functions in place of what sympy derives: force(q, v, a, own, turned, data, gravity, out) and
+        Addresses of C functions in place of what is derived: force(q, v, a, own, turned, data, gravity, out) and
         tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out). All but the weights are pointers to doubles; own:
         multipliers and prescribed values, turned: cosine and sine of each rotation; out: the resisting forces, the
         conditions and the reactions, or ck df/dq + cv df/dv + ca df/da row by row.

@@ -1,4 +1,4 @@
-"""Generate the compiled passes of strain measures, node kinematics and connections from their definitions.
+"""Generate the compiled passes of strain measures and node kinematics from their definitions.
 
 Run as python -m beamfem.physics.generate: sympy derives the expressions, and the modules are written to
 `beamfem/kernels/generated`. They are committed, and a test compares them with the definitions.
@@ -12,18 +12,41 @@ from pathlib import Path
 from typing import Any
 
 import sympy
+from sympy.printing.pycode import PythonCodePrinter
 
 from beamfem.kernels import point
 from beamfem.kernels.record import ROW
-from beamfem.physics.connection_source import HEADER, Printer, connection_source
 from beamfem.physics.kinematics import KINDS, Kinematics
 from beamfem.physics.measures import MEASURES, Measure
-from beamfem.physics.stations import GENERATED
 
 FOLDER = Path(__file__).parents[1] / "kernels" / "generated"
 _AXIS = ("rx", "ry", "dx", "dy", "ex", "ey")
 # blocks rr, rd, re, dd, de, ee of the second derivative by q; of symmetric blocks, only the upper triangle
 _ORDER = [(i, j) for a in (0, 2, 4) for b in range(a, 6, 2) for i in (a, a + 1) for j in (b, b + 1) if i <= j or a != b]
+
+
+class Printer(PythonCodePrinter):
+    """Print powers as products and square roots, which the compiler can vectorise."""
+
+    def _print_Pow(self, power: Any, **unused: Any) -> str:
+        base, exponent = power.as_base_exp()
+        halves = 2 * exponent
+        if not halves.is_Integer or abs(halves) > 8:
+            raise ValueError(f"no rule for {power}")
+        whole, factor = abs(int(halves)) // 2, self.parenthesize(base, 60)
+        factors = [factor] * whole + ([f"math.sqrt({self._print(base)})"] if halves % 2 else [])
+        product = " * ".join(factors)
+        if exponent < 0:
+            return f"(1.0 / ({product}))" if len(factors) > 1 else f"(1.0 / {product})"
+        return f"({product})" if len(factors) > 1 else product
+
+    def _print_Rational(self, number: Any) -> str:
+        return repr(float(number))
+
+    def _print_Integer(self, number: Any) -> str:
+        return f"{int(number)}.0"
+
+    _print_Half = _print_Rational
 
 
 def measure_source(measure: Measure) -> str:
@@ -187,10 +210,6 @@ def sources() -> dict[str, str]:
     """Return the formatted source of all generated modules by file name."""
     measures = {f"{measure.__name__}_pass.py": measure_source(measure) for measure in MEASURES}
     modules = measures | {f"{kind.name}_node.py": kinematics_source(kind) for kind in KINDS}
-    title = "Forces and tangents of parts at points and at stations, see `physics.connections` and `physics.stations`."
-    notice = "Written by beamfem.physics.generate: do not edit."
-    functions = "\n\n".join(map(connection_source, GENERATED))
-    modules["connection_forces.py"] = f'"""{title}\n\n{notice}\n"""\n\n{HEADER}{functions}'
     return {name: _formatted(source) for name, source in modules.items()}
 
 

@@ -9,8 +9,10 @@ from beamfem.equations.routines import MEASURE_PASSES
 from beamfem.kernels import point
 from beamfem.kernels.block import ELASTIC_LINE, GREEN_LAGRANGE, STRUCTURAL
 from beamfem.kernels.record import ROW
+from beamfem.parts.at_points import ANALYTIC
 from beamfem.physics import generate
 from beamfem.physics.compiled_connections import in_python, passes_of
+from beamfem.physics.connections import CABLE, Connection
 from beamfem.physics.measures import MEASURES
 from beamfem.physics.stations import DEAD, FOLLOWING, GROUNDED, STATIONS, STRETCHING
 from beamfem.precision.roundoff_bounds import depends
@@ -73,3 +75,37 @@ def test_forces_at_a_station_are_those_of_a_rotated_vector_and_their_tangent_is_
     turning, length = gx * out[3] - gy * out[2], gx * out[2] + gy * out[3]
     assert turning == pytest.approx(0.0 if kind == GROUNDED else -data[2], rel=1e-13)
     assert length == pytest.approx(0.0, abs=1e-13)
+
+
+def test_forces_and_tangents_are_derivatives_of_an_energy_of_all_operations(rng):
+    """Forces by complex steps, tangents by differences; a slack cable may end where it begins."""
+
+    def stored(q, data, gravity, f):
+        (xa, ya, ta), (xb, yb, tb) = q
+        bent = f.cos(2 * ta - tb + 0.3) * (xb - xa) ** 3 + f.sin(-3 * tb) / (2 + ya * ya) ** 1.5
+        return data[0] * bent + (1 + f.positive(xa)) ** -2 * f.sqrt(3 + yb * yb) - np.float64(2.0) * xa / 7
+
+    passes, q, none, step = (
+        passes_of(Connection("all", 2, 3, ("k",), None, stored)),
+        rng.normal(size=6),
+        np.zeros(6),
+        1e-30,
+    )
+    data, out, matrix, each = rng.uniform(0.5, 1.5, 1), np.empty(6), np.empty((6, 6)), np.eye(6)
+    q[0] = abs(q[0])
+    turned = np.column_stack([np.cos(q[2::3]), np.sin(q[2::3])])
+    passes.force(q, none, none, none, turned, data, none, out)
+    passes.tangent(q, none, none, none, turned, data, none, 2.0, 0.5, 0.5, matrix)
+    moved = [list((q + 1j * step * unit).reshape(2, 3)) for unit in each]
+    np.testing.assert_allclose(
+        out, [stored(at, data, none, ANALYTIC).imag / step for at in moved], rtol=1e-13, atol=1e-14
+    )
+    after, before = np.empty(6), np.empty(6)
+    for column, unit in enumerate(each):
+        for to, at in ((after, q + 1e-6 * unit), (before, q - 1e-6 * unit)):
+            turned = np.column_stack([np.cos(at[2::3]), np.sin(at[2::3])])
+            passes.force(at, none, none, none, turned, data, none, to)
+        np.testing.assert_allclose(matrix[:, column], (after - before) / 1e-6, rtol=1e-7, atol=1e-8)
+    passes, rows = passes_of(CABLE), np.empty((4, 4))
+    passes.tangent(np.zeros(4), none, none, none, none, np.ones(2), none, 1.0, 0.0, 0.0, rows)
+    assert not rows.any()

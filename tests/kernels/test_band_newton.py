@@ -11,7 +11,6 @@ from beamfem.solve.newton.newton import (
     PivotedProblem,
     PrescribedStep,
     Termination,
-    find_equilibrium,
 )
 
 SECTION, MATERIAL = bf.Rectangle(0.05, 0.05), bf.Material(1e9, 0.3, 1000.0)
@@ -70,7 +69,7 @@ def both(model, settings=None):
     """Return the results on a band and with pivoting."""
     system, used = system_of(model, static=True), settings or Newton()
     given = system, system.reference, 1.0, used, PrescribedStep(system, system.reference, 1.0)
-    return find_equilibrium(BandProblem(*given, None), used), find_equilibrium(PivotedProblem(*given), used)
+    return BandProblem(*given, None).find(), PivotedProblem(*given).find()
 
 
 def assert_alike(model, settings=None):
@@ -139,8 +138,6 @@ def test_pivots_cost_no_iteration(monkeypatch):
         model = bf.Model([beam], [bf.Clamp(beam.start), bf.Prescribed(beam.end, uy=lift)], [force])
         system, settings = system_of(model, static=True), bf.Newton()
         given = system, system.reference, 1.0, settings, PrescribedStep(system, system.reference, 1.0)
-        compiled, general = (
-            find_equilibrium(problem, settings, 0) for problem in (BandProblem(*given, 0), PivotedProblem(*given))
-        )
+        compiled, general = (problem.find() for problem in (BandProblem(*given, 0), PivotedProblem(*given, 0)))
         assert general.first == pytest.approx(compiled.first, rel=1e-6)
         assert general.iterations == compiled.iterations

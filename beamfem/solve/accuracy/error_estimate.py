@@ -27,7 +27,7 @@ from beamfem.results.nodal import axis_at
 from beamfem.results.postprocess import position
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
-from beamfem.solve.newton.newton import Newton, NewtonResult, PivotedProblem, PrescribedStep, find_equilibrium
+from beamfem.solve.newton.newton import Newton, NewtonResult, PivotedProblem, PrescribedStep
 from beamfem.validation import number_below, shown
 
 # halved elements of order k have an error of about 2^-2k of the others, for the same cost as those of order k + 1
@@ -294,9 +294,9 @@ def _equilibrium(system: System, p: np.ndarray, state: State) -> NewtonResult:
     The first iteration is the linear estimate. Raises ConvergenceError.
     """
     step, newton = PrescribedStep(system, p, state.at), Newton()
-    problem = PivotedProblem(system, p, state.at, newton, step, carried_stresses(state, system.model))
+    problem = PivotedProblem(system, p, state.at, newton, step, stresses=carried_stresses(state, system.model))
     try:
-        result = find_equilibrium(problem, newton)
+        result = problem.find()
     except LinAlgError as reason:
         raise _without_estimate(str(reason)) from reason
     if not result.ended.good:

@@ -13,7 +13,7 @@ from beamfem.equations.system import System
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.linalg.tangent import Factorised
 from beamfem.precision.roundoff import loses_digits
-from beamfem.solve.newton.newton import Balance, Newton, SingleCorrections, Termination, balance_of, find_equilibrium
+from beamfem.solve.newton.newton import Balance, Equilibrium, Newton, SingleCorrections, Termination, balance_of
 from beamfem.solve.start.functions_of_time import FunctionOfTime, functions_of_time
 
 _SLOPE_WIDTH = 1e-4  # of the load scale: differences of loads keep digits, and prescribed motions are smooth over it
@@ -159,7 +159,7 @@ class Continuation:
         which the iteration is given up; counted: whether to count the negative pivots of all iterations.
         """
         problem = _InPlane(self, start, stresses, normal, farthest, counted)
-        result = find_equilibrium(problem, self.newton)
+        result = problem.find()
         return Corrected(problem.state, result.iterations, result.ended, problem.counts)
 
     def linearised(self, y: np.ndarray, like: np.ndarray) -> PathPoint:
@@ -227,14 +227,12 @@ class Continuation:
         return before, after, after - before
 
 
-class _InPlane(SingleCorrections):
+class _InPlane(SingleCorrections, Equilibrium):
     """The equilibrium in the plane through `start` (n + 1,) normal to `normal` (n + 1,), with unknown load factor.
 
     stresses: for the first geometric tangent; farthest: length of the correction beyond which the iteration is given
     up; counts: fewest and most negative pivots so far.
     """
-
-    counts_digits = False
 
     def __init__(
         self,
@@ -245,8 +243,7 @@ class _InPlane(SingleCorrections):
         farthest: float,
         counted: bool,
     ) -> None:
-        super().__init__()
-        self.line, self.system, self.start = line, line.system, start
+        self.line, self.system, self.newton, self.start = line, line.system, line.newton, start
         self.stresses, self.normal, self.farthest, self.counted = stresses, normal, farthest, counted
         self.state = line.hold(start)
         self.counts = np.iinfo(int).max, 0
@@ -267,10 +264,6 @@ class _InPlane(SingleCorrections):
 
     def balance(self) -> Balance:
         return balance_of(self.system, self.state[:-1], float(self.state[-1]))
-
-    def count_after_linear(self) -> int:
-        """Return the negative pivots of the second tangent, since there is no load step."""
-        return self.after_first()[1]
 
 
 def begin(

@@ -243,30 +243,26 @@ class Problem(Protocol):
 
 
 class SingleCorrections(ABC):
-    """Base class of problems that take one correction at a time: it counts them and remembers the first two."""
+    """Base class of problems that take one correction at a time.
 
-    def __init__(self) -> None:
-        self.taken, self._size = 0, np.inf
-        self._first, self._second = np.nan, 0
+    first: size of the first correction; second: negative pivots of the second tangent.
+    """
+
+    taken, size, first, second = 0, np.inf, np.nan, 0
 
     @abstractmethod
     def take(self) -> tuple[float, int]:
         """Take the next correction; return its size and the negative pivots of its tangent. Raises LinAlgError."""
 
     def correct(self) -> Correction:
-        """Take the next correction. Raises LinAlgError."""
-        before = self._size
-        self._size, negative = self.take()
+        before = self.size
+        self.size, negative = self.take()
         self.taken += 1
         if self.taken == 1:
-            self._first = self._size
+            self.first = self.size
         elif self.taken == 2:
-            self._second = negative
-        return Correction(self.taken, self._size, before, negative)
-
-    def after_first(self) -> tuple[float, int]:
-        """Return the size of the first correction and the negative pivots of the second tangent."""
-        return self._first, self._second
+            self.second = negative
+        return Correction(self.taken, self.size, before, negative)
 
 
 class Iterated(NamedTuple):
@@ -323,10 +319,64 @@ def count_after(system: System, start: np.ndarray, step: np.ndarray, load_factor
         return -1
 
 
-class BandProblem:
-    """The equilibrium at a load factor, from the state `start` (n,); keep: see `find_equilibrium`."""
+class Equilibrium(ABC):
+    """An equilibrium of a system that is sought from the state `start` (n,); state: the one reached.
 
-    counts_digits = True
+    keep: see `solve_equilibrium`; digits: number of reliable digits of the forces, nan if they are not counted; first,
+    second: see `SingleCorrections`.
+    """
+
+    system: System
+    newton: Newton
+    start: np.ndarray
+    state: np.ndarray
+    keep: int | None = None
+    digits: float = np.nan
+    first: float
+    second: int
+
+    @abstractmethod
+    def correct(self) -> Correction:
+        """See `Problem`."""
+
+    @abstractmethod
+    def balance(self) -> Balance:
+        """Return the balance of forces in the state reached."""
+
+    def count_after_linear(self) -> int:
+        """Return the negative pivots of the tangent at the start with the stress resultants of a linear step.
+
+        -1 if it is singular. It is called at most once, if there is a count to keep and the second tangent has another.
+        """
+        return self.second
+
+    def check(self, correction: Correction) -> Termination | None:
+        """See `Problem`."""
+        lost = self.keep not in (None, correction.negative_pivots)
+        if correction.number > 2 and lost:
+            return Termination.LOST
+        if correction.diverges:
+            return Termination.DIVERGED
+        if not correction.is_small(self.newton):
+            return None
+        ended = check_convergence(self.system, self.balance(), self.newton, correction)
+        return Termination.LOST if ended is not None and lost else ended
+
+    def find(self) -> NewtonResult:
+        """Iterate and return the result."""
+        ended, number, negative = iterate(self, self.newton.iterations)
+        state = self.state.copy()
+        if ended is Termination.EXHAUSTED:
+            return NewtonResult(state, number, ended)
+        if not ended.good and ended is not Termination.INVERTED:
+            return NewtonResult(self.start, number, ended, negative)
+        linear = self.count_after_linear() if number > 1 and self.keep not in (None, self.second) else None
+        state = state if ended.good else self.start
+        return NewtonResult(state, number, ended, negative, self.digits, self.first, linear)
+
+
+class BandProblem(Equilibrium):
+    """The equilibrium at a load factor by the compiled iteration."""
 
     def __init__(
         self,
@@ -337,8 +387,9 @@ class BandProblem:
         step: PrescribedStep,
         keep: int | None,
     ) -> None:
-        self.system, self.start, self.space = system, start, band_workspace(system)
-        loads, space = system.loads_at(load_factor), self.space
+        self.system, self.start, self.newton, self.keep = system, start, newton, keep
+        self.space = space = band_workspace(system)
+        loads, self.state = system.loads_at(load_factor), space.p
         self.load = load_size(system, loads)
         space.begin(loads, load_factor)
         own = space.solver
@@ -356,31 +407,21 @@ class BandProblem:
         if not factorised:
             raise LinAlgError("a pivot is tiny")
         found.prescribed_step[:] = found.prescribed_force[:] = 0.0
+        self.first, self.second = found.first_correction, found.negative_pivots_after_first
         return Correction(found.iterations, found.correction, found.correction_before, found.negative_pivots)
-
-    @property
-    def state(self) -> np.ndarray:
-        return self.space.p.copy()
 
     def balance(self) -> Balance:
         space, found = self.space, self.space.solver
         force = max(found.force, self.load)
-        return Balance(space.p, space.residual, found.unbalanced, force, found.jacobian <= 0.0, found.gap)
-
-    def after_first(self) -> tuple[float, int]:
-        found = self.space.solver
-        return found.first_correction, found.negative_pivots_after_first
+        balance = Balance(space.p, space.residual, found.unbalanced, force, found.jacobian <= 0.0, found.gap)
+        self.digits = balance.digits
+        return balance
 
     def count_after_linear(self) -> int:
-        """Return the negative pivots at the start with the stresses of a linear step; overwrites the state reached."""
         space = self.space
         space.solver.step[:] = space.solver.linear - self.start
         space.p[:] = self.start
         return int(space.call(newton_loop.count_after_step.compiled))
-
-    def return_scratch(self) -> None:
-        """Release the workspace for the next solve."""
-        self.space.return_scratch(self.system)
 
 
 class _Solved(NamedTuple):
@@ -391,13 +432,11 @@ class _Solved(NamedTuple):
     factors: Factorised
 
 
-class PivotedProblem(SingleCorrections):
-    """The equilibrium at a load factor, from the state `start` (n,).
+class PivotedProblem(SingleCorrections, Equilibrium):
+    """The equilibrium at a load factor, one correction after another, with pivoting.
 
     stresses: resultants of each block for the geometric part of the first tangent, by default those of the state.
     """
-
-    counts_digits = False
 
     def __init__(
         self,
@@ -406,12 +445,12 @@ class PivotedProblem(SingleCorrections):
         load_factor: float,
         newton: Newton,
         step: PrescribedStep,
+        keep: int | None = None,
         stresses: Stresses | None = None,
     ) -> None:
-        super().__init__()
         self.system, self.start, self.load_factor, self.newton, self.step = system, start, load_factor, newton, step
         self.state = self.linear = start
-        self.stresses = stresses
+        self.keep, self.stresses = keep, stresses
 
     def take(self) -> tuple[float, int]:
         system, p, zeros = self.system, self.state, np.zeros(len(self.state))
@@ -465,76 +504,6 @@ class PivotedProblem(SingleCorrections):
         return count_after(self.system, self.start, self.linear - self.start, self.load_factor)
 
 
-class Equilibrium(Protocol):
-    """An equilibrium that is sought: its equations in a state, and the solution of their linearisation there."""
-
-    system: System
-    start: np.ndarray
-    counts_digits: bool  # whether the balance gives the number of reliable digits of the forces
-
-    @property
-    def state(self) -> np.ndarray:
-        """The state reached."""
-
-    def correct(self) -> Correction:
-        """Take the next correction, or several until one is small. Raises LinAlgError."""
-
-    def balance(self) -> Balance:
-        """Return the balance of forces in the state reached."""
-
-    def after_first(self) -> tuple[float, int]:
-        """Return the size of the first correction and the negative pivots of the second tangent."""
-
-    def count_after_linear(self) -> int:
-        """Return the negative pivots of the tangent at the start with the stress resultants of a linear step.
-
-        -1 if it is singular. It is called at most once, if the second tangent has another count.
-        """
-
-
-class _Search:
-    """The iteration for an equilibrium; keep: see `find_equilibrium`."""
-
-    def __init__(self, equilibrium: Equilibrium, newton: Newton, keep: int | None) -> None:
-        self.equilibrium, self.newton, self.keep = equilibrium, newton, keep
-        self.correct = equilibrium.correct
-        self.digits = np.nan
-
-    def check(self, correction: Correction) -> Termination | None:
-        """See `Problem`."""
-        lost = self.keep not in (None, correction.negative_pivots)
-        if correction.number > 2 and lost:
-            return Termination.LOST
-        if correction.diverges:
-            return Termination.DIVERGED
-        if not correction.is_small(self.newton):
-            return None
-        balance = self.equilibrium.balance()
-        ended = check_convergence(self.equilibrium.system, balance, self.newton, correction)
-        if ended is not None and lost:
-            return Termination.LOST
-        self.digits = balance.digits if self.equilibrium.counts_digits else np.nan
-        return ended
-
-
-def find_equilibrium(equilibrium: Equilibrium, newton: Newton, keep: int | None = None) -> NewtonResult:
-    """Iterate and return the result.
-
-    keep: the count of negative pivots to keep; the iteration stops if the tangent has another one from the third
-    iteration on. The second tangent uses the stresses of a linear step, and the result only reports its count.
-    """
-    problem = _Search(equilibrium, newton, keep)
-    ended, number, negative = iterate(problem, newton.iterations)
-    if ended is Termination.EXHAUSTED:
-        return NewtonResult(equilibrium.state, number, ended)
-    if not ended.good and ended is not Termination.INVERTED:
-        return NewtonResult(equilibrium.start, number, ended, negative)
-    first, second = equilibrium.after_first()
-    state = equilibrium.state if ended.good else equilibrium.start
-    linear = equilibrium.count_after_linear() if number > 1 and keep not in (None, second) else None
-    return NewtonResult(state, number, ended, negative, problem.digits, first, linear)
-
-
 def solve_equilibrium(
     system: System, start: np.ndarray, load_factor: float, newton: Newton, keep: int | None = None
 ) -> NewtonResult:
@@ -573,8 +542,8 @@ def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton
     banded = system.unknowns.pattern is None and system.model.frame is None and not len(system.connectors.one_sided)
     if banded and Proven.LOSES_DIGITS not in system.proven:
         problem = BandProblem(system, start, load_factor, newton, step, keep)
-        result = find_equilibrium(problem, newton, keep)
-        problem.return_scratch()
+        result = problem.find()
+        problem.space.return_scratch(system)
     if result is None or result.ended is Termination.SINGULAR:
-        result = find_equilibrium(PivotedProblem(system, start, load_factor, newton, step), newton, keep)
+        result = PivotedProblem(system, start, load_factor, newton, step, keep).find()
     return result

@@ -100,7 +100,6 @@ class _EulerStep(SingleCorrections):
     """
 
     def __init__(self, system: System, p: np.ndarray, load_factor: float, time: float) -> None:
-        super().__init__()
         self.system, self.before, self.state, self.load_factor, self.time = system, p, p.copy(), load_factor, time
         self.mass = _mass(system, p, load_factor)
 

@@ -2,23 +2,24 @@
 
 import re
 from collections.abc import Callable
-from typing import Any
+from inspect import isclass
+from typing import Any, get_type_hints
 
 import numpy as np
 from skfem import MeshLine1
 
 from beamfem import section
 from beamfem.cli.schema import Keyed, Kinds, Names, in_braces, keys_of, named, part, reader, shown
-from beamfem.curves import Arc, BSpline, Chain, Curve, Line, Polyline, elliptic_arc, spline_through_hermite
+from beamfem.curves import Curve, Parametric, elliptic_arc, spline_through_hermite
 from beamfem.damping import KelvinVoigt, Rayleigh
-from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, Element, ShearRigid
-from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
+from beamfem.element.element import Element
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point, graded
+from beamfem.model.parts_by_role import parts_in
 from beamfem.model.time_functions import Interpolated, kinks_of, sine, smooth_ramp
 from beamfem.parts.hinge import Hinge
-from beamfem.parts.parts_by_role import parts_in
+from beamfem.public_names import public, public_dataclasses
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import nearest
 
@@ -42,38 +43,35 @@ def _along(make: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _kind_of(make: Callable[..., Any]) -> str:
-    """Return the name of a class in lower case with hyphens, without Point before it and Load after it."""
-    name = make.__name__.removeprefix("Point").removesuffix("Load")
-    return re.sub(r"(?<=[a-z])(?=[A-Z])", "-", name).lower()
+    """Return a name in lower case with hyphens, without Point before it, and Load or Mechanics after it."""
+    name = make.__name__.removeprefix("Point").removesuffix("Load").removesuffix("Mechanics")
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", "-", name.replace("_", "-")).lower()
 
 
+def _by_kind(*made: Callable[..., Any]) -> dict[str, Callable[..., Any]]:
+    return {_kind_of(make): make for make in made}
+
+
+_SHAPES = (make for make in public("section") if get_type_hints(make).get("return") is section.Section)
 CURVES: Kinds = {
-    "line": Line,
-    "arc": Arc,
-    "elliptic-arc": elliptic_arc,
-    "polyline": Polyline,
-    "bspline": BSpline,
+    **_by_kind(*(make for make in public_dataclasses("curves") if make is not Parametric), elliptic_arc),
     "hermite": spline_through_hermite,
-    "chain": Chain,
 }
 SECTIONS: Kinds = {
-    **{_kind_of(make): _along(make) for make in (section.Rectangle, section.Circle, section.Tube)},
+    **{kind: _along(make) for kind, make in _by_kind(*_SHAPES).items()},
     "moments": _along(section.Section),
     "stiffness": _along(section.Section.from_stiffness),
     "layered": section.Layered,
     "fibres": section.Fibres,
 }
 MATERIALS: Kinds = {"material": Material}
-LAWS: Kinds = {_kind_of(make): make for make in (section.ElasticPlastic, section.RambergOsgood, section.Maxwell)}
+LAWS: Kinds = _by_kind(*(make for make in public_dataclasses("section") if hasattr(make, "stress")))
 DAMPING: Kinds = {"rayleigh": Rayleigh, "ratios": Rayleigh.from_ratios, "kelvin-voigt": KelvinVoigt}
 FUNCTIONS: Kinds = {"table": Interpolated, "sine": sine, "smooth-ramp": smooth_ramp}
-ELEMENTS: Kinds = {preset.__name__: preset for preset in (ANCF, ANCFCRBF, BilinearANCF, BilinearCRBF, CRBF, ShearRigid)}
-
-
+ELEMENTS: Kinds = {preset.__name__: preset for preset in public("element.element") if not isclass(preset)}
 _ACTING = ("supports", "joints", "connectors", "masses", "loads")
-ACTING: dict[str, Kinds] = {name: {_kind_of(make): make for make in parts_in(name)} for name in _ACTING}
-FORCES: Kinds = {_kind_of(make): make for make in (SplitContinuum, ElasticLine, Structural)}
-FORCES = {"continuum": ContinuumMechanics, **FORCES}
+ACTING: dict[str, Kinds] = {name: _by_kind(*parts_in(name)) for name in _ACTING}
+FORCES: Kinds = _by_kind(*public("element.forces"))
 
 
 def _curve(value: Any, names: Names) -> Any:

@@ -10,14 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.curves import Arc, BSpline, Chain, Line, Parametric, Polyline
-from beamfem.damping import KelvinVoigt, Rayleigh
-from beamfem.element.coordinates import Gradients, Rotation, ShearFree
-from beamfem.element.element import Element
-from beamfem.element.fields import Cubic, Lagrange
-from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
+from beamfem.curves import Parametric
 from beamfem.errors import InputError
-from beamfem.material import Material
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import energy_points, length_points, stations
 from beamfem.model.along_beam import AlongBeam, functions_along, jumps_along, kinks_along
@@ -27,19 +21,8 @@ from beamfem.model.model import Model
 from beamfem.model.rotating_frame import RotatingFrame
 from beamfem.model.sampled_functions import Sampled, SampledAlong, SampledSection
 from beamfem.model.time_functions import Interpolated
-from beamfem.parts.parts_by_role import listed_parts
-from beamfem.section import (
-    ElasticFibreSection,
-    ElasticPlastic,
-    Layer,
-    Layered,
-    Maxwell,
-    RambergOsgood,
-    RememberingFibreSection,
-    Section,
-    ShapedSection,
-    StiffnessSection,
-)
+from beamfem.public_names import public_dataclasses
+from beamfem.section import ElasticFibreSection, RememberingFibreSection, ShapedSection, StiffnessSection
 from beamfem.section.outline import RectangleOutline, TubeOutline
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import function_value
@@ -99,49 +82,24 @@ def find(name: str) -> Any:
     return result
 
 
-_CLASSES = {
-    kind.__name__: kind
-    for kind in (
-        Line,
-        Arc,
-        Polyline,
-        Chain,
-        BSpline,
-        Section,
-        ShapedSection,
-        RectangleOutline,
-        TubeOutline,
-        Layer,
-        Layered,
-        StiffnessSection,
-        ElasticFibreSection,
-        RememberingFibreSection,
-        ElasticPlastic,
-        RambergOsgood,
-        Maxwell,
-        SampledSection,
-        Material,
-        Rayleigh,
-        KelvinVoigt,
-        Element,
-        Cubic,
-        Lagrange,
-        Gradients,
-        Rotation,
-        ShearFree,
-        ContinuumMechanics,
-        SplitContinuum,
-        ElasticLine,
-        Structural,
-        Beam,
-        Point,
-        Interpolated,
-        SampledAlong,
-        Model,
-        RotatingFrame,
-        *listed_parts(),
-    )
-}
+_FOLDERS = ("curves", "damping", "element", "material", "section", "parts")
+_FURTHER = (  # public ones of other folders, and those whose objects public functions return
+    Model,
+    Beam,
+    Point,
+    RotatingFrame,
+    Interpolated,
+    ShapedSection,
+    StiffnessSection,
+    ElasticFibreSection,
+    RememberingFibreSection,
+    RectangleOutline,
+    TubeOutline,
+    SampledAlong,
+    SampledSection,
+)
+_PUBLIC = (kind for folder in _FOLDERS for kind in public_dataclasses(folder))
+_CLASSES: dict[str, Any] = {kind.__name__: kind for kind in (*_PUBLIC, *_FURTHER)}
 _OF_TIME = "amplitude"  # the field of a user's part that is known to be a function of time
 _DRAWN = 4  # intervals of an element at whose ends a section that varies is saved besides
 

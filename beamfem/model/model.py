@@ -18,6 +18,7 @@ from beamfem.model.contribution import Contribution, require_connector
 from beamfem.model.imposed_strains import ImposedStrain
 from beamfem.model.joint_base import Joint
 from beamfem.model.load_base import BodyLoad, CompositeLoad, LineLoad, Load, MovingLoad, PointLoad
+from beamfem.model.parts_by_role import parts_in
 from beamfem.model.rotating_frame import RotatingFrame
 from beamfem.model.supports import LineSupport, PointSupport, Support, SupportsAlong
 from beamfem.units import Units, units_of
@@ -43,13 +44,15 @@ def listed(name: str, given: Any, kinds: Kinds) -> tuple[Any, ...]:
 def refused(name: str, item: object, kinds: Kinds) -> str:
     """Return why a list of a Model cannot hold an item: where it belongs, or what it lacks."""
     said = f"{name} of a Model cannot hold {shown(item)}"
-    right = [other for other, own in kinds.items() if other != name and isinstance(item, own)]
-    if right:  # of several, what holds any contribution
-        return f"{said}; it belongs in {'connectors' if 'connectors' in right else right[0]}"
+    others = [other for other, own in kinds.items() if other != name and isinstance(item, own)]
+    if others:  # of several, what holds any contribution
+        return f"{said}; it belongs in {'connectors' if 'connectors' in others else others[0]}"
     lacking = [member for member in members(Contribution) if not hasattr(item, member)]
     if Contribution in kinds[name] and 0 < len(lacking) < len(members(Contribution)):
         return f"{said}, which has no {' and no '.join(lacking)}, but a Contribution"
-    return f"{said}, but {_NAMES[name]}"
+    right = [kind.__name__ for kind in ([Beam] if name == "beams" else parts_in(name))]
+    right += ["another Contribution"] if Contribution in kinds[name] else []
+    return f"{said}, but {' or '.join([', '.join(right[:-1]), right[-1]] if right[1:] else right)}"
 
 
 def resembles_beam(beams: Sequence[Beam], beam: Beam) -> str:
@@ -76,15 +79,6 @@ _KINDS: dict[str, tuple[type, ...]] = {
     "joints": (Joint, Contribution),
     "connectors": (Contribution,),
     "masses": (Contribution,),
-}
-_NAMES = {  # as parts are above models
-    "beams": "Beam",
-    "supports": "Clamp, Pin, Roller, Prescribed, Spring or Foundation",
-    "loads": "Gravity, DistributedLoad, Pressure, PointForce, PointMoment, MovingForce, Motor, Temperature or "
-    "Actuation",
-    "joints": "Rigid or Hinge",
-    "connectors": "a Contribution, such as SpringDamper",
-    "masses": "PointMass, RigidBody or another Contribution",
 }
 _ONE = {"masses": "mass"}  # the names of one, where it is not the plural without its last letter
 

@@ -52,8 +52,6 @@ LAYERS = (
     "linalg",
     "forms",
     "mesh",
-    "parts/parts_by_role",
-    "parts/listed_parts",
     "parts",
     "model",
     "element",
@@ -73,6 +71,7 @@ LAYERS = (
     "validation",
     "value_keys",
     "cached_properties",
+    "public_names",
     "extras",
     "errors",
 )

@@ -1,6 +1,6 @@
-"""A part of the package is its class and its lines of export: all that deals with parts takes it from there.
+"""A part of the package is its class and its line in the stub: all that deals with parts takes it from there.
 
-The file of new parts is imported as one of `beamfem.model` in a process of its own, where it is listed as it would be.
+The file of new parts is imported as one of `beamfem.parts` in a process of its own, where it is listed as it would be.
 """
 
 import json
@@ -11,22 +11,22 @@ from pathlib import Path
 import pytest
 
 import beamfem as bf
-from beamfem.cli.part_kinds import ACTING
-from beamfem.parts.parts_by_role import listed_parts, parts_in
+from beamfem.cli.part_kinds import ACTING, CURVES, ELEMENTS, FORCES, LAWS, SECTIONS
+from beamfem.model.parts_by_role import listed_parts, parts_in
 
 FILE = str(Path(__file__).parents[1] / "trial_parts.py")
 PARTS = ("SnowLoad", "Slide", "Weld", "Buffer")
 EXPORTED = f"""
 import importlib.util, json, sys
 import beamfem
-from beamfem.parts import listed_parts as parts
+from beamfem import public_names
 
-spec = importlib.util.spec_from_file_location("beamfem.model.trial_parts", {FILE!r})
+spec = importlib.util.spec_from_file_location("beamfem.parts.trial_parts", {FILE!r})
 module = importlib.util.module_from_spec(spec)
 sys.modules[spec.name] = module
 spec.loader.exec_module(module)
 for name in {PARTS}:
-    setattr(parts, name, getattr(module, name))
+    public_names.STUB += f"from .parts.trial_parts import {{name}} as {{name}}\\n"
     setattr(beamfem, name, getattr(module, name))
     beamfem.__all__.append(name)
 """
@@ -171,11 +171,17 @@ print(json.dumps(said))
 
 
 def test_kinds_are_those_of_model_files():
-    assert list(ACTING["supports"]) == ["clamp", "pin", "roller", "prescribed", "spring", "foundation"]
+    assert list(ACTING["supports"]) == ["clamp", "foundation", "pin", "prescribed", "roller", "spring"]
     assert list(ACTING["loads"]) == [
-        *("gravity", "force", "moment", "distributed", "pressure", "actuation", "temperature", "motor", "moving-force"),
+        *("actuation", "distributed", "gravity", "motor", "moving-force", "force", "moment", "pressure", "temperature"),
     ]
-    assert list(ACTING["joints"]) == ["rigid", "hinge"]
+    assert list(ACTING["joints"]) == ["hinge", "rigid"]
+    assert list(ACTING["masses"]) == ["mass", "rigid-body"]
+    assert set(CURVES) == {"arc", "bspline", "chain", "line", "polyline", "elliptic-arc", "hermite"}
+    assert set(SECTIONS) == {"circle", "rectangle", "tube", "moments", "stiffness", "layered", "fibres"}
+    assert set(LAWS) == {"elastic-plastic", "maxwell", "ramberg-osgood"}
+    assert set(ELEMENTS) == {"ANCF", "ANCFCRBF", "CRBF", "BilinearANCF", "BilinearCRBF", "ShearRigid"}
+    assert set(FORCES) == {"continuum", "elastic-line", "split-continuum", "structural"}
     assert len(listed_parts()) == sum(map(len, ACTING.values()))  # no two have one kind
 
 

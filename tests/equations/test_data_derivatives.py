@@ -11,7 +11,7 @@ import beamfem as bf
 from beamfem.equations.data_derivatives import residual_derivative
 from beamfem.equations.equations import STATICS, linearise, residual
 from beamfem.equations.system import system_of
-from beamfem.parts.parts_by_role import listed_parts
+from beamfem.model.parts_by_role import listed_parts
 from beamfem.section.moments import StiffnessSection
 
 DATA = {

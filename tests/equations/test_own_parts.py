@@ -108,7 +108,7 @@ def test_parts_that_no_equation_would_see_are_refused():
         def shapes(self, weight, placed):
             return ()
 
-    with pytest.raises(bf.InputError, match=r"loads of a Model cannot hold .*, but Gravity, DistributedLoad, Pressure"):
+    with pytest.raises(bf.InputError, match=r"loads of a Model cannot hold .*, but Actuation, DistributedLoad"):
         bf.Model([own], [bf.Clamp(own.start)], [Nothing()])
 
     class Plain(bf.PointSupport):

@@ -93,7 +93,11 @@ MODELS = {
     "a load as a support": (lambda: bf.Model([BEAM], [bf.Gravity((0, -9.81))]), BAD, "; it belongs in loads"),
     "a support as a load": (lambda: bf.Model([BEAM], loads=[bf.Clamp(END)]), BAD, "loads of a Model cannot hold"),
     "a support as a joint": (lambda: bf.Model([BEAM], joints=[bf.Clamp(END)]), BAD, "; it belongs in supports"),
-    "a number as a joint": (lambda: bf.Model([BEAM], joints=[1]), BAD, "cannot hold 1, but Rigid or Hinge"),
+    "a number as a joint": (
+        lambda: bf.Model([BEAM], joints=[1]),
+        BAD,
+        "cannot hold 1, but Hinge, Rigid or another",
+    ),
     "a foreign support": (lambda: bf.Model([BEAM], [bf.Clamp(OTHER.end)]), bf.UnknownPointError, "add it to beams"),
     "a foreign load": (lambda: bf.Model([BEAM], loads=[bf.Pressure(OTHER, 1.0)]), bf.UnknownPointError, "not in this"),
     "two supports of one coordinate": (

@@ -20,17 +20,16 @@ from beamfem.io.results_hdf5 import load
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.model.model import Model
 from beamfem.progress import kept, progress, returned_on_interrupt
+from beamfem.public_names import public
 from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import advice, warned
 from beamfem.results.status import Statistics, Status
-from beamfem.solve.motion.collocation import Gauss
 from beamfem.solve.motion.cut_steps import StepCutter, keep_momentum
 from beamfem.solve.motion.energy_judgement import CHUNK
-from beamfem.solve.motion.energy_momentum import EnergyMomentum
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.error_control import Reached, march_to_tolerance
 from beamfem.solve.motion.events import Event
-from beamfem.solve.motion.generalized_alpha import GeneralizedAlpha, Scheme, is_scheme
+from beamfem.solve.motion.generalized_alpha import Scheme, is_scheme
 from beamfem.solve.motion.marching_by_step import Memory
 from beamfem.solve.motion.motion_plan import MotionPlan, MotionSettings, planned, settings_of
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
@@ -39,7 +38,6 @@ from beamfem.solve.motion.start_acceleration import initial_acceleration
 from beamfem.solve.motion.time_marching import Failure, Record, cutter_of
 from beamfem.validation import positive
 
-_OWN = (GeneralizedAlpha, Gauss, EnergyMomentum)  # whose modules have to be loaded to find an integrator by its name
 _STEPS = 1000  # of a section
 _COORDINATES = 500_000  # times steps of a section, at most
 _BESIDE = 20  # steps on both sides of a section on which prescribed coordinates in it depend
@@ -393,6 +391,7 @@ def _settings_in(
     """Return the settings of a file, with what it cannot hold. Raises InputError for another integrator, or events."""
     name, fields = begun["integrator"]
     if integrator is None:
+        public("solve.motion")  # loads the modules in which those of the package are found by name
         try:
             integrator = cast("Scheme", class_of(name)(**fields))
         except NotImportedError:

@@ -1,4 +1,4 @@
-"""A load, a support, a joint and a connector as a file of `beamfem/model/` has them, see test_listed_parts.py."""
+"""A load, a support, a joint and a connector as a file of `beamfem/parts/` has them, see test_listed_parts.py."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field

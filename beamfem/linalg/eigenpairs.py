@@ -1,7 +1,7 @@
 """Eigenpairs of matrices, symmetric or not, with repeated eigenvalues."""
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ from beamfem.linalg.tangent import Factorised
 _DENSE = 64
 _UNKNOWNS_PER_PAIR = 6
 _LARGEST_DENSE = 4000  # unknowns up to which all eigenpairs are computed if the iteration for a few fails
-MOST_RESTARTS = 100  # of an iteration, which needs about ten unless round-off leaves no accurate digits
+_MOST_RESTARTS = 100  # of an iteration, which needs about ten unless round-off leaves no accurate digits
 _LANCZOS_VECTORS = (1, 3)  # times the usual number
 
 
@@ -65,32 +65,19 @@ def largest_pairs(mass: csr_array, factors: Factorised, count: int, known: np.nd
         x[own] = solve_triangular(root.T, y[:, ::-1])
         return values[::-1], x
 
-    def few(vectors: int) -> Pairs:
-        inverse = LinearOperator((n, n), matvec=projected, dtype=float)
+    def few(options: dict[str, Any]) -> Pairs:
         # ARPACK does not use the matrix itself if it is given the inverse
-        reciprocal, x = eigsh(
-            LinearOperator((n, n), matvec=np.asarray, dtype=float),
-            count,
-            M=mass,
-            sigma=0.0,
-            OPinv=inverse,
-            ncv=lanczos_vectors(vectors, count, n),
-            maxiter=MOST_RESTARTS,
-            v0=first_vector(n),
-        )
+        unused, inverse = (LinearOperator((n, n), matvec=apply, dtype=float) for apply in (np.asarray, projected))
+        reciprocal, x = eigsh(unused, count, M=mass, sigma=0.0, OPinv=inverse, **options)
         order = np.argsort(reciprocal, kind="stable")
-        return 1.0 / reciprocal[order], solved_once_more(x[:, order])
+        # The last vectors of a multiple eigenvalue come from round-off and have parts along stiff directions, which are
+        # small in x^T M x but not in x^T K x; a solve removes them.
+        solved = np.column_stack([projected(column) for column in (mass @ x[:, order]).T])
+        return 1.0 / reciprocal[order], orthonormal(solved, mass)
 
     def projected(b: np.ndarray) -> np.ndarray:
         solved = factors.solve(b - weighted @ (known.T @ b))
         return np.asarray(solved - known @ (weighted.T @ solved))
-
-    def solved_once_more(x: np.ndarray) -> np.ndarray:
-        # The last vectors of a multiple eigenvalue come from round-off and have parts along stiff directions, which are
-        # small in x^T M x but not in x^T K x; a solve removes them.
-        x = np.column_stack([projected(column) for column in (mass @ x).T])
-        root = cholesky(x.T @ (mass @ x), lower=True)
-        return np.asarray(solve_triangular(root, x.T, lower=True).T)
 
     mu, x = first_that_works(dense, few, n, count)
     for _ in range(2):
@@ -98,26 +85,28 @@ def largest_pairs(mass: csr_array, factors: Factorised, count: int, known: np.nd
     return mu[:count], x[:, :count]
 
 
-def first_that_works(dense: Callable[[], Any], few: Callable[[int], Any], n: int, count: int) -> Pairs:
+def orthonormal(x: np.ndarray, mass: csr_array) -> np.ndarray:
+    """Return independent vectors (n, m) with x^T mass x = 1 that span the same space."""
+    root = cholesky(x.T @ (mass @ x), lower=True)
+    return np.asarray(solve_triangular(root, x.T, lower=True).T)
+
+
+def first_that_works(
+    dense: Callable[[], Any], few: Callable[[dict[str, Any]], Any], n: int, count: int, further: int = 0
+) -> Pairs:
     """Return `count` eigenpairs of n unknowns from `few`, or all from `dense` if n is small or the iteration fails.
 
-    few(times): iterates with `times` the usual number of vectors, see `lanczos_vectors`. Raises ConvergenceError.
+    few(options): iterates with options of ARPACK; further: pairs that it finds besides. Raises ConvergenceError.
     """
     per_pair = _UNKNOWNS_PER_PAIR if n <= _LARGEST_DENSE else 2
-    if n > _DENSE and per_pair * count < n:
-        for vectors in _LANCZOS_VECTORS:
-            try:
-                return few(vectors)
-            except ArpackError:
-                continue
+    if n > _DENSE and per_pair * (count + further) < n:
+        for times in _LANCZOS_VECTORS:
+            vectors = min(n, times * max(2 * count + 1, 20))
+            with suppress(ArpackError):
+                return few({"ncv": vectors, "maxiter": _MOST_RESTARTS, "v0": first_vector(n)})
         if n > _LARGEST_DENSE:
             raise ConvergenceError(f"the iteration for {count} eigenvalues of {n} unknowns did not converge")
     return dense()
-
-
-def lanczos_vectors(times: int, count: int, n: int) -> int:
-    """Return the number of Lanczos vectors for `count` eigenpairs, `times` the usual one."""
-    return min(n, times * max(2 * count + 1, 20))
 
 
 def first_vector(n: int) -> np.ndarray:
@@ -131,31 +120,39 @@ _EQUAL = 1e-9  # relative distance of eigenvalues of which it does not matter wh
 _ROUND_OFF = 1e-14  # of the largest eigenvalue
 _INDEPENDENT = 1e-8  # of vectors of unit size: least square of what is left of them beside others
 
-# search(basis, count): the largest eigenvalues of A (I - basis basis^T M) and their vectors, all n of them or count
-Search = Callable[[np.ndarray, int], Pairs]
 
-
-def repeated(
-    search: Search,
-    times: Callable[[np.ndarray], np.ndarray],
-    mass: csr_array,
-    count: int,
-    size: Callable[[np.ndarray], np.ndarray],
-    negligible: float = 0.0,
+def dominant_pairs(
+    times: Callable[[np.ndarray], np.ndarray], mass: csr_array, count: int, which: str, negligible: float = 0.0
 ) -> Pairs:
     """Return at least the `count` largest eigenvalues of a real matrix A and their vectors (n, m), in descending order.
 
-    times(x): A x; mass (n, n): M, positive definite, gives the product in which found vectors are projected out; size:
-    of eigenvalues, by which they are sorted; negligible: size up to which they may be missing. Raises ConvergenceError.
+    times(x): A x; mass (n, n): M, positive definite, gives the product in which found vectors are projected out; which:
+    what is large, the size ("LM") or the real part ("LR"); negligible: size up to which they may be missing. Raises
+    ConvergenceError.
     """
-    n = mass.shape[0]
-    values, x = _largest(*search(np.empty((n, 0)), count), size)
+    n, size = mass.shape[0], np.abs if which == "LM" else np.real
+
+    def search(basis: np.ndarray, wanted: int) -> Pairs:
+        """Return the largest eigenvalues of A (I - basis basis^T M) and their vectors, some or all."""
+
+        def besides(x: np.ndarray) -> np.ndarray:
+            return times(x - basis @ (basis.T @ (mass @ x)))
+
+        def dense() -> Pairs:
+            return eig(np.column_stack([besides(column) for column in np.eye(n)]))
+
+        def few(options: dict[str, Any]) -> Pairs:
+            return eigs(LinearOperator((n, n), matvec=besides, dtype=float), wanted, which=which, **options)
+
+        return _largest(*first_that_works(dense, few, n, wanted, further=1), size)
+
+    values, x = search(np.empty((n, 0)), count)
     if len(values) == n:
         return values, x
     basis, further = _extended(np.empty((n, 0)), x, mass), _FURTHER
     negligible = max(negligible, _ROUND_OFF * float(size(values[:1])[0]))
     for _ in range(_SEARCHES):
-        more, beside = _largest(*search(basis, further), size)
+        more, beside = search(basis, further)
         least = float(size(values[count - 1 : count])[0])
         if float(size(more[:1])[0]) <= max(least + _EQUAL * abs(least), negligible):
             return values, x
@@ -183,35 +180,19 @@ def _extended(basis: np.ndarray, x: np.ndarray, mass: csr_array) -> np.ndarray:
     return np.column_stack([basis, parts])
 
 
-def general_pairs(mass: csr_array, stiffness: csr_array, factors: Factorised, count: int, known: Pairs) -> Pairs:
-    """Return the largest |mu| (m,) complex, descending, and x (n, m) with mass x = mu stiffness x.
+def general_pairs(mass: csr_array, factors: Factorised, count: int, known: Pairs) -> Pairs:
+    """Return the largest |mu| (m,) complex, descending, and x (n, m) with mass x = mu K x.
 
-    mass: symmetric, positive definite; stiffness: any matrix, and its factors; known: pairs that are not to be found
-    again, with x^T mass x = 1. Raises ConvergenceError if some were missed.
+    mass: symmetric, positive definite; factors: of any matrix K; known: pairs that are not to be found again, with
+    x^T mass x = 1. Raises ConvergenceError if some were missed.
     """
-    n = mass.shape[0]
     weighted = mass @ known[1]
 
-    def solved(b: np.ndarray) -> np.ndarray:
+    def times(x: np.ndarray) -> np.ndarray:
+        b = mass @ x
         return factors.solve(b - weighted @ (known[1].T @ b))
 
-    def search(basis: np.ndarray, wanted: int) -> Pairs:
-        found = mass @ basis
-
-        def dense() -> Pairs:
-            columns = mass.toarray() - found @ found.T
-            return eig(np.column_stack([solved(column) for column in columns.T]))
-
-        def few(vectors: int) -> Pairs:
-            inverse = LinearOperator((n, n), matvec=lambda b: solved(b - found @ (basis.T @ b)), dtype=float)
-            # with sigma = 0, ARPACK finds the smallest 1/mu of stiffness x = (1/mu) mass x
-            options = {"ncv": lanczos_vectors(vectors, wanted, n), "maxiter": MOST_RESTARTS, "v0": first_vector(n)}
-            reciprocal, x = eigs(stiffness, wanted, M=mass, sigma=0.0, OPinv=inverse, **options)
-            return 1.0 / reciprocal, x
-
-        return first_that_works(dense, few, n, wanted + 1)
-
-    values, x = repeated(search, lambda b: solved(mass @ b), mass, count, np.abs)
+    values, x = dominant_pairs(times, mass, count, "LM")
     values, x = values[:count], x[:, :count]
     # Wielandt's deflation preserves the other eigenvalues, but changes their vectors along the known ones
     fractions = known[0][:, None] * (weighted.T @ x) / (values - known[0][:, None])

@@ -5,8 +5,7 @@ from scipy.sparse import csr_array
 
 from beamfem.equations.system import system_of
 from beamfem.errors import InputError
-from beamfem.linalg.eigenpairs import digits_for
-from beamfem.linalg.lapack import cholesky, solve_triangular
+from beamfem.linalg.eigenpairs import digits_for, orthonormal
 from beamfem.results.solution import State
 from beamfem.solve.linear.quadratic_modes import slowest_rates
 from beamfem.solve.modes.mode_stiffness import upright
@@ -40,9 +39,8 @@ def damped_modes(
         rigid = np.count_nonzero(rates == 0.0)
         shapes, words = np.empty((0, model.size)), tuple[str, ...]()
         if rigid:
-            still = vectors[:, :rigid].real
-            still = solve_triangular(cholesky(still.T @ (mass @ still), lower=True), still.T, lower=True)
-            shapes, words = sort_rigid(Pencil(system, state.p, state.at), still @ transformation.T)
+            still = orthonormal(vectors[:, :rigid].real, mass)
+            shapes, words = sort_rigid(Pencil(system, state.p, state.at), still.T @ transformation.T)
     rates, vectors = rates[rigid:], vectors[:, rigid:]
     order = np.lexsort((-rates.real, rates.imag))
     rates, vectors = rates[order], vectors[:, order]

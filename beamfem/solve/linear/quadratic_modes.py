@@ -1,11 +1,10 @@
 """Eigenvalues s of (s^2 M + s C + K) x = 0, the slowest ones of damped or gyroscopic systems."""
 
 import numpy as np
-from scipy.sparse import csc_array, csr_array, dia_array
-from scipy.sparse.linalg import LinearOperator, eigs
+from scipy.sparse import csc_array, csr_array, eye_array
 
-from beamfem.linalg.eigenpairs import MOST_RESTARTS, Pairs, first_that_works, first_vector, lanczos_vectors, repeated
-from beamfem.linalg.lapack import cholesky, eig, solve_triangular, superlu, svd
+from beamfem.linalg.eigenpairs import Pairs, dominant_pairs, orthonormal
+from beamfem.linalg.lapack import superlu, svd
 
 _SPARE = 4  # eigenvalues found beyond those asked for
 _REAL = 1e-8  # of a rate: imaginary parts below this fraction are round-off, as of double roots
@@ -46,23 +45,8 @@ def slowest_rates(
         x = -dynamic.solve(mass @ y[n:] + momentum @ y[:n])
         return np.asarray(np.concatenate([x, y[:n] + shift * x]) / units)
 
-    def search(basis: np.ndarray, wanted: int) -> Pairs:
-        def deflated(y: np.ndarray) -> np.ndarray:
-            return times(y - basis @ (basis.T @ y))
-
-        def dense() -> Pairs:
-            return eig(np.column_stack([deflated(column) for column in np.eye(2 * n)]))
-
-        def few(vectors: int) -> Pairs:
-            operator = LinearOperator((2 * n, 2 * n), matvec=deflated, dtype=float)
-            options = {"ncv": lanczos_vectors(vectors, wanted, 2 * n), "maxiter": MOST_RESTARTS}
-            found: Pairs = eigs(operator, wanted, which="LM", v0=first_vector(2 * n), **options)
-            return found
-
-        return first_that_works(dense, few, 2 * n, wanted + 1)
-
-    product = csr_array(dia_array((np.ones((1, 2 * n)), [0]), shape=(2 * n, 2 * n)))
-    values, y = repeated(search, times, product, min(2 * count + _SPARE, 2 * n), np.abs)
+    product = csr_array(eye_array(2 * n))
+    values, y = dominant_pairs(times, product, min(2 * count + _SPARE, 2 * n), "LM")
     finite = np.abs(values) > np.finfo(float).eps * np.abs(values).max()
     rates, x = shift + 1.0 / values[finite], scale[:, None] * y[:n, finite]
     rates = np.where(np.abs(rates.imag) <= _REAL * np.abs(rates), rates.real, rates)
@@ -79,9 +63,8 @@ def _rigid_motions(mass: csr_array, stiffness: csr_array, count: int, shift: flo
     factors = superlu(csc_array(stiffness + shift**2 * mass))
     x = np.random.default_rng(0).standard_normal((mass.shape[0], count))
     for _ in range(_SOLVES):
-        x = factors.solve(mass @ x)
-        x = solve_triangular(cholesky(x.T @ (mass @ x), lower=True), x.T, lower=True).T
-    return np.asarray(x)
+        x = orthonormal(factors.solve(mass @ x), mass)
+    return x
 
 
 def _slowest(mass: csr_array, stiffness: csr_array, rigid: int, resting: float) -> float:

@@ -12,7 +12,6 @@ from beamfem.equations.rigid_velocity import RigidVelocity
 from beamfem.equations.system import Proven, system_of
 from beamfem.errors import InputError
 from beamfem.linalg.eigenpairs import Pairs, digits_for, general_pairs, nothing_known
-from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 from beamfem.precision.roundoff import LOSES
@@ -382,9 +381,9 @@ def _general(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:
         shift = pencil.shift(rigid.shape[1])
     if lost > WRONG:
         tangent = pencil.exact(shift)
-    factors, stiffness = tangent.factorised(pencil.system.rotated), tangent.sparse(UNROTATED)
     known = np.full(rigid.shape[1], -1.0 / shift), rigid
-    reciprocal, vectors = general_pairs(pencil.mass, stiffness, factors, count + _SPARE, known)
+    factors = tangent.factorised(pencil.system.rotated)
+    reciprocal, vectors = general_pairs(pencil.mass, factors, count + _SPARE, known)
     finite = np.abs(reciprocal) > np.finfo(float).eps * np.abs(reciprocal).max()
     vectors = vectors[:, finite]
     sizes = np.real((np.conj(vectors) * (pencil.mass @ vectors)).sum(axis=0))

@@ -12,8 +12,8 @@ from beamfem.cached_properties import cached_property
 from beamfem.equations.equations import INERTIA, STATICS, linearise, residual_at_rest, with_stresses
 from beamfem.equations.system import Proven, System
 from beamfem.errors import ConvergenceError
-from beamfem.linalg.eigenpairs import Pairs, largest_pairs, nothing_known
-from beamfem.linalg.lapack import LinAlgError, cholesky, eigh, solve_triangular
+from beamfem.linalg.eigenpairs import Pairs, largest_pairs, nothing_known, orthonormal
+from beamfem.linalg.lapack import LinAlgError, eigh
 from beamfem.linalg.tangent import UNROTATED, Factorised, Stresses, Tangent
 from beamfem.precision.roundoff import LAST_DIGITS, LOSES, lost_digits
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
@@ -275,9 +275,7 @@ def _solved(pencil: Pencil, tangent: Tangent, known: np.ndarray, vectors: np.nda
     factors, result = tangent.factorised(pencil.system.rotated), _besides(pencil, known, vectors)
     for _ in range(_SOLVES):
         result = np.column_stack([factors.solve(column) for column in (pencil.mass @ result).T])
-        result = _besides(pencil, known, result)
-        lower = cholesky(result.T @ (pencil.mass @ result), lower=True)
-        result = solve_triangular(lower, result.T, lower=True).T
+        result = orthonormal(_besides(pencil, known, result), pencil.mass)
     return result
 
 

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array, eye_array
-from scipy.sparse.linalg import LinearOperator, eigs
 
 from beamfem.equations.connectors import Connector
 from beamfem.equations.differences import differentiated
@@ -13,8 +12,8 @@ from beamfem.equations.stress_resultants import free_group, resultants
 from beamfem.equations.system import System
 from beamfem.errors import InputError
 from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS
-from beamfem.linalg.eigenpairs import MOST_RESTARTS, Pairs, first_that_works, first_vector, lanczos_vectors, repeated
-from beamfem.linalg.lapack import eig, eigh, qr
+from beamfem.linalg.eigenpairs import dominant_pairs, first_vector
+from beamfem.linalg.lapack import eigh, qr
 from beamfem.linalg.tangent import UNROTATED, Factorised
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes, weak_stiffness
 from beamfem.solve.modes.pencil import is_symmetric
@@ -263,21 +262,7 @@ def _softened(geometric: csr_array, factors: Factorised, multipliers: int, count
         result[n - multipliers :] = 0.0
         return result
 
-    def search(basis: np.ndarray, wanted: int) -> Pairs:
-        def besides(x: np.ndarray) -> np.ndarray:
-            return lost(x - basis @ (basis.T @ x))
-
-        def few(vectors: int) -> Pairs:
-            operator = LinearOperator((n, n), matvec=besides, dtype=float)
-            options = {"ncv": lanczos_vectors(vectors, wanted, n), "maxiter": MOST_RESTARTS, "v0": first_vector(n)}
-            return eigs(operator, wanted, which="LR", **options)
-
-        def dense() -> Pairs:
-            return eig(np.column_stack([besides(column) for column in np.eye(n)]))
-
-        return first_that_works(dense, few, n, wanted + 1)
-
-    x = repeated(search, lost, csr_array(eye_array(n)), count + _SPARE, np.real, none)[1][:, : count + _SPARE + 1]
+    x = dominant_pairs(lost, csr_array(eye_array(n)), count + _SPARE, "LR", none)[1][:, : count + _SPARE + 1]
     # close eigenvalues may appear as a complex pair, whose real and imaginary parts span their shapes
     parts = np.column_stack([x.real, x.imag])
     basis, triangle, _ = qr(parts, mode="economic", pivoting=True)

@@ -1,7 +1,6 @@
 """Labelled arrays in HDF5 files, with names and units as in netCDF: axes of beams, limit points and bifurcations."""
 
 from collections.abc import Callable, Iterator
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -15,68 +14,27 @@ from beamfem.results.path import Bifurcation, Path, PathState
 from beamfem.results.solution import Solution
 
 
-def array(group: Any, name: str, shape: tuple[int, ...], meaning: str, unit: str) -> Any:
-    """Return a new array of floats with the attributes `long_name` and `units`."""
-    from h5py import Dataset, h5d, h5s, h5t  # slow to import, and need not be installed
-
-    made = h5d.create(group.id, name.encode(), h5t.NATIVE_DOUBLE, h5s.create_simple(shape), _plain())
-    _describe(made, "long_name", meaning)
-    _describe(made, "units", unit)
-    return Dataset(made)
-
-
 def scale(group: Any, name: str, values: np.ndarray, meaning: str, unit: str) -> Any:
     """Return a new dimension scale."""
-    from h5py import h5ds
-
-    result = array(group, name, values.shape, meaning, unit)
-    write(result, values)
-    h5ds.set_scale(result.id, name.encode())
+    result = _array(group, name, values.shape, meaning, unit)
+    result[...] = values
+    result.make_scale(name)
     return result
 
 
 def variable(group: Any, name: str, meaning: str, unit: str, scales: tuple[Any, ...]) -> Any:
     """Return a new array over dimension scales."""
-    from h5py import h5ds
-
-    result = array(group, name, tuple(len(over) for over in scales), meaning, unit)
-    for dimension, over in enumerate(scales):
-        h5ds.attach_scale(result.id, over.id, dimension)
+    result = _array(group, name, tuple(len(over) for over in scales), meaning, unit)
+    for dimension, over in zip(result.dims, scales, strict=True):
+        dimension.attach_scale(over)
     return result
 
 
-def write(dataset: Any, values: np.ndarray, rows: slice = slice(None)) -> None:
-    """Write values into some rows of an array, or all."""
-    from h5py import h5s
-
-    if dataset.shape == values.shape:
-        dataset.id.write(h5s.ALL, h5s.ALL, np.ascontiguousarray(values, dtype=float))
-    else:
-        dataset[rows] = values
-
-
-@lru_cache(maxsize=1)
-def _plain() -> Any:
-    """Return the properties of new arrays: files do not tell when they were made."""
-    from h5py import h5p
-
-    properties = h5p.create(h5p.DATASET_CREATE)
-    properties.set_obj_track_times(False)
-    return properties
-
-
-@lru_cache(maxsize=1)
-def _kind_of_text() -> Any:
-    """Return the type and the shape of a text in a file."""
-    from h5py import h5s, h5t, string_dtype
-
-    return h5t.py_create(string_dtype(), logical=True), h5s.create(h5s.SCALAR)
-
-
-def _describe(made: Any, name: str, text: str) -> None:
-    from h5py import h5a, string_dtype
-
-    h5a.create(made, name.encode(), *_kind_of_text()).write(np.array(text, dtype=string_dtype()))
+def _array(group: Any, name: str, shape: tuple[int, ...], meaning: str, unit: str) -> Any:
+    """Return a new array of floats with the attributes `long_name` and `units`."""
+    made = group.create_dataset(name, shape, float)
+    made.attrs["long_name"], made.attrs["units"] = meaning, unit
+    return made
 
 
 AXES = "beams"
@@ -148,9 +106,9 @@ class _Axis:
     def write(self, rows: slice, table: np.ndarray) -> None:
         """Write some rows of the values of `_tables`."""
         for moved, values in zip(self._moved, table, strict=False):
-            write(moved, values[:, self._ends], rows)
+            moved[rows] = values[:, self._ends]
         for force, values in zip(self._forces, table[3:], strict=True):
-            write(force, values, rows)
+            force[rows] = values
 
 
 _STATE = ("at", "p")
@@ -178,16 +136,17 @@ def load_path(file: Any, rows: Solution) -> Solution:
     if "limit_points" not in file:
         return rows
     model, zeros = rows.model, np.zeros(rows.model.size)
-    states = tuple(
-        PathState(p, zeros, zeros, float(at), model, stability=False, turned=turned)
-        for at, p, turned in _rows(file["limit_points"], _STATE)
-    )
-    crossings = tuple(
-        Bifurcation(p, zeros, zeros, float(at), model, mode, tangent, stability=False, turned=turned)
-        for at, p, mode, tangent, turned in _rows(file["bifurcations"], _CROSSING)
-    )
+
+    def states(name: str, kind: type[PathState], parts: tuple[str, ...]) -> tuple[Any, ...]:
+        rows = _rows(file[name], parts)
+        return tuple(
+            kind(p, zeros, zeros, float(at), model, *more, stability=False, turned=turned)
+            for at, p, *more, turned in rows
+        )
+
     members = {name: getattr(rows, name) for name in Solution.__dataclass_fields__}
-    return Path(**members, limit_points=states, bifurcations=crossings)
+    limits, crossings = states("limit_points", PathState, _STATE), states("bifurcations", Bifurcation, _CROSSING)
+    return Path(**members, limit_points=limits, bifurcations=crossings)
 
 
 def _rows(group: Any, parts: tuple[str, ...]) -> Any:

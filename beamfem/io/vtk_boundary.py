@@ -6,8 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from beamfem.cached_properties import cached_property
-from beamfem.io.vtk_cells import VERTEX, Content, by_precision, legend_of_beams
+from beamfem.io.vtk_cells import VERTEX, Content, legend_of_beams
 from beamfem.mesh.reference import length_points
 from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import Contribution
@@ -176,15 +175,15 @@ class Boundary:
         A displacement is that of the axis; what does not apply at a vertex is zero there.
         """
         part, chosen = solution[rows], self.content.chosen(self.names)
-        position = self._positions(part.p)
-        result = {"points": position, "displacement": position - self._reference}
-        if self.content.geometry == "reference":
-            result["points"] = np.repeat(self._reference[None], len(part), axis=0)
+        at_rest = _flat(np.concatenate([np.empty((0, 2)), *(group.points.reference for group in self.groups)]))
+        moved = [np.empty((len(part), 0, 2)), *(group.points.positions(part.p)[0] for group in self.groups)]
+        position = _flat(np.concatenate(moved, axis=1))
+        result = {"points": position, "displacement": position - at_rest}
         names = [name for name in chosen if name in _COMPONENTS]
         values = [group.values(part) for group in self.groups] if names else []
         for name in names:
             result[name] = self._table(name, values, len(part))
-        return by_precision({name: result[name] for name in ("points", *chosen)}, self.content)
+        return self.content.finished({name: result[name] for name in ("points", *chosen)}, at_rest[None])
 
     def _table(self, name: str, values: list[dict[str, np.ndarray]], steps: int) -> np.ndarray:
         components = _COMPONENTS[name]
@@ -192,12 +191,3 @@ class Boundary:
         parts = [fields[name] if name in fields else np.zeros((steps, size, components)) for fields, size in sizes]
         table = np.concatenate(parts, axis=1)
         return table if components == 3 else table[..., 0]
-
-    def _positions(self, p: np.ndarray) -> np.ndarray:
-        """Return the positions (steps, points, 3) [m] of the vertices in states p (steps, n)."""
-        parts = [np.empty((len(p), 0, 2)), *(group.points.positions(p)[0] for group in self.groups)]
-        return _flat(np.concatenate(parts, axis=1))
-
-    @cached_property
-    def _reference(self) -> np.ndarray:
-        return _flat(np.concatenate([np.empty((0, 2)), *(group.points.reference for group in self.groups)]))

@@ -9,21 +9,20 @@ import numpy as np
 from beamfem.cached_properties import cached_property
 from beamfem.io.parts_in_words import material_in_words, section_in_words
 from beamfem.material import Material
-from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import reference_axis
 from beamfem.model.beam import Beam, names
 from beamfem.model.model import Model
 from beamfem.results import postprocess
-from beamfem.results.axis_fields import section_forces
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import LikeBeams, equal_beams
 from beamfem.results.full_turns import rotation
 from beamfem.results.nodal import rate_at
+from beamfem.results.section_forces import at_points
 from beamfem.results.solution import Solution
 from beamfem.results.stresses import (
     in_the_plane,
     second_piola_kirchhoff,
-    self_stress,
+    stress_in_layer,
     von_mises,
     warn_of_unknown_stress,
 )
@@ -33,7 +32,7 @@ from beamfem.value_keys import by_value
 
 _LINES_PER_ELEMENT = 12
 _ACROSS = 2  # intervals of a layer, whose stress is a parabola at most
-_FORCES = {"normal": "normal_force", "shear": "shear_force", "moment": "bending_moment"}
+_FORCES = ("normal_force", "shear_force", "bending_moment")
 
 
 class Samples:
@@ -47,15 +46,14 @@ class Samples:
         self.group, points = group, group.points
         self.points, self.layer, self.order, self.mesh = points, layer, order, points.mesh
         self.across = across
-        self.distributions = points.distributions
         if layer is None:
             self.y = np.zeros((len(self.points.xi), 1))
             self.element = np.arange(self.mesh.elements)
         else:
-            low, high = np.moveaxis(self.distributions.layers[:, layer], -1, 0)
+            low, high = np.moveaxis(points.distributions.layers[:, layer], -1, 0)
             self.y = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, across + 1)
             self.y[:, -1] = high
-            has_layer = (self.distributions.number > layer).reshape(self.mesh.elements, -1)
+            has_layer = (points.distributions.number > layer).reshape(self.mesh.elements, -1)
             self.element = np.flatnonzero(has_layer.any(axis=1))
         self.axis = reference_axis(self.mesh, self.points.element, self.points.xi)
         self.reference = self._at_heights(self.points.reference, self.axis.d)
@@ -64,11 +62,6 @@ class Samples:
     def size(self) -> int:
         """Number of points."""
         return len(self.element) * len(self.order)
-
-    @property
-    def at_rest(self) -> np.ndarray:
-        """The reference positions of all points (1, points, 3) [m]."""
-        return self._by_cell(self.reference[None])
 
     @property
     def material(self) -> Material | None:
@@ -80,32 +73,28 @@ class Samples:
 
     def arrays(self, solution: Solution, rows: slice = slice(None)) -> dict[str, np.ndarray]:
         """Return numbers (steps, points), vectors (..., 3) and tensors (..., 6) of some rows of a solution."""
-        element, xi, p, v = self.points.element, self.points.xi, solution.p[rows], solution.v[rows]
-        now = self.points.now(p)
+        now = self.points.now(p := solution.p[rows])
         position = self._at_heights(now.r, now.d)
         result = {
             "points": position,
             "displacement": position - self.reference,
-            "rotation": np.repeat(rotation(self.points, solution, rows)[..., None], self.y.shape[-1], axis=-1),
+            "rotation": self._at_all_heights(rotation(self.points, solution, rows)),
         }
         if not solution.static:
-            rate = rate_at(self.mesh, p, v, element, xi)
+            rate = rate_at(self.mesh, p, solution.v[rows], self.points.element, self.points.xi)
             result["velocity"] = self._at_heights(rate.r, rate.d)
         strain = postprocess.green_strain(now, self.axis, self.y)
         for component in ("xx", "yy", "xy"):
             result[f"green_strain_{component}"] = getattr(strain, component)
-        forces = section_forces(self.points, solution, rows)
-        eigenstress = self_stress(solution, self.points, self.layer, self.y, rows)
-        result |= self._stress(forces, eigenstress)
-        result["cauchy_stress"] = in_the_plane(
-            result["stress_xx"], result["stress_xy"], postprocess.direction(self.mesh, now)
-        )
-        result["second_piola_kirchhoff_stress"] = second_piola_kirchhoff(
-            result["cauchy_stress"], now, self.axis, self.y
-        )
-        for name, values in forces.items():
-            result[_FORCES[name]] = np.repeat(values[..., None], self.y.shape[-1], axis=-1)
-        return {name: self._by_cell(values) for name, values in result.items()}
+        forces = at_points(solution, self.points, rows)
+        along, sheared = stress_in_layer(solution, self.points, self.layer, self.y, forces, rows)
+        cauchy = in_the_plane(along, sheared, postprocess.direction(self.mesh, now))
+        result |= {"stress_xx": along, "stress_xy": sheared, "von_mises_stress": von_mises(along, sheared)}
+        result["cauchy_stress"] = cauchy
+        result["second_piola_kirchhoff_stress"] = second_piola_kirchhoff(cauchy, now, self.axis, self.y)
+        for number, name in enumerate(_FORCES):
+            result[name] = self._at_all_heights(forces[:, number])
+        return {name: self.by_cell(values) for name, values in result.items()}
 
     @cached_property
     def beam(self) -> np.ndarray:
@@ -127,24 +116,18 @@ class Samples:
     @cached_property
     def _finite(self) -> dict[str, np.ndarray]:
         """Whether a component of stress is known at all heights, at each point of the axis (points,)."""
-        ones = np.ones((1, len(self.points.xi)))
-        unit = self._stress({"normal": ones, "shear": ones, "moment": ones})
-        return {name: np.isfinite(values).all(axis=-1)[0] for name, values in unit.items()}
+        ones, distributions = np.ones((1, len(self.points.xi))), self.points.distributions
+        along = np.isfinite(distributions.normal_stress(self.layer, self.y, ones, ones)).all(axis=-1)[0]
+        sheared = np.isfinite(distributions.shear_stress(self.layer, self.y, ones)).all(axis=-1)[0]
+        return {"stress_xx": along, "stress_xy": sheared, "von_mises_stress": along & sheared}
 
-    def _stress(self, forces: dict[str, np.ndarray], self_stress: np.ndarray | float = 0.0) -> dict[str, np.ndarray]:
-        """Return the stress (steps, points of the axis, heights) [Pa] of section forces (steps, points of the axis).
-
-        self_stress: what layers do against each other, of the same shape.
-        """
-        distributions = self.distributions
-        along = distributions.normal_stress(self.layer, self.y, forces["normal"], forces["moment"]) + self_stress
-        sheared = distributions.shear_stress(self.layer, self.y, forces["shear"])
-        return {"stress_xx": along, "stress_xy": sheared, "von_mises_stress": von_mises(along, sheared)}
+    def _at_all_heights(self, values: np.ndarray) -> np.ndarray:
+        return np.repeat(values[..., None], self.y.shape[-1], axis=-1)
 
     def _at_heights(self, r: np.ndarray, d: np.ndarray) -> np.ndarray:
         return np.asarray(r[..., None, :] + self.y[..., None] * d[..., None, :])
 
-    def _by_cell(self, values: np.ndarray) -> np.ndarray:
+    def by_cell(self, values: np.ndarray) -> np.ndarray:
         """Order values (steps, points of the axis, heights, ...) by cells; vectors of the plane get z = 0."""
         steps, tail = len(values), values.shape[3:]
         by_element = values.reshape(steps, self.mesh.elements, -1, *tail)[:, self.element]
@@ -157,7 +140,9 @@ def bodies(model: Model, alike: bool = False) -> list[Samples]:
 
     They are exact for the field r0(x) + y d(x), and for the parabola of the shear stress in a rectangle.
     """
-    groups = equal_beams(model, [AxisPoints.spaced(mesh, _degree(mesh)) for mesh in model.meshes], 1)
+    fields = [mesh.beam.element.field for mesh in model.meshes]
+    degrees = [max(3, field.degree, field.director_degree) for field in fields]
+    groups = equal_beams(model, list(map(AxisPoints.spaced, model.meshes, degrees)), 1)
     return [sample for group in groups for sample in _body(group, alike)]
 
 
@@ -165,10 +150,6 @@ def centrelines(model: Model) -> list[Samples]:
     """Return the points of straight pieces, because ParaView 5.11 crashes on Lagrange curves."""
     groups = equal_beams(model, [AxisPoints.spaced(mesh, _LINES_PER_ELEMENT) for mesh in model.meshes], 1)
     return [Samples(group, None, np.arange(_LINES_PER_ELEMENT + 1)) for group in groups]
-
-
-def _degree(mesh: BeamMesh) -> int:
-    return max(3, mesh.beam.element.field.degree, mesh.beam.element.field.director_degree)
 
 
 def _body(group: LikeBeams, alike: bool) -> list[Samples]:
@@ -231,6 +212,12 @@ class Content:
         for name in self.fields or ():
             require_known(f"fields has {shown(name)}, which is not there", name, known)
 
+    def finished(self, arrays: dict[str, np.ndarray], at_rest: np.ndarray) -> dict[str, np.ndarray]:
+        """Return arrays with points where they are wanted, and numbers of four bytes if these are; at_rest (1, ...)."""
+        if self.geometry == "reference":
+            arrays["points"] = np.repeat(at_rest, len(arrays["points"]), axis=0)
+        return {name: values.astype(np.float32) for name, values in arrays.items()} if self.single else arrays
+
 
 WHOLE = Content()
 
@@ -248,7 +235,6 @@ class Cells:
         self.whole, self.content = whole, content
         self.beams, self.unit = model.beams, model.unit
         self.samples: Sequence[Samples] = bodies(model, alike) if whole else centrelines(model)
-        materials, sections = _distinct(_materials(model)), _distinct([beam.section for beam in model.beams])
         # elements by beams and their layers, of all samples
         beam = np.concatenate([part.beam for part in self.samples])
         sample = np.repeat(np.arange(len(self.samples)), [len(part.element) for part in self.samples])
@@ -256,12 +242,14 @@ class Cells:
         order = np.lexsort((layer[sample], beam))
         pieces = np.array([1 if whole else part.points.pieces for part in self.samples])
         cells = np.repeat(sample[order], pieces[sample[order]])  # the sample of each cell
-        material = _numbers([part.material for part in self.samples], materials)
-        section = _numbers([part.mesh.beam.section for part in self.samples], sections)
+        materials, material = _numbered([part.material for part in self.samples], _materials(model))
+        sections, section = _numbered(
+            [part.mesh.beam.section for part in self.samples], [beam.section for beam in model.beams]
+        )
         self.numbers = {
             "beam": np.repeat(beam[order], pieces[sample[order]]),
-            "material": np.array(material)[cells],
-            "section": np.array(section)[cells],
+            "material": material[cells],
+            "section": section[cells],
             **({"layer": layer[cells]} if whole else {}),
         }
         self.legend = {
@@ -304,10 +292,8 @@ class Cells:
         if self.whole and self.content.fields is None:
             chosen = [name for name in chosen if name not in _TENSORS]
         result = {name: self._joined([part[name] for part in parts]) for name in chosen}
-        if self.content.geometry == "reference":
-            at_rest = self._joined([part.at_rest for part in self.samples])
-            result["points"] = np.repeat(at_rest, len(result["points"]), axis=0)
-        return by_precision(result, self.content)
+        at_rest = self._joined([part.by_cell(part.reference[None]) for part in self.samples])
+        return self.content.finished(result, at_rest)
 
     def _known(self, parts: Sequence[dict[str, np.ndarray]]) -> list[str]:
         """Return the names of the arrays of samples but for a stress that is known nowhere."""
@@ -328,11 +314,6 @@ def _ordered(counts: np.ndarray, order: np.ndarray) -> np.ndarray | None:
     return np.repeat(first[order] - np.cumsum(own) + own, own) + np.arange(int(own.sum()))
 
 
-def by_precision(arrays: dict[str, np.ndarray], content: Content) -> dict[str, np.ndarray]:
-    """Return arrays with numbers of four bytes where `content` asks for them."""
-    return {name: values.astype(np.float32) for name, values in arrays.items()} if content.single else arrays
-
-
 def _materials(model: Model) -> list[Material | None]:
     """Return the materials of beams and layers; last, so that lines count as bodies do, None for what has its own."""
     materials: list[Material | None] = []
@@ -343,18 +324,13 @@ def _materials(model: Model) -> list[Material | None]:
     return [*(material for material in materials if material is not None), *lines]
 
 
-def _distinct(items: Sequence[Any]) -> list[Any]:
-    """Return different items in the order of their first."""
+def _numbered(items: Sequence[Any], among: Sequence[Any]) -> tuple[list[Any], np.ndarray]:
+    """Return different ones of some items in the order of their first, and the place of each item among them."""
     first: dict[Any, Any] = {}
-    for item in items:
+    for item in among:
         first.setdefault(by_value(item), item)
-    return list(first.values())
-
-
-def _numbers(items: Sequence[Any], distinct: Sequence[Any]) -> list[int]:
-    """Return the place of each item among different ones."""
-    places = {by_value(item): number for number, item in enumerate(distinct)}
-    return [places[by_value(item)] for item in items]
+    places = {key: number for number, key in enumerate(first)}
+    return list(first.values()), np.array([places[by_value(item)] for item in items])
 
 
 def legend_of_beams(beams: Sequence[Beam]) -> dict[str, list[str]]:

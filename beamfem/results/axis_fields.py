@@ -15,7 +15,7 @@ from beamfem.results.full_turns import rotation
 from beamfem.results.postprocess import Components, Fields
 from beamfem.results.section_forces import at_points
 from beamfem.results.solution import Solution
-from beamfem.results.stresses import self_stress
+from beamfem.results.stresses import stress_in_layer
 from beamfem.validation import require_known, shown
 
 
@@ -55,9 +55,7 @@ class Quantity:
 def fields(points: AxisPoints, solution: Solution) -> Fields:
     """Return the fields at points over the steps; arrays (steps, points, ...)."""
     now, forces, height = points.now(solution.p), at_points(solution, points), np.zeros((len(points.xi), 1))
-    along = points.distributions.normal_stress(None, height, forces[:, 0], forces[:, 2])
-    along = (along + self_stress(solution, points, None, height))[..., 0]
-    sheared = points.distributions.shear_stress(None, height, forces[:, 1])[..., 0]
+    along, sheared = (each[..., 0] for each in stress_in_layer(solution, points, None, height, forces))
     strain, stress = postprocess.strain_at_axis(points, now), Components(along, 0.0 * along, sheared)
     angle = rotation(points, solution)
     return Fields(now.r, now.r_s, now.d, angle, postprocess.shear_angle(now), strain, stress)

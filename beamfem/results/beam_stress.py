@@ -13,7 +13,7 @@ from beamfem.results.extremes import Measure, Part, Peak, estimate, extreme_of_b
 from beamfem.results.neighbouring_beams import of_beam
 from beamfem.results.section_forces import at_points, in_parts, peak_of, stations
 from beamfem.results.solution import Solution
-from beamfem.results.stresses import self_stress, strengths, von_mises, warn_of_unknown_stress
+from beamfem.results.stresses import strengths, stress_in_layer, von_mises, warn_of_unknown_stress
 from beamfem.units import Units, units_of
 from beamfem.validation import require_known, shown
 
@@ -219,12 +219,9 @@ def _layers(
     solution: Solution, points: AxisPoints, rows: slice | np.ndarray
 ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Yield normal and shear stress (rows, points, heights) [Pa] and the strength (points, 1) [Pa] of each layer."""
-    normal, shear, moment = np.moveaxis(at_points(solution, points, rows), 1, 0)
-    distribution = points.distributions
-    strength = strengths(points.mesh, points.element, points.xi, distribution.layers.shape[1])
-    for layer in range(distribution.layers.shape[1]):
-        low, high = np.moveaxis(distribution.layers[:, layer], -1, 0)
+    forces, layers = at_points(solution, points, rows), points.distributions.layers
+    strength = strengths(points.mesh, points.element, points.xi, layers.shape[1])
+    for layer in range(layers.shape[1]):
+        low, high = np.moveaxis(layers[:, layer], -1, 0)
         y = low[:, None] + (high - low)[:, None] * HEIGHTS
-        along = distribution.normal_stress(layer, y, normal, moment)
-        along = along + self_stress(solution, points, layer, y, rows)
-        yield along, distribution.shear_stress(layer, y, shear), strength[layer][:, None]
+        yield *stress_in_layer(solution, points, layer, y, forces, rows), strength[layer][:, None]

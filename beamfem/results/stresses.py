@@ -107,6 +107,20 @@ def warn_of_unknown_stress(beams: Sequence[Beam], unknown: Sequence[int], what: 
     )
 
 
+def stress_in_layer(
+    solution: Solution,
+    points: AxisPoints,
+    layer: int | None,
+    y: np.ndarray,
+    forces: np.ndarray,
+    rows: slice | np.ndarray = slice(None),
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return normal and shear stress (steps, n, heights) [Pa] of section forces (steps, 3, n), see `self_stress`."""
+    along = points.distributions.normal_stress(layer, y, forces[:, 0], forces[:, 2])
+    along = along + self_stress(solution, points, layer, y, rows)
+    return along, points.distributions.shear_stress(layer, y, forces[:, 1])
+
+
 def self_stress(
     solution: Solution, points: AxisPoints, layer: int | None, y: np.ndarray, rows: slice | np.ndarray = slice(None)
 ) -> np.ndarray | float:

@@ -2,10 +2,9 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from functools import partial
-from typing import Literal
 
 import numpy as np
+from numpy.linalg import norm
 
 from beamfem.model.beam import Beam
 from beamfem.results import postprocess
@@ -61,28 +60,19 @@ def fields(points: AxisPoints, solution: Solution) -> Fields:
     return Fields(now.r, now.r_s, now.d, angle, postprocess.shear_angle(now), strain, stress)
 
 
-def _section_force(name: str, points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
-    return section_forces(points, solution, rows)[name]
+def _section_force(label: str, unit: str, number: int) -> Quantity:
+    return Quantity(label, unit, lambda points, solution, rows: at_points(solution, points, rows)[:, number])
 
 
-def _axial_strain(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
-    return postprocess.strain_at_axis(points, points.now(solution.p[rows])).xx
-
-
-def _shear_angle(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
-    return postprocess.shear_angle(points.now(solution.p[rows]))
-
-
-def _displacement(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
-    return np.asarray(np.linalg.norm(points.positions(solution.p[rows])[0] - points.reference, axis=-1))
-
-
-def _speed(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
-    return np.asarray(np.linalg.norm(points.velocities(solution.p[rows], solution.v[rows]), axis=-1))
-
-
-def _stress(name: str, points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
-    return stress_at(solution, points, rows)[name]
+def _of_stress(label: str, name: str, unit: str = "Pa", unknown: str = "", over_height: bool = False) -> Quantity:
+    """Return a stress by its name in `stress_at`; over_height: whether it is drawn over the section too."""
+    return Quantity(
+        label,
+        unit,
+        lambda points, solution, rows: stress_at(solution, points, rows)[name],
+        unknown or "stresses need sections with a material and a height",
+        (lambda points, solution, rows: stress_over_height(solution, points, rows, name)) if over_height else None,
+    )
 
 
 def _outer(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
@@ -90,44 +80,40 @@ def _outer(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> 
     return np.where(np.abs(stress["upper"]) >= np.abs(stress["lower"]), stress["upper"], stress["lower"])
 
 
-def _over_height(
-    name: Literal["von_mises", "utilisation"], points: AxisPoints, solution: Solution, rows: slice | np.ndarray
-) -> np.ndarray:
-    return stress_over_height(solution, points, rows, name)
-
-
-_NO_STRESS = "stresses need sections with a material and a height"
-
-
-def _of_stress(label: str, name: str) -> Quantity:
-    return Quantity(label, "Pa", partial(_stress, name), _NO_STRESS)
-
-
-_VON_MISES = replace(_of_stress("von Mises stress", "von_mises"), over_height=partial(_over_height, "von_mises"))
+_VON_MISES = _of_stress("von Mises stress", "von_mises", over_height=True)
+_NO_STRENGTH = "give a material its strength, Material(..., strength=)"
 QUANTITIES = {
-    "moment": Quantity("bending moment", "N m", partial(_section_force, "moment")),
-    "normal": Quantity("normal force", "N", partial(_section_force, "normal")),
-    "shear": Quantity("shear force", "N", partial(_section_force, "shear")),
+    "moment": _section_force("bending moment", "N m", 2),
+    "normal": _section_force("normal force", "N", 0),
+    "shear": _section_force("shear force", "N", 1),
     "stress": _VON_MISES,
     "von_mises": _VON_MISES,
     "upper": _of_stress("stress at the upper face", "upper"),
     "lower": _of_stress("stress at the lower face", "lower"),
-    "outer": Quantity("stress at the outer fibre", "Pa", _outer, _NO_STRESS),
+    "outer": replace(_of_stress("stress at the outer fibre", "upper"), values=_outer),
     "tension": _of_stress("largest tension", "tension"),
     "compression": _of_stress("largest compression", "compression"),
     "shear_stress": _of_stress("shear stress", "shear"),
-    "utilisation": Quantity(
-        "utilisation of the strength",
-        "-",
-        partial(_stress, "utilisation"),
-        "give a material its strength, Material(..., strength=)",
-        partial(_over_height, "utilisation"),
-    ),
+    "utilisation": _of_stress("utilisation of the strength", "utilisation", "-", _NO_STRENGTH, over_height=True),
     "rotation": Quantity("rotation", "rad", rotation),
-    "displacement": Quantity("displacement", "m", _displacement),
-    "speed": Quantity("speed", "m/s", _speed),
-    "axial_strain": Quantity("axial Green strain", "-", _axial_strain),
-    "shear_angle": Quantity("shear angle", "rad", _shear_angle),
+    "displacement": Quantity(
+        "displacement",
+        "m",
+        lambda points, solution, rows: norm(points.positions(solution.p[rows])[0] - points.reference, axis=-1),
+    ),
+    "speed": Quantity(
+        "speed",
+        "m/s",
+        lambda points, solution, rows: norm(points.velocities(solution.p[rows], solution.v[rows]), axis=-1),
+    ),
+    "axial_strain": Quantity(
+        "axial Green strain",
+        "-",
+        lambda points, solution, rows: postprocess.strain_at_axis(points, points.now(solution.p[rows])).xx,
+    ),
+    "shear_angle": Quantity(
+        "shear angle", "rad", lambda points, solution, rows: postprocess.shear_angle(points.now(solution.p[rows]))
+    ),
 }
 
 

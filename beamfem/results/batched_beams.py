@@ -8,12 +8,16 @@ from typing import TypeVar
 import numpy as np
 
 from beamfem.cached_properties import cached_property
+from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.joined_mesh import join
 from beamfem.model.model import Model
 from beamfem.results.axis_points import AxisPoints
+from beamfem.results.solution import Solution
 
 VALUES = 500_000  # most points times rows that are evaluated at once
+_KEPT = 1_000_000  # most coordinates in all rows of a solution whose values are kept
 _Item = TypeVar("_Item")
+Values = Callable[[Solution, BeamMesh], np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +68,31 @@ def of_each(groups: Iterable[LikeBeams], values: Callable[[AxisPoints], np.ndarr
     for group in groups:
         result.update(zip(group.numbers, group.parted(values(group.points), over), strict=True))
     return [result[number] for number in range(len(result))]
+
+
+def of_beam(solution: Solution, number: int, values: Values) -> np.ndarray:
+    """Return values (k, steps, stations) of a beam, as many at each element of a kind.
+
+    From the second beam on, those of all like beams are computed with it and kept, unless the solution is large.
+    """
+    meshes, kept = solution.model.meshes, solution.computed(_none)
+    if values not in kept or solution.p.size > _KEPT:
+        kept.setdefault(values, {})
+        return values(solution, meshes[number])
+    if number not in kept[values]:
+        group = next(numbers for numbers in solution.model.numbered.joinable if number in numbers)
+        joined, ends = (
+            values(solution, join([meshes[i] for i in group])),
+            np.cumsum([meshes[i].elements for i in group]),
+        )
+        parts = np.split(joined, joined.shape[-1] // int(ends[-1]) * ends[:-1], axis=-1)
+        kept[values].update(zip(group, parts, strict=True))
+    return kept[values][number].copy()  # the user may change what it gets
+
+
+def _none(solution: Solution) -> dict[Values, dict[int, np.ndarray]]:
+    """Return what is kept with a solution by function and beam: nothing at first."""
+    return {}
 
 
 def _parts(items: Sequence[_Item], sizes: Sequence[int], most: int) -> Iterator[list[_Item]]:

@@ -2,15 +2,14 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Literal
 
 import numpy as np
 
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.beam import Beam
 from beamfem.results.axis_points import AxisPoints
+from beamfem.results.batched_beams import of_beam
 from beamfem.results.extremes import Measure, Part, Peak, estimate, extreme_of_beams
-from beamfem.results.neighbouring_beams import of_beam
 from beamfem.results.section_forces import at_points, in_parts, peak_of, stations
 from beamfem.results.solution import Solution
 from beamfem.results.stresses import strengths, stress_in_layer, von_mises, warn_of_unknown_stress
@@ -155,9 +154,7 @@ def stress_at(solution: Solution, points: AxisPoints, rows: slice | np.ndarray =
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
-def stress_over_height(
-    solution: Solution, points: AxisPoints, rows: slice | np.ndarray, name: Literal["von_mises", "utilisation"]
-) -> np.ndarray:
+def stress_over_height(solution: Solution, points: AxisPoints, rows: slice | np.ndarray, name: str) -> np.ndarray:
     """Return a stress (rows, points, layers, heights) at equal distances between the faces of each layer.
 
     A shear stress that is not known there, as the width is not, counts as zero.

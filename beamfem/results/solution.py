@@ -145,12 +145,8 @@ class Solution:
         span = f"{what} {self.at[0]:g} to {self.at[-1]:g}{unit}" if len(self.at) else "empty"
         unstable = "" if self.stability is None or self.stability.all() else f"{(~self.stability).sum()} unstable, "
         drift = "" if self.energy_drift is None else f"; {self.energy_drift}"
-        return f"{type(self).__name__}({len(self.at)} states, {unstable}{span}, of {self.model!r}{drift}{self._warned})"
-
-    @property
-    def _warned(self) -> str:
-        """The number of warnings for the text, empty if there are none."""
-        return f"; {counted(len(self.warnings), 'warning')}, see its warnings" if self.warnings else ""
+        warned = f"; {counted(len(self.warnings), 'warning')}, see its warnings" if self.warnings else ""
+        return f"{type(self).__name__}({len(self.at)} states, {unstable}{span}, of {self.model!r}{drift}{warned})"
 
     def __len__(self) -> int:
         return len(self.at)

@@ -1,7 +1,7 @@
 """Checks of a solution, whose findings are its warnings, and Python warnings where they are large."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from itertools import chain
 from typing import TypeVar
 
@@ -232,20 +232,13 @@ def _materials(section: CrossSection, material: Material | None) -> list[Materia
 
 
 _Solution = TypeVar("_Solution", bound=Solution)
-_Check = Callable[[Solution], Iterable[Finding]]
 
 
 def findings(solution: Solution) -> tuple[Finding, ...]:
     """Return all that is found wrong with a solution, besides what its solver has found."""
-    checks: tuple[_Check, ...] = (
-        lambda solution: solution.computed(locking.locking),
-        lambda solution: solution.computed(large_strains),
-        lambda solution: solution.computed(cusps),
-        lambda solution: solution.computed(short_sections),
-        lambda solution: (Finding(sentence, EnergyWarning) for sentence in solution.computed(energy_warnings)),
-        lambda solution: map(Finding, unjoined_warnings(solution)),
-    )
-    return tuple(chain.from_iterable(check(solution) for check in checks))
+    found = chain(*map(solution.computed, (locking.locking, large_strains, cusps, short_sections)))
+    energy = [Finding(sentence, EnergyWarning) for sentence in solution.computed(energy_warnings)]
+    return (*found, *energy, *map(Finding, unjoined_warnings(solution)))
 
 
 def warned(solution: _Solution) -> _Solution:

@@ -14,7 +14,7 @@ from beamfem.equations.equations import STATICS, linearise
 from beamfem.equations.system import System
 from beamfem.mesh.beam_grid import Grid, distances, make_grid, make_grids, nearest
 from beamfem.model.beam import reference_positions
-from beamfem.results import neighbouring_beams, postprocess
+from beamfem.results import batched_beams, postprocess
 from beamfem.results import roundoff_corrections as last_digits
 from beamfem.solve.start.mechanisms import Conditions, mechanisms
 
@@ -225,7 +225,7 @@ def taken_by_results(solution):
 
 def test_results_of_a_beam_take_no_memory_of_the_size_of_a_large_solution(monkeypatch):
     """Each of n members took n coordinates, loads and foundations: 8 times as much in a model of 8 times the size."""
-    monkeypatch.setattr(neighbouring_beams, "_KEPT", 0)  # as if rows had a million coordinates
+    monkeypatch.setattr(batched_beams, "_KEPT", 0)  # as if rows had a million coordinates
     small, large = (taken_by_results(bf.solve_static(heated_lattice(cells))) for cells in (6, 18))
     assert all(after < 1.5 * before for before, after in zip(small, large, strict=True))
 

@@ -9,7 +9,6 @@ from beamfem.io.vtk_cells import Cells
 from beamfem.results import axis_fields as along
 from beamfem.results import batched_beams as many_beams
 from beamfem.results import beam_stress, free_bodies
-from beamfem.results import neighbouring_beams as neighbours
 from beamfem.results.axis_fields import QUANTITIES
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import equal_beams, of_each
@@ -153,11 +152,11 @@ def test_values_of_large_solutions_are_not_kept(monkeypatch):
     """With the forces of one beam those of the others are kept, but not of a large solution."""
     solution = row_of(12)
     whole = [solution.section_forces(beam).moment for beam in solution.model.beams]
-    monkeypatch.setattr(neighbours, "_KEPT", 0)
+    monkeypatch.setattr(many_beams, "_KEPT", 0)
     again = _fresh(solution)
     for beam, moment in zip(solution.model.beams[::-1], whole[::-1], strict=True):
         assert np.array_equal(again.section_forces(beam).moment, moment)
-    assert not any(kept for kept in again.computed(neighbours._none).values())
+    assert not any(kept for kept in again.computed(many_beams._none).values())
 
 
 def test_beams_of_two_kinds_in_turns_do_not_displace_each_other(monkeypatch):
@@ -168,8 +167,8 @@ def test_beams_of_two_kinds_in_turns_do_not_displace_each_other(monkeypatch):
     ]
     solution = bf.solve_static(bf.Model(beams, [bf.Clamp(beam.start) for beam in beams], [bf.Gravity((0.0, -9.81))]))
     joined = []
-    original = neighbours.join
-    monkeypatch.setattr(neighbours, "join", lambda meshes: joined.append(len(meshes)) or original(meshes))
+    original = many_beams.join
+    monkeypatch.setattr(many_beams, "join", lambda meshes: joined.append(len(meshes)) or original(meshes))
     for beam in beams:
         solution.section_forces(beam)
     assert joined == [6, 6]

@@ -3,7 +3,6 @@
 Failed calls and lost workers are reported, the rest continues.
 """
 
-import math
 import multiprocessing
 import os
 import pickle
@@ -200,7 +199,6 @@ def _single(value: Any) -> Any:
 
 
 _LONGEST = 600  # characters of a failure, whose `error` has all
-_CHUNK_SECONDS = 0.05  # sending a chunk costs about 0.3 ms
 
 
 @dataclass(frozen=True)
@@ -249,46 +247,32 @@ class TaskRunner:
             yield i, self._alone(points[i])
 
     def _together(self, points: Sequence[Point]) -> Generator[tuple[int, Outcome], None, list[int]]:
-        """Run chunks in parallel; return the points whose chunk was lost.
-
-        Few chunks are submitted at a time, so that the death of a worker leaves few suspect points.
-        """
-        waiting = deque(range(len(points)))
-        running: dict[Future[list[Outcome]], list[int]] = {}
-        suspects: list[int] = []
-        seconds = math.inf
-        broken = False
+        """Run points in parallel, few at a time; return those that were lost with a worker, or waited beside it."""
+        waiting, suspects, broken = deque(range(len(points))), list[int](), False
+        running: dict[Future[list[Outcome]], int] = {}
         try:
             while waiting or running:
+                executor = self._open(len(waiting) + len(running))
+                try:
+                    while waiting and len(running) < 2 * workers(executor) + 1:
+                        running[self._submit(executor, points[waiting[0]])] = waiting[0]
+                        waiting.popleft()
+                except BrokenExecutor:
+                    broken = True
+                done, _ = wait(running, return_when=FIRST_COMPLETED)
+                for future in done:
+                    number, error = running.pop(future), future.exception()
+                    if error is None:
+                        yield number, future.result()[0]
+                    else:
+                        suspects.append(number)
+                        broken = broken or isinstance(error, BrokenExecutor)
                 if broken and not running:
                     self._close()
                     broken = False
-                executor = self._open(len(waiting) + len(running))
-                while waiting and not broken and len(running) < 2 * workers(executor) + 1:
-                    # the last chunks are small, so that no worker is left with a long one
-                    fair = math.ceil(len(waiting) / (2 * workers(executor)))
-                    chunk = [waiting.popleft() for _ in range(max(1, min(fair, int(_CHUNK_SECONDS / seconds))))]
-                    try:
-                        running[self._submit(executor, [points[i] for i in chunk])] = chunk
-                    except BrokenExecutor:
-                        waiting.extendleft(reversed(chunk))
-                        broken = True
-                done, _ = wait(running, return_when=FIRST_COMPLETED)
-                for future in done:
-                    chunk = running.pop(future)
-                    error = future.exception()
-                    if error is not None:
-                        suspects += chunk
-                        broken = broken or isinstance(error, BrokenExecutor)
-                        continue
-                    outcomes = future.result()
-                    seconds = max(sum(outcome.seconds for outcome in outcomes) / len(chunk), 1e-7)
-                    yield from zip(chunk, outcomes, strict=True)
         finally:
             for future in running:
                 future.cancel()
-        if broken:
-            self._close()
         return suspects
 
     def _alone(self, point: Point) -> Outcome:
@@ -297,7 +281,7 @@ class TaskRunner:
         try:
             executor = self._open(1)
             start = time.perf_counter()  # workers need a second to start
-            return self._submit(executor, [point]).result()[0]
+            return self._submit(executor, point).result()[0]
         except BrokenExecutor:
             self._close()
             error = "WorkerDied: the worker process ended in this call, which ran alone"
@@ -305,9 +289,9 @@ class TaskRunner:
             error = f"{type(raised).__name__}: {raised}"
         return Outcome(seconds=time.perf_counter() - start, error=error)
 
-    def _submit(self, executor: Executor, points: list[Point]) -> "Future[list[Outcome]]":
+    def _submit(self, executor: Executor, point: Point) -> "Future[list[Outcome]]":
         self._attempt += 1
-        return executor.submit(call_all, self._function, points, os.getpid(), self._attempt)
+        return executor.submit(call_all, self._function, [point], os.getpid(), self._attempt)
 
     def _open(self, tasks: int) -> Executor:
         if self._executor is None:

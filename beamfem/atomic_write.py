@@ -79,7 +79,8 @@ def whole(path: str | PathLike[str]) -> Iterator[Path]:
         partial = target.with_name(f"{target.stem[:_STEM]}.{uuid4().hex[:8]}.part{target.suffix}")
         try:
             yield partial
-            _to_disk(partial)
+            with partial.open("rb+") as file:
+                os.fsync(file.fileno())  # a full disk is known before the earlier file is replaced
             os.replace(partial, target)
         finally:
             partial.unlink(missing_ok=True)
@@ -88,9 +89,3 @@ def whole(path: str | PathLike[str]) -> Iterator[Path]:
             raise
         reason = error.strerror or str(error)
         raise FileError(f"{path} cannot be written: {reason}; an earlier file of that name is as it was") from error
-
-
-def _to_disk(path: Path) -> None:
-    """Let the system write what it still holds, so that a full disk is known before the earlier file is replaced."""
-    with path.open("rb+") as file:
-        os.fsync(file.fileno())

@@ -48,14 +48,7 @@ def progress(label: str, total: float) -> AbstractContextManager[Callable[[float
     """Return a context with a function that takes how much of `total` is done."""
     # rich moves a bar of a notebook by ipywidgets
     moves = sys.stderr.isatty() or (in_notebook() and find_spec("ipywidgets") is not None)
-    return _SILENCE if _held.get() or not moves else _bar(label, total)
-
-
-def _silent(done: float) -> None:
-    """Show nothing."""
-
-
-_SILENCE = nullcontext(_silent)
+    return nullcontext(lambda done: None) if _held.get() or not moves else _bar(label, total)
 
 
 @contextmanager

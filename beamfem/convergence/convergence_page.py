@@ -11,10 +11,7 @@ from beamfem.convergence.convergence_result import EXPLANATION, Convergence
 from beamfem.convergence.refinement_curve import Curve
 from beamfem.tables import cells
 from beamfem.view.html_page import Entry, Part, Table, write_page
-from beamfem.view.plots import COLOURS, new_figure, save_figure
-
-# curves are told apart by marker as well: in grey print, and where there are more of them than colours
-_MARKERS = "osD^vP*X<>"
+from beamfem.view.plots import COLOURS, MARKERS, new_figure, save_figure
 
 
 def plot_errors(study: Convergence, path: str | PathLike[str] | None = None) -> Any:
@@ -25,10 +22,13 @@ def plot_errors(study: Convergence, path: str | PathLike[str] | None = None) -> 
     # one triangle for each whole order, at the lowest curve, where there is room for it
     triangles: dict[int, tuple[Curve, str]] = {}
     for i, curve in enumerate(study.curves):
-        colour, marker = COLOURS[i % len(COLOURS)], _MARKERS[i % len(_MARKERS)]
+        colour, marker = COLOURS[i % len(COLOURS)], MARKERS[i % len(MARKERS)]
         x, y = np.array(curve.refinement, dtype=float), curve.error
         positive = y > 0.0
-        label = curve.label if curve.fit is None else f"{curve.label}: order {_order(curve)}"
+        label = curve.label
+        if curve.fit is not None:
+            band = "" if np.isnan(curve.fit.band) else f" ± {curve.fit.band:.2f}"
+            label = f"{label}: order {curve.fit.order:.2f}{band}"
         axes.plot(x[positive], y[positive], color=colour, marker=marker, markersize=5, linewidth=1.4, label=label)
         if curve.fit is None:
             continue
@@ -48,12 +48,6 @@ def plot_errors(study: Convergence, path: str | PathLike[str] | None = None) -> 
     if study.curves:
         axes.legend(frameon=False, fontsize=9)
     return save_figure(figure, path)
-
-
-def _order(curve: Curve) -> str:
-    assert curve.fit is not None
-    band = curve.fit.band
-    return f"{curve.fit.order:.2f}" if np.isnan(band) else f"{curve.fit.order:.2f} ± {band:.2f}"
 
 
 def _triangle(axes: Any, curve: Curve, colour: str) -> None:

@@ -8,16 +8,3 @@ from beamfem.curves.line import Line
 from beamfem.curves.parametric import Parametric
 from beamfem.curves.polyline import Polyline
 from beamfem.curves.splines import elliptic_arc, spline_through_hermite, without_removable_knots
-
-__all__ = [
-    "Arc",
-    "BSpline",
-    "Chain",
-    "Curve",
-    "Line",
-    "Parametric",
-    "Polyline",
-    "elliptic_arc",
-    "spline_through_hermite",
-    "without_removable_knots",
-]

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
@@ -117,7 +116,8 @@ def build_frame(
         curve, ends = _axis([_curve(points, cells, piece) for piece in line])
         parts = count("elements", arguments.pop("elements"))
         beam_name = None if name is None else f"{name}[{number + 1}]"
-        beam = Beam(curve, parts if len(line) == 1 else _divided(ends, parts), **arguments, name=beam_name)
+        inner = np.linspace(ends[:-1], ends[1:], parts, endpoint=False, axis=1)
+        beam = Beam(curve, parts if len(line) == 1 else (*inner.ravel().tolist(), 1.0), **arguments, name=beam_name)
         beams.append(beam)
         owner[[cell for cell, _ in line]] = number
         for (cell, backwards), fraction in zip(line, ends.tolist(), strict=False):
@@ -198,12 +198,6 @@ def _axis(curves: list[Curve]) -> tuple[Curve, np.ndarray]:
     if np.all(off <= _COLLINEAR * np.linalg.norm(way, axis=1) * np.linalg.norm(whole)):
         return Line(points[0], points[-1]), ends
     return Polyline(points), ends
-
-
-def _divided(ends: np.ndarray, parts: int) -> tuple[float, ...]:
-    """Return the element ends if each piece is divided into this number of elements."""
-    inner = [np.linspace(a, b, parts + 1)[:-1] for a, b in pairwise(ends)]
-    return (*np.concatenate(inner).tolist(), 1.0)
 
 
 def _chains(mesh: LineMesh, hinged: np.ndarray) -> list[list[Piece]]:

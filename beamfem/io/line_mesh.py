@@ -231,7 +231,8 @@ def _line_mesh(content: MeshFile, merge: bool) -> LineMesh:
             point_sets[name] = np.unique(node_of[set_points])
     for name, chosen in content.point_sets.items():
         point_sets[name] = np.unique(node_of[chosen])
-    return LineMesh(nodes, parts, parts_of(member_sets, owner), point_sets)
+    member_sets = {name: np.flatnonzero(np.isin(owner, lines)) for name, lines in member_sets.items()}
+    return LineMesh(nodes, parts, member_sets, point_sets)
 
 
 def _refuse_other_cells(content: MeshFile) -> None:
@@ -355,11 +356,6 @@ def divided(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndarr
         rows += [(a, b, row[2]) for a, b in pairwise(stops)]
         owner += [number] * (len(stops) - 1)
     return np.array(rows, dtype=np.int64), np.array(owner)
-
-
-def parts_of(sets: Mapping[str, np.ndarray], owner: np.ndarray) -> dict[str, np.ndarray]:
-    """Return sets of cells as sets of the parts that they have been divided into."""
-    return {name: np.flatnonzero(np.isin(owner, cells)) for name, cells in sets.items()}
 
 
 def warn_of_gaps(nodes: np.ndarray, cells: np.ndarray, reach: float) -> None:

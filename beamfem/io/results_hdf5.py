@@ -43,6 +43,8 @@ _OPTIONAL = ("stability", "turned", "loaded")
 CHECKSUMS = "checksums"  # of each block of rows
 EVENTS = "events"
 _BLOCK_EVENTS = 64
+# what h5py and damaged contents raise
+_UNREADABLE = (OSError, LookupError, TypeError, ValueError, RuntimeError, AssertionError, AttributeError)
 _TRIES = 5  # to read a file that changes meanwhile
 
 
@@ -148,16 +150,7 @@ def _loaded(h5py: Any, source: Path, rows: slice | None) -> Solution:
         raise InputError(f"{source} cannot be loaded: {error}") from error
     except MemoryError as error:
         raise InputError(f"{source} cannot be loaded: it needs more memory than there is") from error
-    except (
-        OSError,
-        KeyError,
-        IndexError,
-        TypeError,
-        ValueError,
-        RuntimeError,
-        AssertionError,
-        AttributeError,
-    ) as error:
+    except _UNREADABLE as error:
         message = f"{source} cannot be loaded: it is truncated, damaged or still being written ({error})"
         raise InputError(message) from error
 
@@ -202,7 +195,10 @@ def _read(file: Any, selected: slice) -> Solution:
     if not chosen or chosen.step < 0:
         raise InputError(f"rows must select some of its {rows} rows in ascending order, got {selected}")
     at, p, v, a = _states(file, rows, np.array(chosen))
-    saved = _about(file)
+    if "statistics" in file:
+        saved = dict(read_text(file, "statistics"))
+    else:  # in older files these are attributes
+        saved = {"static": file.attrs["static"], **json.loads(file.attrs["statistics"])}
     static = bool(saved.pop("static"))
     statistics = _statistics(saved)
     if rows < all_rows:
@@ -264,13 +260,6 @@ def _states(file: Any, rows: int, chosen: np.ndarray) -> list[np.ndarray]:
         for values, part in zip(result, parts, strict=True):
             values[begin:end] = part[chosen[begin:end] - first]
     return result
-
-
-def _about(file: Any) -> dict[str, Any]:
-    """Return the statistics and whether the solution is static; in older files these are attributes."""
-    if "statistics" in file:
-        return dict(read_text(file, "statistics"))
-    return {"static": file.attrs["static"], **json.loads(file.attrs["statistics"])}
 
 
 def _statistics(saved: dict[str, Any]) -> Statistics:

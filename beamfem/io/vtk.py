@@ -8,6 +8,7 @@ import re
 import shutil
 import signal
 from collections.abc import Callable, Sequence
+from functools import partial
 from math import prod
 from os import PathLike
 from pathlib import Path
@@ -129,8 +130,8 @@ def _replace_series(path: Path, folder: Path, steps: Path, lines: list[str]) -> 
         for file in folder.glob("*.vtu"):
             if re.fullmatch(r"\d{4,}", file.stem) and int(file.stem) >= len(lines):
                 file.unlink()
-        with whole(path) as partial:
-            partial.write_text(head + "".join(lines) + "  </Collection>\n</VTKFile>\n", encoding="utf-8")
+        with whole(path) as beside:
+            beside.write_text(head + "".join(lines) + "  </Collection>\n</VTKFile>\n", encoding="utf-8")
     except OSError as error:
         if isinstance(error, FileError):
             raise
@@ -159,16 +160,13 @@ def write_vtkhdf(solution: Solution, path: Path, cells: Cells | Boundary, chunk:
 
     Cells are stored once, points and point data for every step. Raises MissingPackageError without h5py.
     """
-
-    def fill(file: Any, require_written: Callable[[], None]) -> None:
-        _write(file.create_group("VTKHDF", track_order=True), solution, cells, chunk, require_written)
-
-    write_hdf5(path, fill)
+    write_hdf5(path, partial(_fill, solution, cells, chunk))
 
 
-def _write(
-    root: Any, solution: Solution, cells: Cells | Boundary, chunk: int, require_written: Callable[[], None]
+def _fill(
+    solution: Solution, cells: Cells | Boundary, chunk: int, file: Any, require_written: Callable[[], None]
 ) -> None:
+    root = file.create_group("VTKHDF", track_order=True)
     root.attrs["Version"] = np.array([2, 6])
     # a string of fixed length, as the format demands
     root.attrs.create("Type", np.bytes_("UnstructuredGrid"))

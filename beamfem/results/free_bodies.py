@@ -62,7 +62,9 @@ class FreeBodies:
         total = np.zeros((len(self.elements), len(acts), *acts.shape[2:]))
         np.add.at(total, self.acting.element, np.moveaxis(acts, 1, 0))
         balanced = np.stack([ends[0], ends[1] + np.moveaxis(total, 0, 1)])
-        return np.asarray(_between(balanced, xi, element) - _shared(fraction, acts))
+        flat = np.moveaxis(acts, 1, 0).reshape(acts.shape[1], -1)
+        before = (fraction @ flat).reshape(len(xi), len(acts), *acts.shape[2:])
+        return np.asarray(_between(balanced, xi, element) - np.moveaxis(before, 0, 1))
 
     @property
     def _origin(self) -> np.ndarray:
@@ -135,10 +137,3 @@ def _between(ends: np.ndarray, xi: np.ndarray, element: np.ndarray) -> np.ndarra
     """Return values (steps, points, ...) at points (element, xi) between those at both ends (2, steps, ne, ...)."""
     weight = xi.reshape(-1, *(1,) * (ends.ndim - 3))
     return np.asarray((1.0 - weight) * ends[0][:, element] + weight * ends[1][:, element])
-
-
-def _shared(fraction: csr_array, values: np.ndarray) -> np.ndarray:
-    """Sum values (steps, m, ...) over m with weights (points, m)."""
-    flat = np.moveaxis(values, 1, 0).reshape(values.shape[1], -1)
-    summed = (fraction @ flat).reshape(fraction.shape[0], len(values), *values.shape[2:])
-    return np.asarray(np.moveaxis(summed, 0, 1))

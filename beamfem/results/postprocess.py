@@ -112,16 +112,13 @@ def section_rotation(
     angle = np.arctan2(cross(start, normal), dot(start, normal))
     inner = mesh.node.shape[1] - 1
     node = mesh.node[element, np.round(xi * inner).astype(int)]
-    near = nodal_angles(mesh, p, node) if has_angles(mesh) else _rotations_by_beam(mesh, p, turned)[:, node]
+    if has_angles(mesh):
+        near = nodal_angles(mesh, p, node)
+    else:  # rotations are unwrapped along each beam of a mesh
+        counted = [None] * len(mesh.parts) if turned is None else turned.T
+        parts = [nodal_rotations(part, p, begin) for part, begin in zip(mesh.parts, counted, strict=True)]
+        near = np.concatenate(parts, axis=1)[:, node]
     return np.asarray(angle + 2.0 * np.pi * np.round((near - angle) / (2.0 * np.pi)))
-
-
-def _rotations_by_beam(mesh: BeamMesh, p: np.ndarray, turned: np.ndarray | None) -> np.ndarray:
-    """Return the rotations of `nodal_rotations`, which are unwrapped along each beam of a mesh."""
-    counted = [None] * len(mesh.parts) if turned is None else turned.T
-    return np.concatenate(
-        [nodal_rotations(part, p, start) for part, start in zip(mesh.parts, counted, strict=True)], axis=1
-    )
 
 
 def nodal_rotations(mesh: BeamMesh, p: np.ndarray, turned: np.ndarray | None = None) -> np.ndarray:

@@ -6,24 +6,3 @@ from beamfem.section.law import RememberingLaw, SectionLaw
 from beamfem.section.layered import Layer, Layered
 from beamfem.section.moments import Section, StiffnessSection
 from beamfem.section.section_shapes import Circle, Rectangle, ShapedSection, Tube
-
-__all__ = [
-    "Circle",
-    "ElasticFibreSection",
-    "ElasticPlastic",
-    "FibreLaw",
-    "FibreLawWithHistory",
-    "Fibres",
-    "Layer",
-    "Layered",
-    "Maxwell",
-    "RambergOsgood",
-    "Rectangle",
-    "RememberingFibreSection",
-    "RememberingLaw",
-    "Section",
-    "SectionLaw",
-    "ShapedSection",
-    "StiffnessSection",
-    "Tube",
-]

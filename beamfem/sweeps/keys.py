@@ -53,13 +53,15 @@ def _read(name: str, path: Path) -> tuple[str, frozenset[str]]:
     spec = getattr(module, "__spec__", None)
     if name in _READ and _READ[name][0] is module and _READ[name][1] is spec:
         return _READ[name][2:]
-    content = path.read_bytes()
+    content, package = path.read_bytes(), getattr(module, "__package__", None)
+    if package is None:
+        package = name if path.stem == "__init__" else name.rpartition(".")[0]
     try:
         tree = ast.parse(content)
     except (SyntaxError, ValueError):  # compiled code
         digest, imports = _digest(content), frozenset[str]()
     else:
-        digest, imports = _digest(ast.dump(tree).encode()), frozenset(_imports(tree, _package(name, path)))
+        digest, imports = _digest(ast.dump(tree).encode()), frozenset(_imports(tree, package))
     if module is not None:
         _READ[name] = module, spec, digest, imports
     return digest, imports
@@ -80,13 +82,6 @@ def _imports(tree: ast.AST, package: str) -> Iterator[str]:
             continue
         for name in names:
             yield from accumulate(name.split("."), "{}.{}".format)
-
-
-def _package(name: str, path: Path) -> str:
-    package = getattr(sys.modules.get(name), "__package__", None)
-    if package is not None:
-        return str(package)
-    return name if path.stem == "__init__" else name.rpartition(".")[0]
 
 
 def own_file(name: str) -> Path | None:
@@ -171,7 +166,10 @@ def canonical(value: Any, where: str) -> Any:
     if value is None or isinstance(value, bool | int | float | complex | str | PurePath):
         return [type(value).__name__, repr(value)]
     if isinstance(value, np.ndarray):
-        return _array(value, where)
+        if value.dtype.hasobject:
+            raise InputError(f"{where} is an array of objects, which cannot be stored under a stable key; use a tuple")
+        little = value.astype(value.dtype.newbyteorder("<"), order="C", copy=False)
+        return ["array", little.dtype.str, list(value.shape), hashlib.sha256(little.tobytes()).hexdigest()]
     if isinstance(value, tuple | list | range):
         return ["sequence", *(canonical(item, f"{where}[{i}]") for i, item in enumerate(value))]
     if isinstance(value, Mapping) and all(isinstance(name, str) for name in value):
@@ -247,13 +245,6 @@ def _code(code: CodeType) -> Any:
 def _names(code: CodeType) -> set[str]:
     inner = [item for item in code.co_consts if isinstance(item, CodeType)]
     return set(code.co_names).union(*map(_names, inner))
-
-
-def _array(value: np.ndarray, where: str) -> Any:
-    if value.dtype.hasobject:
-        raise InputError(f"{where} is an array of objects, which cannot be stored under a stable key; use a tuple")
-    little = value.astype(value.dtype.newbyteorder("<"), order="C", copy=False)
-    return ["array", little.dtype.str, list(value.shape), hashlib.sha256(little.tobytes()).hexdigest()]
 
 
 def _name(item: FunctionType | type) -> str:

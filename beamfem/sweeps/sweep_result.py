@@ -14,12 +14,11 @@ from beamfem.reprs import brief
 from beamfem.results.solution import Solution
 from beamfem.sweeps.workers import Failure
 from beamfem.validation import require_known, shown
-from beamfem.view.plots import COLOURS, new_figure, save_figure
+from beamfem.view.plots import COLOURS, MARKERS, new_figure, save_figure
 
 _ROWS_REPORTED = 40
 _ROWS_PRINTED = 6
 _PRINTED = 110  # characters of a failure
-_MARKERS = "osD^vP*X<>"
 _NAMED = 12  # curves in a legend
 _ABOVE = 50  # characters of all names in a line
 _CUT, _WIDEST = 40, 3.2  # characters of the longest name, and their width [inch]
@@ -219,7 +218,7 @@ class Sweep:
         figure, axes = new_figure(6.4 + (_WIDEST * min(1.0, max(map(len, curves)) / _CUT) if legend_beside else 0.0))
         for number, (label, points) in enumerate(curves.items()):
             x, y = np.array(sorted(points)).T
-            colour, marker = COLOURS[number % len(COLOURS)], _MARKERS[number % len(_MARKERS)]
+            colour, marker = COLOURS[number % len(COLOURS)], MARKERS[number % len(MARKERS)]
             label = label if len(label) <= _CUT else f"{label[: _CUT - 2]} …"
             axes.plot(x, y, color=colour, marker=marker, markersize=4, linewidth=1.4, label=label)
         axes.set_xlabel(over)

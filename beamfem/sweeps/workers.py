@@ -135,14 +135,6 @@ def workers(executor: Executor) -> int:
     return int(getattr(executor, "_max_workers", 500))
 
 
-def end_workers(executor: Executor) -> None:
-    """Stop a process pool at once, in the middle of its calls; other executors are left alone."""
-    processes = dict(getattr(executor, "_processes", None) or {})
-    executor.shutdown(wait=False)
-    for process in processes.values():
-        process.terminate()
-
-
 def _spawning(factory: Callable[..., Executor]) -> ExecutorFactory:
     """Make a process pool spawn, since a fork copies locks of other threads, and its workers end with this process."""
     bare = factory.func if isinstance(factory, partial) else factory
@@ -229,9 +221,11 @@ class TaskRunner:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: Any, trace: TracebackType | None) -> None:
-        if kind is not None and self._executor is not None:
-            end_workers(self._executor)  # nobody waits for what they compute any more
+        # nobody waits any more for what a pool computes when an exception has ended the sweep
+        ended = dict(getattr(self._executor, "_processes", None) or {}) if kind is not None else {}
         self._close()
+        for process in ended.values():
+            process.terminate()
 
     def run(self, points: Sequence[Point]) -> Iterator[tuple[int, Outcome]]:
         """Yield the number and the outcome of each point as it is completed.

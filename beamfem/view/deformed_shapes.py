@@ -199,7 +199,8 @@ class Shapes:
         lines, along = [], []
         for points, axis, values in zip(self.points, self.axis, self.values, strict=True):
             # on a body whose field varies over the height, the extreme over it would be painted on its axis
-            if self._over_height is None or not self._bodies_drawn or self._thin(points):
+            hardly_higher = float(np.ptp(points.faces, axis=1).max()) < _THIN * float(np.max(self.box[1] - self.box[0]))
+            if self._over_height is None or not self._bodies_drawn or hardly_higher:
                 lines.append(_between(points, axis[order]))
                 along.append(_between(points, values[order]).mean(axis=1))
         if lines:
@@ -210,10 +211,6 @@ class Shapes:
             artist.set_zorder(layer)
             axes.add_collection(artist, autolim=False)
         return drawn
-
-    def _thin(self, points: AxisPoints) -> bool:
-        """Return whether a body is hardly higher than a line."""
-        return float(np.ptp(points.faces, axis=1).max()) < _THIN * float(np.max(self.box[1] - self.box[0]))
 
     def _colours(self, values: np.ndarray, fraction: float) -> np.ndarray:
         """Return the colours (n, 3) of values (n,) of the field."""

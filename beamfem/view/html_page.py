@@ -61,18 +61,16 @@ def write_page(path: str | PathLike[str], title: str, parts: Sequence[Part]) -> 
     target = path_of(path)
     links = [f"<li><a href='#part{number}'>{escape(part.heading)}</a></li>" for number, part in enumerate(parts)]
     contents = f"<nav><ul>{''.join(links)}</ul></nav>" if len(parts) > 1 else ""
-    body = contents + "".join(_part(part, number) for number, part in enumerate(parts))
+    body = contents + "".join(
+        f"<h2 id='part{number}'>{escape(part.heading)}</h2><p>{escape(part.text)}</p>"
+        f"{''.join(map(_table, part.tables))}{''.join(map(_entry, part.entries))}"
+        for number, part in enumerate(parts)
+    )
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(title)}</title>'
     page = f"<!doctype html><html lang='en'><head>{head}<style>{_STYLE}</style></head>"
     with whole(target) as partial:
         partial.write_text(f"{page}<body><h1>{escape(title)}</h1>{body}</body></html>\n", encoding="utf-8")
     return WrittenFile(target)
-
-
-def _part(part: Part, number: int) -> str:
-    entries = "".join(_entry(entry) for entry in part.entries)
-    tables = "".join(_table(table) for table in part.tables)
-    return f"<h2 id='part{number}'>{escape(part.heading)}</h2><p>{escape(part.text)}</p>{tables}{entries}"
 
 
 def _entry(entry: Entry) -> str:

@@ -98,7 +98,10 @@ def loads_of(shapes: Shapes) -> list[dict[str, Any]]:
     system, at = loading(solution)
     arrows = sum(55 if isinstance(load.place, Beam) else 5 for load in solution.model.loads)
     chosen = rows if arrows * len(rows) <= _MOST else rows[-1:] if arrows <= _MOST else []
-    loads = [_loads_in(solution, row, float(at[row]), system.static) for row in chosen]
+    loads = [PlacedLoads() for _ in chosen]
+    for row, placed in zip(chosen, loads, strict=True):
+        for load in solution.model.loads:
+            placed.add(PlacedRow(solution, row), load, factor(load, float(at[row]), system.static))
     sizes = [float(np.linalg.norm(vector)) for each in loads for _, vector, _ in each.forces]
     dense = max((float(np.abs(forces.vectors).max()) for each in loads for _, forces in each.lines), default=1.0)
     return [
@@ -117,13 +120,6 @@ def loads_of(shapes: Shapes) -> list[dict[str, Any]]:
         }
         for each in loads
     ]
-
-
-def _loads_in(solution: Solution, row: int, at: float, static: bool) -> PlacedLoads:
-    placed, loads = PlacedRow(solution, row), PlacedLoads()
-    for load in solution.model.loads:
-        loads.add(placed, load, factor(load, at, static))
-    return loads
 
 
 def _scaled(vector: np.ndarray, largest: float) -> np.ndarray:
@@ -217,8 +213,7 @@ def _supports(shapes: Shapes) -> tuple[list[Any], list[Any]]:
     by_row = []
     for row in shapes.rows:
         stamps = supports_of(shapes.solution, int(row), shapes.centre)
-        stamps.add_all(joints_of(shapes.solution, int(row)))
-        by_row.append(stamps)
+        by_row.append(joints_of(shapes.solution, int(row), stamps))
     outlines = [
         {
             "line": np.round(by_row[0].outlines[key], 3).tolist(),

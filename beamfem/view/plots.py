@@ -10,6 +10,7 @@ from beamfem.extras import needed_for
 
 # Paul Tol's bright palette: told apart by the colour-blind and in grey print
 COLOURS = ("#4477AA", "#EE6677", "#228833", "#CCBB44", "#66CCEE", "#AA3377", "#BBBBBB")
+MARKERS = "osD^vP*X<>"  # in grey print, and where there are more curves than colours
 _DOTS_PER_INCH = 160
 
 

@@ -19,18 +19,27 @@ from beamfem.view.labels import place, write_labels
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 
 _STYLES = ("-", "--", ":")
-
-
-# what is drawn of a point: label and the names of its curves
-_CURVES_OF_POINT = {
+# of a point, by name
+_LABELS = {
+    "ux": "displacement ux",
+    "uy": "displacement uy",
+    "x": "x",
+    "y": "y",
+    "rotation": "rotation",
+    "vx": "velocity vx",
+    "vy": "velocity vy",
+    "fx": "reaction fx",
+    "fy": "reaction fy",
+    "m": "reaction moment",
+}
+# what is drawn of a point over time: label and the names of its curves
+_HISTORIES = {
     "displacement": ("displacement", ("ux", "uy")),
-    "ux": ("displacement ux", ("ux",)),
-    "uy": ("displacement uy", ("uy",)),
+    **{name: (_LABELS[name], (name,)) for name in ("ux", "uy", "rotation")},
     "position": ("position", ("x", "y")),
     "velocity": ("velocity", ("vx", "vy")),
-    "rotation": ("rotation", ("rotation",)),
     "force": ("reaction force", ("fx", "fy")),
-    "reaction_moment": ("reaction moment", ("m",)),
+    "reaction_moment": (_LABELS["m"], ("m",)),
 }
 
 
@@ -43,10 +52,10 @@ def plot_history(
     """Plot a quantity at points against time [s] or load factor; return the figure. See `Solution.plot_history`."""
     if isinstance(quantity, str) and quantity == "energy":
         energy = solution.energy()
-        curves = {name: getattr(energy, name) for name in ("kinetic", "strain", "potential", "total")}
-        label, unit, parts = "energy", "J", [curves]
+        label, unit, parts = "energy", "J", [{name: getattr(energy, name) for name in ENERGIES}]
     else:
-        label, names = _quantity(quantity)
+        require_known(f"there is no history of {shown(quantity)}", quantity, [*_HISTORIES, "energy"])
+        label, names = _HISTORIES[quantity]
         unit = UNITS[names[0]]
         points = [point] if isinstance(point, Point) else [] if point is None else items("point", point)
         if not points or not all(isinstance(item, Point) for item in points):
@@ -79,10 +88,7 @@ def plot_load_displacement(
 ) -> Any:
     """Plot the load factor against a motion of a point; return the figure. See `Solution.plot_load_displacement`."""
     one_of("what the load is drawn over", quantity, ("ux", "uy", "rotation"))
-    load = solution.load_factor
-    label, _ = _quantity(quantity)
-    what, unit = AT_POINT[quantity][0], UNITS[quantity]
-    curve = value_of(solution, point, what)
+    load, (label, curve) = solution.load_factor, _taken(solution, "x", (quantity, point))
     figure, axes = new_figure()
     axes.axhline(0.0, color="0.6", linewidth=0.8)
     marker = "." if len(solution) <= 200 else None
@@ -98,23 +104,18 @@ def plot_load_displacement(
             if not states:
                 continue
             alone = _together(solution, states)
-            x = value_of(alone, point, what)
+            x = value_of(alone, point, AT_POINT[quantity][0])
             axes.plot(x, alone.at, linestyle="none", label=name, color=colour, zorder=3, **look)
             marked += zip(x.tolist(), alone.at.tolist(), strict=True)
             colours += len(states) * [colour]
         if solution.limit_points or solution.bifurcations:
             figure.legend(loc="outside upper center", ncols=2, frameon=False)
-    axes.set_xlabel(f"{label} at {place(solution.model, point.reference)} [{solution.model.unit(unit)}]")
+    axes.set_xlabel(label)
     axes.set_ylabel("load factor [-]")
     axes.margins(0.06, 0.1)
     if marked:
         write_labels(axes, marked, [f"{at:.5g}" for _, at in marked], colours, np.column_stack([curve, load]))
     return save_figure(figure, path)
-
-
-def _quantity(name: str) -> tuple[str, tuple[str, ...]]:
-    require_known(f"there is no history of {shown(name)}", name, [*_CURVES_OF_POINT, "energy"])
-    return _CURVES_OF_POINT[name]
 
 
 def _together(path: Solution, states: Sequence[PathState]) -> Solution:
@@ -127,20 +128,6 @@ def _together(path: Solution, states: Sequence[PathState]) -> Solution:
 
 Drawn = str | tuple[str, Any] | np.ndarray
 _MARKED = 200  # rows up to which each is a dot
-
-# of a point, by name
-_LABELS = {
-    "ux": "displacement ux",
-    "uy": "displacement uy",
-    "x": "x",
-    "y": "y",
-    "rotation": "rotation",
-    "vx": "velocity vx",
-    "vy": "velocity vy",
-    "fx": "reaction fx",
-    "fy": "reaction fy",
-    "m": "reaction moment",
-}
 OF_SECTION = (
     *("normal", "shear", "moment", "stress", "von_mises", "upper", "lower", "outer"),
     *("tension", "compression", "shear_stress", "utilisation"),

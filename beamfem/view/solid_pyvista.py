@@ -93,7 +93,9 @@ class _Scene:
         import pyvista
 
         self.shapes = shapes
-        self.surface = pyvista.PolyData(self._points(0), self._surface())
+        self.surface = pyvista.PolyData(
+            self._points(0), _faces(shapes.points, [len(parts) for parts in self._parts(0)])
+        )
         with no_display_needed():
             self.plotter = pyvista.Plotter(off_screen=off_screen, window_size=list(size))
         self.plotter.set_background("white")
@@ -136,10 +138,6 @@ class _Scene:
         self.plotter.reset_camera(bounds=bounds)
         self.plotter.camera.zoom(1.3 if self.shapes.quantity is None else 1.1)  # a colour bar stands beside the body
         self.plotter.add_axes(color="black", zlabel="")
-
-    def _surface(self) -> np.ndarray:
-        """Return the faces of all parts, see `_faces`."""
-        return _faces(self.shapes.points, [len(parts) for parts in self._parts(0)])
 
     def _parts(self, order: int) -> list[list[np.ndarray]]:
         """Two faces (points, 2 faces, 2) [m] of the parts of each beam: layers, or the strips of a field."""

@@ -46,12 +46,6 @@ class Stamps:
         self.outlines[key] = outline
         self.places[key, colour, width, fill].append(at)
 
-    def add_all(self, other: "Stamps") -> None:
-        """Add the outlines of others."""
-        self.outlines.update(other.outlines)
-        for key, places in other.places.items():
-            self.places[key].extend(places)
-
     def draw(self, axes: Any, size: float = SIZE, layer: float = 4.0) -> list[Any]:
         """Add all to the axes and return them."""
         from matplotlib.collections import PathCollection
@@ -101,7 +95,7 @@ def supports_of(solution: Solution, row: int, centre: np.ndarray) -> Stamps:
 
 def draw_joints(axes: Any, solution: Solution, row: int) -> list[Any]:
     """Draw the hinges and connectors of a model in a row; see `joints_of`."""
-    return joints_of(solution, row).draw(axes, layer=6.0) + _draw_connectors(axes, solution, row)
+    return joints_of(solution, row, Stamps()).draw(axes, layer=6.0) + _draw_connectors(axes, solution, row)
 
 
 def _draw_connectors(axes: Any, solution: Solution, row: int) -> list[Any]:
@@ -160,9 +154,8 @@ def _centre(only: Solution, disc: Disc) -> np.ndarray:
     return np.asarray(at + np.array([c * x - s * y, s * x + c * y]))
 
 
-def joints_of(solution: Solution, row: int) -> Stamps:
-    """Return the hinges of a model in a row as circles."""
-    stamps = Stamps()
+def joints_of(solution: Solution, row: int, stamps: Stamps) -> Stamps:
+    """Add the hinges of a model in a row as circles."""
     rings = [shape for joint in solution.model.shared_joints for shape in drawn(joint, joint.shapes(), JointShape)]
     for ring in rings:
         stamps.add(solution[row : row + 1].position(ring.point)[0], symbols.HINGE, INK, 1.1, "white")
@@ -182,12 +175,6 @@ def _away(point: Any) -> np.ndarray:
     if point.fraction == 0.0:
         return -along
     return along if point.fraction == 1.0 else np.array([along[1], -along[0]])
-
-
-def _ground(at: np.ndarray, centre: np.ndarray) -> np.ndarray:
-    """Return the direction of the ground: down, or up if the structure hangs below."""
-    x, y = centre - at
-    return np.array([0.0, 1.0 if y < 0.0 and -y > abs(x) else -1.0])
 
 
 def _springs(stamps: Stamps, spring: Springs) -> None:
@@ -217,7 +204,8 @@ def _constraint(stamps: Stamps, support: Constraint, now: np.ndarray, centre: np
     if fixed == {"ux", "uy", "rotation"}:
         _stamp(stamps, symbols.CLAMP, at, _away(support.point), 1.2)
     elif {"ux", "uy"} <= fixed:
-        _stamp(stamps, symbols.PIN, at, _ground(at, centre))
+        hangs = at[1] - centre[1] > abs(centre[0] - at[0])
+        _stamp(stamps, symbols.PIN, at, np.array([0.0, 1.0 if hangs else -1.0]))
     else:
         for name, down in (("ux", (-1.0, 0.0)), ("uy", (0.0, -1.0))):
             if name in fixed:

@@ -22,6 +22,7 @@ from beamfem.equations.system import System
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
+from beamfem.parts.rigid_body import RigidBody
 from beamfem.results.path import Path as EquilibriumPath
 from beamfem.results.quantities import UNITS
 from beamfem.results.solution_checks import findings
@@ -105,7 +106,7 @@ def read_model_file(path: str | PathLike[str]) -> Job:
             raise InputError("a model needs at least one beam, a table headed [beams.NAME]")
         given = build(_FILE, source.values, names)
         with fault_at(table=given.keys() & {"units"}):
-            model = _model(list(names.parts["beams"].values()), given, source)
+            model = _model(list(names.parts["beams"].values()), list(names.parts["bodies"].values()), given, source)
         analysis = given.get("analysis", Analysis("static", {}))
         for number, output in enumerate(outputs := given.get("outputs", [])):
             with fault_at("outputs", number, table=source.values["outputs"][number]):
@@ -127,12 +128,12 @@ def _located(source: Source, section: str = "") -> Iterator[None]:
         raise source.error(in_keys(str(fault)), *path) from fault
 
 
-def _model(beams: list[Beam], given: dict[str, Any], source: Source) -> Model:
+def _model(beams: list[Beam], bodies: list[RigidBody], given: dict[str, Any], source: Source) -> Model:
     """Return the model, or raise the error of the first part that it refuses."""
 
-    def made(**parts: Any) -> Model:
-        model = Model(beams, **parts)
-        system = System(Model(beams, model.supports, joints=model.joints), static=True)
+    def made(masses: Sequence[Any] = (), **parts: Any) -> Model:
+        model = Model(beams, masses=[*masses, *bodies], **parts)
+        system = System(Model(model.beams, model.supports, joints=model.joints), static=True)
         _ = system.prescribed, system.inclined  # raise InputError for what two supports constrain
         return model
 
@@ -181,7 +182,7 @@ _FILE = Keyed(
     {
         "title": (str, ""),
         "units": (str, ""),
-        **{section: (_named(section), None) for section in (*NAMED, "beams")},
+        **{section: (_named(section), None) for section in NAMED},
         "analysis": (reader(partial(part, ANALYSES, default="static")), None),
         "outputs": (list[reader(partial(build, Output))], None),  # type: ignore[misc]
         **{section: (list[reader(partial(_each_place, kinds))], None) for section, kinds in ACTING.items()},  # type: ignore[misc]

@@ -19,6 +19,7 @@ from beamfem.model.beam import Beam, Point, graded
 from beamfem.model.parts_by_role import parts_in
 from beamfem.model.time_functions import Interpolated, kinks_of, sine, smooth_ramp
 from beamfem.parts.hinge import Hinge
+from beamfem.parts.rigid_body import RigidBody
 from beamfem.public_names import public, public_dataclasses
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import nearest
@@ -122,6 +123,7 @@ TYPES: dict[Any, Any] = {
     "vector": reader(_vector),
 }
 NAMED = {"materials": MATERIALS, "functions": FUNCTIONS, "sections": SECTIONS, "elements": ELEMENTS}
+NAMED |= {"beams": {"beam": Beam}, "bodies": {"rigid-body": RigidBody}}  # read in this order
 
 
 _PYTHON = {

@@ -25,9 +25,9 @@ from beamfem.validation import shown as in_python
 
 Kinds = Mapping[str, Callable[..., Any]]
 
-_POINT = re.compile(
-    r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\(\s*(?P<fraction>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*\))"
-)
+_NUMBER = r"\s*[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*"
+_POINT = re.compile(rf"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\((?P<fraction>{_NUMBER})\))")
+_OF_BODY = re.compile(rf"(?P<body>.+?)\.at\((?P<x>{_NUMBER}),(?P<y>{_NUMBER})\)")
 _RULES = {
     "float_type": "a number",
     "int_type": "a whole number",
@@ -72,7 +72,11 @@ class Names:
         return beams[name]
 
     def point(self, text: Any) -> Point:
-        """Return the point NAME.start, NAME.end or NAME.at(fraction). Raises InputError."""
+        """Return the point NAME.start, NAME.end or NAME.at(fraction), or BODY.at(x, y). Raises InputError."""
+        if isinstance(text, str) and (match := _OF_BODY.fullmatch(text)) and match["body"] in self.parts["bodies"]:
+            body, at = self.parts["bodies"][match["body"]], (float(match["x"]), float(match["y"]))
+            key = f"{match['body']} {at}"  # two parts at one place are at one point
+            return self.parts["points"].setdefault(key, body.at(*at))
         match = _POINT.fullmatch(text) if isinstance(text, str) else None
         if match is None:
             prefix, beams = str(text).partition(".")[0], self.parts["beams"]

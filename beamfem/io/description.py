@@ -110,7 +110,8 @@ def describe(model: Model, at: np.ndarray) -> dict[str, Any]:
     Raises InputError for a part that cannot be saved.
     """
     writer = _Writer(model, [float(value) for value in np.unique(at)])
-    beams = [writer.members(_with_values(beam, mesh)) for beam, mesh in zip(model.beams, model.meshes, strict=True)]
+    both = zip(model.beams, model.meshes, strict=True)
+    beams = [writer.members(_with_values(beam, mesh), Beam) for beam, mesh in both]
     described = {"class": Model.__name__}
     loads = [_with_own_values(load, model) for load in model.loads]
     for field in fields(Model):
@@ -170,9 +171,9 @@ class _Writer:
         self.functions: dict[int, tuple[int, Callable[[float], float]]] = {}
         self.values: list[list[float]] = []
 
-    def members(self, value: Any) -> dict[str, Any]:
-        names = [field.name for field in fields(value)]
-        return {"class": type(value).__name__, **{name: self.write(getattr(value, name)) for name in names}}
+    def members(self, value: Any, kind: type[Any] | None = None) -> dict[str, Any]:
+        names = [field.name for field in fields(kind or value)]
+        return {"class": (kind or type(value)).__name__, **{name: self.write(getattr(value, name)) for name in names}}
 
     def own_members(self, value: Any) -> dict[str, Any]:
         """Describe a user-defined part. Raises InputError for a function with an unknown argument."""

@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal, cast
+from typing import Any, Literal, cast
 
 import numpy as np
 from skfem import MeshLine, MeshLine1
@@ -134,6 +134,11 @@ class Beam:
     material: Material | None = None
     name: str | None = None
     damping: Damping | None = None
+
+    @property
+    def holding(self) -> tuple[Any, ...]:
+        """Joints of a beam that a model adds with it, where a part acts on it: none."""
+        return ()
 
     def __post_init__(self) -> None:
         if not fulfils(self.curve, Curve):

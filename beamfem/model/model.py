@@ -204,6 +204,7 @@ class Model:
                 own = Contribution not in kinds or isinstance(item, Joint)
                 if own and not (is_dataclass(item) and kind.__dataclass_params__.frozen):
                     raise InputError(f"{kind.__name__}, one of the {name} of a Model, must be a frozen dataclass")
+        self._add_arms()
         if not isinstance(self.frame, RotatingFrame | None):
             raise InputError(f"frame of a Model must be a RotatingFrame, got {shown(self.frame)}")
         if not self.beams:
@@ -237,6 +238,18 @@ class Model:
         self._require_touches()
         if self.units != _UNNAMED:
             warn_of_units(self.beams, self.loads, self.units, self._units)
+
+    def _add_arms(self) -> None:
+        """Add the arms of rigid bodies on which parts act, with the joints that hold them."""
+        parts = (*self.supports, *self.loads, *self.joints, *self.connectors, *self.masses)
+        places = [getattr(part, name, None) for part in parts for name in ("place", "a", "b")]
+        several = [getattr(part, "points", ()) for part in parts]
+        places += [point for points in several if isinstance(points, tuple | list) for point in points]
+        held = {place.beam: place.beam.holding for place in places if isinstance(place, Point)}
+        arms = [beam for beam, joints in held.items() if joints and beam not in self.beams]
+        if arms:
+            object.__setattr__(self, "beams", (*self.beams, *arms))
+            object.__setattr__(self, "joints", (*self.joints, *(joint for arm in arms for joint in arm.holding)))
 
     def _require(self, item: object, place: Beam | Point | None) -> None:
         kind = type(item).__name__
@@ -466,8 +479,10 @@ class Model:
 def _share(old: Model, new: Model) -> None:
     """Give a new model the meshes of an old one if their nodes are the same, and its tables if sizes of loads differ.
 
-    Both have the same beams and joints.
+    Both have the same beams and joints, unless the new one has more arms of rigid bodies.
     """
+    if len(old.beams) != len(new.beams):
+        return
     same = all(map(_same, (old.supports, old.at_points, _layouts(old)), (new.supports, new.at_points, _layouts(new))))
     if same or old.nodes_needed == new.nodes_needed:
         vars(new)["numbered"] = old.numbered

@@ -4,11 +4,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from beamfem.model.beam import Point, require_point_of
+from beamfem.curves import Line
+from beamfem.element.element import CRBF
+from beamfem.model.beam import Beam, Point, require_point_of
 from beamfem.model.load_shapes import Disc
 from beamfem.model.part_units import UNIT
 from beamfem.parts.at_points import PartAtPoints
+from beamfem.parts.rigid import Rigid
+from beamfem.parts.weld import Weld
 from beamfem.physics.connections import BODY, Connection
+from beamfem.section import StiffnessSection
 from beamfem.validation import convert, not_negative, positive, vector
 
 
@@ -61,6 +66,26 @@ class RigidBody(PartAtPoints):
         """A body."""
         return BODY
 
+    def at(self, x: float, y: float) -> Point:
+        """Return a point of the body, at (x, y) [m] from its `point` in the reference, for any other part.
+
+        It is the end of a rigid arm, one of `model.beams` where a part is attached to it; two calls return two arms.
+
+        >>> lid = bf.RigidBody(beam.end, mass=2.0, inertia=0.01, offset=(0.05, 0.0))
+        >>> stay = bf.SpringDamper(lid.at(0.1, 0.05), (2.5, 1.0), stiffness=1e4, length=0.5)
+        >>> closed = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], connectors=[stay], masses=[lid]))
+        """
+        place = vector("point of a RigidBody", (x, y))
+        if not any(place):
+            return self.point
+        start, own = self.point.reference, self.point.beam
+        axis = Line(tuple(start.tolist()), tuple((start + place).tolist()))
+        stiffness = own.section_at(self.point.fraction * own.curve.length).rigidity(own.material)
+        mass = _NO_MASS * self.mass / axis.length
+        rigidity = stiffness.axial, stiffness.shear, stiffness.bending
+        section = StiffnessSection(*rigidity, mass, mass * axis.length**2)
+        return Arm(axis, 1, CRBF(1), section, body=self).end
+
     def data(self, reference: np.ndarray) -> tuple[float, ...]:
         """Return mass, inertia, offset and reference position."""
         x, y, _ = reference[0].tolist()
@@ -69,3 +94,18 @@ class RigidBody(PartAtPoints):
     def shapes(self) -> tuple[Disc, ...]:
         """Return the shape to draw."""
         return (Disc(self.point, self.offset),)
+
+
+_NO_MASS = 1e-15  # that of an arm relative to its body: beams must have mass
+
+
+@dataclass(frozen=True, eq=False)
+class Arm(Beam):
+    """A beam from the point of a rigid body to another one, without strain and mass."""
+
+    body: RigidBody = field(kw_only=True)
+
+    @property
+    def holding(self) -> tuple[Rigid, Weld]:
+        """What makes it rigid, and joins it with the body."""
+        return Rigid(self.body.point, self.start), Weld(self.start, self.end)

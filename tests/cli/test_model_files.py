@@ -425,3 +425,49 @@ def test_static_analyses_of_files_refine_meshes_left_to_them(keys, asked):
         assert mesh or solution.error() < 1e-4
         found.append(solution.displacement(beam.end)[-1])
     assert np.linalg.norm(found[0] - found[1]) < 1e-4
+
+
+def test_bodies_of_model_files(tmp_path):
+    (tmp_path / "a.toml").write_text(
+        """
+[materials.steel]
+youngs_modulus = 2.1e11
+poisson_ratio = 0.3
+density = 7850.0
+
+[beams.arm]
+curve = { kind = "line", start = [0, 0], end = [1, 0] }
+elements = 4
+element = { kind = "CRBF", order = 3 }
+section = { kind = "rectangle", width = 0.01, height = 0.01 }
+material = "steel"
+
+[bodies.head]
+point = "arm.end"
+mass = 2.0
+inertia = 0.01
+offset = [0.2, 0.1]
+
+[[supports]]
+kind = "clamp"
+point = "arm.start"
+
+[[supports]]
+kind = "roller"
+point = "head.at(0.2, -0.1)"
+
+[[loads]]
+kind = "force"
+point = "head.at(0.2, -0.1)"
+vector = [10, 0]
+"""
+    )
+    job = read_model_file(tmp_path / "a.toml")
+    assert (len(job.model.beams), len(job.model.masses)) == (2, 1)
+    steel = bf.Material(2.1e11, 0.3, 7850.0)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(3), bf.Rectangle(0.01, 0.01), steel)
+    body = bf.RigidBody(beam.end, 2.0, 0.01, offset=(0.2, 0.1))
+    place = body.at(0.2, -0.1)
+    supports = [bf.Clamp(beam.start), bf.Roller(place)]
+    solution = bf.solve_static(bf.Model([beam], supports, [bf.PointForce(place, (10.0, 0.0))], masses=[body]))
+    assert bf.solve_static(job.model).p[-1] == pytest.approx(solution.p[-1], abs=1e-14)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamfem.extras import needed_for
+from beamfem.io.vtk_boundary import ROLES, points_of_forces
 from beamfem.model.beam import Beam, names
 from beamfem.model.model import Model
 from beamfem.results.axis_fields import QUANTITIES, section_forces
@@ -120,18 +121,39 @@ def as_dataset(data: Variables, coordinates: Variables, attributes: dict[str, An
     return dataset.swap_dims(station="arc_length")
 
 
-def to_pandas(solution: Solution, beam: Beam | None = None) -> Any:
+def to_pandas(solution: Solution, beam: Beam | None = None, forces: bool = False) -> Any:
     """Return a pandas.DataFrame of the `arrays`, with a row for each time and station, see `Solution.to_pandas`."""
     with needed_for("to_pandas"):
         import pandas
+    if forces:
+        return pandas.DataFrame(_forces(solution)).set_index([_over(solution), "point"]).sort_index()
     data, coordinates = arrays(solution, beam)
-    over, stations = ("load_factor" if solution.static else "time"), len(coordinates["beam"][1])
+    over, stations = _over(solution), len(coordinates["beam"][1])
     places = {name: coordinates[name][1] for name in ("beam", "arc_length", "x0", "y0")}
     places["arc_length"] = told_apart(places["arc_length"])
     columns = {over: np.repeat(told_apart(solution.at), stations)}
     columns |= {name: np.tile(values, len(solution)) for name, values in places.items()}
     columns |= {name: values.ravel() for name, (_, values, _) in data.items() if values.ndim == 2}
     return pandas.DataFrame(columns).set_index([over, "beam", "arc_length"])
+
+
+def _over(solution: Solution) -> str:
+    """Return the name of what a solution is a function of."""
+    return "load_factor" if solution.static else "time"
+
+
+def _forces(solution: Solution) -> dict[str, np.ndarray]:
+    """Return the columns of the forces of supports, connectors and joints, row by row for each point."""
+    groups = points_of_forces(solution.model)
+    place = [group.points.positions(solution.p)[0][:, 0] for group in groups]
+    values = [group.values(solution) for group in groups]
+    acting = [np.column_stack([each["force"][:, 0, :2], each["moment"][:, 0]]) for each in values]
+    numbers = np.concatenate([np.empty((0, 5)), *map(np.column_stack, zip(place, acting, strict=True))])
+    columns = {_over(solution): np.tile(told_apart(solution.at), len(groups))}
+    columns["point"] = np.repeat(np.arange(len(groups)), len(solution))
+    columns["role"] = np.repeat(np.array([ROLES[group.role] for group in groups]), len(solution))
+    columns["kind"] = np.repeat(np.array([group.kind for group in groups]), len(solution))
+    return columns | dict(zip(("x", "y", "fx", "fy", "moment"), numbers.T, strict=True))
 
 
 def told_apart(values: np.ndarray) -> np.ndarray:

@@ -1,6 +1,6 @@
 """Supports, loads and connectors in ParaView files: a vertex for each place, with what acts on the beam there."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 
@@ -10,6 +10,7 @@ from beamfem.io.vtk_cells import VERTEX, Content, legend_of_beams
 from beamfem.mesh.reference import length_points
 from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import Contribution
+from beamfem.model.joint_base import Joint
 from beamfem.model.load_base import Load, factor
 from beamfem.model.model import Model
 from beamfem.model.state_protocols import in_plane
@@ -17,6 +18,7 @@ from beamfem.model.supports import DIRECTIONS, LineSupport, PointSupport
 from beamfem.parts.at_points import PartAlongBeam
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.full_turns import StationsOfRows
+from beamfem.results.joint_forces import is_determined, joint_force
 from beamfem.results.reactions import reaction_of
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
@@ -24,7 +26,7 @@ from beamfem.validation import require_known
 
 # values of a vertex by name, and how many components each has
 _COMPONENTS = {"force": 3, "moment": 1, "line_force": 3, "acceleration": 3, "prescribed": 3, "stiffness": 3}
-_ROLES = ("support", "load", "connector")
+ROLES = ("support", "load", "connector")
 _SUPPORT, _LOAD, _CONNECTOR = range(3)
 _ACTION = ("force", "moment")
 _Values = dict[str, np.ndarray]
@@ -61,11 +63,12 @@ def _along(model: Model, beam: Beam) -> AxisPoints:
 def _supports(model: Model) -> Iterator[_Vertices]:
     """Yield one vertex for each point that is supported, since its reaction is that of all supports there."""
     at_node: dict[tuple[int, int], list[PointSupport]] = {}
+    of_loads = {id(part): load for load in model.loads for part in load.parts}
     for support in model.point_supports:
         beam, fraction = support.point.beam, support.point.fraction
         at_node.setdefault((id(beam), model.mesh_of(support.point).node_at(fraction)), []).append(support)
     for supports in at_node.values():
-        kind = " + ".join(dict.fromkeys(type(support).__name__ for support in supports))
+        kind = " + ".join(dict.fromkeys(type(of_loads.get(id(each), each)).__name__ for each in supports))
         fixed = _fixed(supports)
         points = _at(model, supports[0].point)
         yield _Vertices(kind, _SUPPORT, (*_ACTION, *fixed), points, partial(_reaction, supports, fixed))
@@ -89,9 +92,8 @@ def _fixed(supports: list[PointSupport]) -> _Values:
 
 
 def _reaction(supports: list[PointSupport], fixed: _Values, part: Solution) -> _Values:
-    reactions = reaction_of(part, supports)[:, None]
     constant = {name: np.tile(array, (len(part), 1, 1)) for name, array in fixed.items()}
-    return {"force": _flat(reactions[..., :2]), "moment": reactions[..., 2:], **constant}
+    return {**_force_and_moment(reaction_of(part, supports)[:, None]), **constant}
 
 
 def _of_foundation(foundation: LineSupport, points: AxisPoints, part: Solution) -> _Values:
@@ -128,17 +130,41 @@ def _of_load(load: Load, acting: Mapping[str, np.ndarray], points: AxisPoints, p
 
 
 def _connectors(model: Model) -> Iterator[_Vertices]:
+    of_loads = {id(part): load for load in model.loads for part in load.parts}
     for connector in model.at_points:
         if isinstance(connector, PartAlongBeam):
             continue  # acts along a beam
+        kind = type(of_loads.get(id(connector), connector)).__name__
         for number, point in enumerate(connector.points):
             values = partial(_of_connector, connector, number)
-            yield _Vertices(type(connector).__name__, _CONNECTOR, _ACTION, _at(model, point), values)
+            yield _Vertices(kind, _CONNECTOR, _ACTION, _at(model, point), values)
+
+
+def _joints(model: Model, joints: Iterable[Joint]) -> Iterator[_Vertices]:
+    """Yield the vertices of joints at which beams share coordinates."""
+    for joint in joints:
+        force = partial(joint_force, joint=joint)
+        for sign, point in ((-1.0, joint.a), (1.0, joint.b)) if is_determined(model, joint) else ():
+            values = partial(_of_joint, force, sign)
+            yield _Vertices(type(joint).__name__, _CONNECTOR, _ACTION, _at(model, point), values)
 
 
 def _of_connector(connector: Contribution, number: int, part: Solution) -> _Values:
-    forces = part.connector_force(connector)[:, number : number + 1]
+    return _force_and_moment(part.connector_force(connector)[:, number : number + 1])
+
+
+def _of_joint(force: Callable[[Solution], np.ndarray], sign: float, part: Solution) -> _Values:
+    return _force_and_moment(sign * part.computed(force)[:, None])
+
+
+def _force_and_moment(forces: np.ndarray) -> _Values:
     return {"force": _flat(forces[..., :2]), "moment": forces[..., 2:]}
+
+
+def points_of_forces(model: Model) -> list[_Vertices]:
+    """Return a vertex for each point at which a support, connector or joint acts, all with force and moment."""
+    groups = [*_supports(model), *_connectors(model), *_joints(model, model.shared_joints)]
+    return [each for each in groups if "force" in each.fields]
 
 
 class Boundary:
@@ -149,6 +175,8 @@ class Boundary:
     def __init__(self, model: Model, content: Content) -> None:
         self.content, self.beams, self.unit = content, model.beams, model.unit
         self.groups = [*_supports(model), *_loads(model), *_connectors(model)]
+        # the section forces of the beams say what rigid ones transmit
+        self.groups += _joints(model, (joint for joint in model.shared_joints if not joint.keeps_angle))
         numbers = {id(mesh): number for number, mesh in enumerate(model.meshes)}
         kinds = list(dict.fromkeys(group.kind for group in self.groups))
         self._sizes = [len(group.points.xi) for group in self.groups]
@@ -161,7 +189,7 @@ class Boundary:
             name: np.repeat(np.array(values, dtype=np.int64), self._sizes)
             for name, values in (("beam", beam), ("kind", kind), ("role", role))
         }
-        self.legend = {**legend_of_beams(self.beams), "kinds": kinds, "roles": list(_ROLES)}
+        self.legend = {**legend_of_beams(self.beams), "kinds": kinds, "roles": list(ROLES)}
 
     @property
     def names(self) -> list[str]:

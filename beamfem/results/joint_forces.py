@@ -43,6 +43,14 @@ def joint_force(solution: Solution, joint: Joint | Contribution | Load) -> np.nd
     )
 
 
+def is_determined(model: Model, joint: Joint) -> bool:
+    """Return whether no other joints connect the points of a joint too, so that its force is determined."""
+    try:
+        return bool(_side(model, joint))
+    except InputError:
+        return False
+
+
 def _of_motor(solution: Solution, motor: Motor) -> np.ndarray:
     """Return the torque of a motor (steps, 3)."""
     last = motor.parts[-1]

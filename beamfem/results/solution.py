@@ -719,23 +719,28 @@ class Solution:
 
         return to_xarray(self, beam)
 
-    def to_pandas(self, beam: Beam | None = None) -> Any:
+    def to_pandas(self, beam: Beam | None = None, *, forces: bool = False) -> Any:
         """Return a pandas.DataFrame of results along a beam, or along all beams, with a row for each step and station.
 
         Its index is time [s] or load_factor, number of the beam and arc_length [m]. Both sides of an end that two
         elements share have a row: the arc length of the one before it, like the load factor of the row before a jump,
-        is smaller by one last digit, so that no row of the index is there twice. Raises InputError for a beam of
-        another model, MissingPackageError without pandas.
+        is smaller by one last digit, so that no row of the index is there twice.
+
+        With `forces`, there is a row for each step and point at which a support, connector or joint acts, with role and
+        kind of the part, position x, y [m], and what it exerts on the beam there, fx, fy [N] and moment [N m]. Raises
+        InputError for a beam of another model, MissingPackageError without pandas.
 
         Examples
         --------
         >>> table = solution.to_pandas(beam)
         >>> list(table.index.names)
         ['load_factor', 'beam', 'arc_length']
+        >>> list(solution.to_pandas(forces=True).columns)
+        ['role', 'kind', 'x', 'y', 'fx', 'fy', 'moment']
         """
         from beamfem.io.table import to_pandas
 
-        return to_pandas(self, beam)
+        return to_pandas(self, beam, forces)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write model and states to one HDF5 file with checksums, which `load` reads; folders are created.

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import pyvista
 from rigid_rods import AREA, DENSITY, DEPTH, LENGTHS, double_pendulum
 from scipy.integrate import solve_ivp
 
@@ -139,3 +140,29 @@ def test_double_pendulum_of_stiff_beams_is_that_of_rigid_rods():
     force = DENSITY * AREA * l2 * (centre.T + np.array([0.0, 9.81]))
     later = slice(2, None)  # rods that are let go at once vibrate at first
     assert motion.joint_force(hinge)[later, :2] == pytest.approx(force[later], abs=1e-5 * np.abs(force).max())
+
+
+def test_forces_of_parts_in_tables_and_paraview_files_are_in_balance(tmp_path):
+    """On each beam of a motion: its supports, joints and connectors, and its inertia and weight."""
+    one, two = (line((x, 0), (x + 1, 0)) for x in (0.0, 1.0))
+    hinge, spring = bf.Hinge(one.end, two.start), bf.SpringDamper(two.end, (2.0, 1.0), 200.0)
+    motor = bf.Motor(hinge, angle=lambda time: time**2)
+    model = bf.Model([one, two], [bf.Pin(one.start)], [bf.Gravity((0, -9.81)), motor], [hinge], connectors=[spring])
+    motion = bf.simulate(model, duration=0.1, step=2.5e-4)
+    table = motion.to_pandas(forces=True)
+    last = table.xs(motion.at[-1], level="time")
+    assert list(last["kind"]) == ["Pin", "SpringDamper", "Motor", "Motor", "Hinge", "Hinge"]
+    assert list(last["role"]) == ["support"] + 5 * ["connector"]
+    numbers = last[["fx", "fy", "moment"]].to_numpy()
+    assert numbers[5] == pytest.approx(motion.joint_force(hinge)[-1])
+    assert numbers[3] == pytest.approx(motion.joint_force(motor)[-1])
+    assert numbers[[2, 4]] == pytest.approx(-numbers[[3, 5]])
+    assert last[["x", "y"]].to_numpy()[5] == pytest.approx(motion.position(two.start)[-1])
+    momentum = motion.linear_momentum()
+    gained = np.gradient(momentum[:, 1], motion.at)[-2]
+    acting = table.xs(motion.at[-2], level="time")["fy"]
+    assert acting.sum() - 9.81 * model.mass == pytest.approx(gained, abs=1e-3 * abs(acting).max())
+    motion[-1:].to_vtk(tmp_path / "a.pvd")
+    vertices = pyvista.read(next((tmp_path / "a_boundary").iterdir()))
+    assert vertices.point_data["force"][-1, :2] == pytest.approx(numbers[5, :2], rel=1e-5)
+    assert vertices.point_data["moment"][-3] == pytest.approx(numbers[3, 2], rel=1e-5)

@@ -3,15 +3,10 @@
 from functools import cache
 
 from beamfem.kernels import linear_law
+from beamfem.kernels.block import GREEN_LAGRANGE
 from beamfem.kernels.compiling import Routine
-from beamfem.kernels.generated import elastic_line_pass as elastic_line
-from beamfem.kernels.generated import green_lagrange_pass as green_lagrange
-from beamfem.kernels.generated import rotation_node, shear_rigid_node, stretch_node
-from beamfem.kernels.generated import structural_pass as structural
 from beamfem.kernels.record import GroupRoutines, NodePasses
-
-MEASURE_PASSES = green_lagrange, structural, elastic_line
-_KINDS = rotation_node, stretch_node, shear_rigid_node
+from beamfem.physics.compiled_elements import MEASURE_PASSES, NODE_PASSES
 
 Sizes = tuple[tuple[str, int], ...]  # arguments of kernels by their names
 
@@ -24,8 +19,8 @@ class Routines:
     """
 
     def __init__(self, measures: int, sizes: Sizes, law: int = 0) -> None:
-        self.record = GroupRoutines(nodes=[NodePasses() for _ in _KINDS])
-        self._sizes, self._passes, self._law = dict(sizes), MEASURE_PASSES[measures], law
+        self.record = GroupRoutines(nodes=[NodePasses() for _ in NODE_PASSES])
+        self._sizes, self._measures, self._law = dict(sizes), measures, law
         self._ready = set[tuple[tuple[str, ...], tuple[int, ...]]]()
 
     def require(self, tasks: tuple[str, ...], kinds: tuple[int, ...]) -> None:
@@ -35,17 +30,18 @@ class Routines:
         for task in tasks:
             for name, called in GroupRoutines.called.items():
                 if task in called.tasks:
-                    setattr(self.record, name, self._own(name, called.routine))
+                    setattr(self.record, name, self._own(name))
             for name, called in NodePasses.called.items():
                 for kind in kinds if task in called.tasks else ():
-                    setattr(self.record.nodes[kind], name, getattr(_KINDS[kind], name))
+                    setattr(self.record.nodes[kind], name, NODE_PASSES[kind][name])
         self._ready.add((tasks, kinds))
 
-    def _own(self, name: str, usual: Routine) -> Routine | int:
+    def _own(self, name: str) -> Routine | int:
         """Return the routine of these elements, or its address."""
-        if name == "law" and (self._law or self._passes is green_lagrange):
+        if name == "law" and (self._law or self._measures == GREEN_LAGRANGE):
             return self._law or linear_law.six_resultants
-        return getattr(self._passes, name, usual).fixed(**self._sizes)
+        own = MEASURE_PASSES[self._measures].get(name)
+        return own or GroupRoutines.called[name].routine.fixed(**self._sizes)
 
 
 @cache

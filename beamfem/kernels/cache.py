@@ -16,7 +16,7 @@ from platformdirs import user_cache_path
 
 from beamfem.kernels.compiler import machine
 
-_HERE = Path(__file__).parent
+_FOLDERS = Path(__file__).parent, Path(__file__).parents[1] / "physics"  # from which some kernels are derived
 _ENDING = ".code"
 _OLD = 90 * 86400  # [s]
 
@@ -24,7 +24,8 @@ _OLD = 90 * 86400  # [s]
 def _digest() -> str | None:
     """Return a hash of the sources of all kernels; None if they are not files, as in an archive."""
     try:
-        files = [file for file in sorted(_HERE.rglob("*.py")) if not file.name.startswith(".") and file.is_file()]
+        every = (file for folder in _FOLDERS for file in sorted(folder.rglob("*.py")))
+        files = [file for file in every if not file.name.startswith(".") and file.is_file()]
         content = b"".join(file.name.encode() + file.read_bytes() for file in files)
     except OSError:
         return None

@@ -4,6 +4,8 @@ Each kernel is compiled separately, on first use, and called by its address, so 
 compiled with it.
 """
 
+import linecache
+import math
 import os
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -22,6 +24,7 @@ from beamfem.kernels.compiler.bounds_checks import CHECKED, raise_violation
 from beamfem.kernels.compiler.callables import Inlined
 from beamfem.kernels.compiler.translation import translate
 from beamfem.kernels.compiler.value_types import NUMBER, WHOLE, Kind, Signature, signature_of
+from beamfem.kernels.pointers import at
 from beamfem.kernels.records import Record, checked, kind_of
 
 _Value = TypeVar("_Value", covariant=True)
@@ -78,6 +81,7 @@ class Routine:
     """
 
     made: ClassVar[list["Routine"]] = []
+    _fixed: tuple[tuple[str, int], ...] = ()
 
     def __init__(
         self,
@@ -86,15 +90,16 @@ class Routine:
         fastmath: Iterable[str],
         fixed: tuple[tuple[str, int], ...] = (),
     ) -> None:
-        self.function, self.signature, self.fastmath = function, signature, tuple(sorted(fastmath))
-        self._fixed, self._others = fixed, dict[tuple[tuple[str, int], ...], Routine]()
+        self.function, self._fixed, self._others = function, fixed, dict[tuple[tuple[str, int], ...], Routine]()
         self.__doc__, self.__module__ = function.__doc__, function.__module__
+        name = "_".join([f"{self.__module__}.{function.__name__}", *(f"{n}_{v}" for n, v in fixed)])
+        # the folder's hash covers these only
+        self._prepare(name, signature, fastmath, str(self.__module__).startswith(f"{__package__}."))
+
+    def _prepare(self, name: str, signature: Signature, fastmath: Iterable[str], on_disk: bool) -> None:
+        self.name, self.signature, self.fastmath, self._on_disk = name, signature, tuple(sorted(fastmath)), on_disk
         self.seconds, self.compiled_here = 0.0, False
         self.made.append(self)
-
-    @property
-    def name(self) -> str:
-        return "_".join([f"{self.__module__}.{self.function.__name__}", *(f"{n}_{v}" for n, v in self._fixed)])
 
     def fixed(self, **values: int) -> "Routine":
         """Return a routine with some arguments fixed at compile time; names that are not arguments are ignored."""
@@ -118,11 +123,10 @@ class Routine:
             if self.loaded:  # another thread has loaded it meanwhile
                 return vars(self)["address"]
             begun = process_time()
-            of_this_package = str(self.__module__).startswith(f"{__package__}.")  # the folder's hash covers these only
-            code = cache.found(self.name) if of_this_package else None
+            code = cache.found(self.name) if self._on_disk else None
             if code is None:
                 code, self.compiled_here = machine.object_code(self.module()), True
-                if of_this_package:
+                if self._on_disk:
                     cache.keep(self.name, code)
             address = machine.linked(code)
             self.seconds = process_time() - begun
@@ -145,6 +149,36 @@ class Routine:
     def __call__(self, *arguments: Any) -> Any:
         """Call it from Python, without the GIL; pointers are given as arrays or records, or as addresses."""
         return self.compiled(*map(_plain, self.signature.arguments, arguments))
+
+
+class Derived(Routine):
+    """A routine whose definition, as source, is derived when it must be compiled or is called in Python.
+
+    on_disk: whether machine code with its name is kept, as of what the hash of the folder covers.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        signature: Signature,
+        source: Callable[[], str],
+        fastmath: Iterable[str] = (),
+        on_disk: bool = True,
+    ) -> None:
+        self._source = source
+        self._prepare(name, signature, fastmath, on_disk)
+
+    @_lockless_property
+    def function(self) -> Callable[..., Any]:
+        """The definition, the only function of its source."""
+        text, file, names = self._source(), f"<{self.name}>", {"__name__": self.name, "math": math, "at": at}
+        linecache.cache[file] = (len(text), None, text.splitlines(keepends=True), file)
+        exec(compile(text, file, "exec"), names)
+        return next(reversed(names.values()))
+
+    def fixed(self, **values: int) -> Routine:
+        """Return this routine, whose arguments are never fixed."""
+        return self
 
 
 def _plain(kind: Kind, argument: Any) -> Any:

@@ -12,6 +12,8 @@ from beamfem.kernels.records import Reals, Record, Several, Slots, Table, Wholes
 CONSTANTS = 4  # of a station
 LANES = 64
 ROW = 72  # longer than a batch, so that rows do not all map to the same cache sets
+# of passes derived in `physics`: over rows of points or nodes, and forces and tangents of parts at points and stations
+ROWS_PASS, CONVECT_PASS = signature_of("iv"), signature_of("iddv")
 POINT_FORCE = signature_of("rrrrrrrr")  # of q, v, a, own, turned, data, gravity and the result
 POINT_TANGENT = signature_of("rrrrrrrdddr")  # likewise, with ck, cv and ca before the result
 
@@ -27,9 +29,9 @@ class Run(Record):
 class NodePasses(Record):
     """The compiled functions of a kind of node with an angle."""
 
-    place = calls("generated.rotation_node:place", "forces")
-    convect = calls("generated.rotation_node:convect", "mass")
-    curve = calls("generated.rotation_node:curve", "tangent")
+    place = calls(ROWS_PASS, "forces")
+    convect = calls(CONVECT_PASS, "mass")
+    curve = calls(ROWS_PASS, "tangent")
 
 
 class GroupRoutines(Record):
@@ -57,13 +59,13 @@ class GroupRoutines(Record):
     rotate = calls("nodes:rotate", "rotated")
     copy_rows = calls("nodes:copy_rows", "forces")
     clear = calls("nodes:clear", "forces")
-    strains = calls("generated.structural_pass:strains", "forces")
-    forces = calls("generated.structural_pass:forces", "forces")
-    rates = calls("generated.structural_pass:rates", "prediction", "damping")
-    hessian = calls("generated.structural_pass:hessian", "tangent")
+    strains = calls(ROWS_PASS, "forces")
+    forces = calls(ROWS_PASS, "forces")
+    rates = calls(ROWS_PASS, "prediction", "damping")
+    hessian = calls(ROWS_PASS, "tangent")
     law = calls("linear_law:four_resultants", "forces")
     add_viscous = calls("linear_law:add_viscous", "damping")
-    rate_changes = calls("generated.structural_pass:rate_changes", "damping tangent")
+    rate_changes = calls(ROWS_PASS, "damping tangent")
     add_component = calls("rate_tangent:add_component", "damping tangent")
     add_products = calls("rate_tangent:add_products", "damping tangent")
     add_rate_tangent = calls("rate_tangent:add_rate_tangent", "damping tangent")

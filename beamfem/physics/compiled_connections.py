@@ -1,21 +1,19 @@
 """Compiled force and tangent of a part at points: derived from its definition."""
 
-import linecache
 from collections.abc import Callable
 from ctypes import CFUNCTYPE, c_double, c_void_p
-from functools import cache
-from hashlib import sha256
+from functools import cache, partial
 from types import FunctionType
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from beamfem import kernels
 from beamfem.errors import InputError
-from beamfem.kernels.compiling import Routine
+from beamfem.kernels.compiling import Derived, Routine
 from beamfem.kernels.connection_passes import MOST, MOST_DATA
 from beamfem.kernels.pointers import address_of
-from beamfem.physics.connection_source import HEADER, connection_source
+from beamfem.kernels.record import POINT_FORCE, POINT_TANGENT
+from beamfem.physics.connection_source import connection_source
 from beamfem.physics.connections import Connection
 from beamfem.physics.stations import GENERATED
 
@@ -53,21 +51,21 @@ def passes_of(connection: Connection) -> Passes:
         )
     if connection.compiled is not None:
         return Passes(Foreign(connection.compiled[0], 0), Foreign(connection.compiled[1], 3))
+    package, signatures = connection in GENERATED, {"force": POINT_FORCE, "tangent": POINT_TANGENT}
+    name = connection.name if package else f"{connection.name} of {id(connection)}"
+    derived = [
+        Derived(f"{name}_{what}", signature, partial(connection_source, connection, what), on_disk=package)
+        for what, signature in signatures.items()
+    ]
     try:
-        source = HEADER + connection_source(connection)
+        if not package:
+            _ = [each.function for each in derived]
     except Exception as error:
         raise InputError(
             f"force and tangent of {connection.name} cannot be derived from its energies: {error}. Write them with "
             "+, -, *, /, whole powers, f.sqrt and f.positive, and f.cos and f.sin of rotations"
         ) from error
-    file = f"<{connection.name} of {id(connection)}>"
-    linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
-    digest = sha256(source.encode()).hexdigest()[:16]
-    # machine code is kept on disk by the names of module and function
-    module = f"{kernels.__name__}.{digest}" if connection in GENERATED else "user_connections"
-    found: dict[str, Any] = {"__name__": module}
-    exec(compile(source, file, "exec"), found)
-    return Passes(*(found[f"{connection.name}_{what}"] for what in ("force", "tangent")))
+    return Passes(*derived)
 
 
 @cache

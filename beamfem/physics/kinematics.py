@@ -1,8 +1,8 @@
 """Node kinematics, with each kind written once: the nodal vectors that rotate with an angle of the node.
 
 The last nodal vectors w of a node (r_x and r_y, or r_y alone) are functions of coordinates u: w = w(u). Velocities are
-w' = B u' with B = dw/du, accelerations w'' = B u'' + B' u'; `generate` derives them from w. The other coordinates of a
-node are components of nodal vectors.
+w' = B u' with B = dw/du, accelerations w'' = B u'' + B' u'; `compiled_elements` derives them from w. The other
+coordinates of a node are components of nodal vectors.
 
 Angles are coordinates relative to the reference; (c, s) is the unit normal of the section in the current state.
 """

@@ -2,7 +2,8 @@
 
 A measure is a function of r = r0' (derivative of the axis by the reference arc length), d (director) and a third
 vector: e = d', or b = r0'' if the curvature comes from the axis. Its arguments are components and a square root
-function, so that it works for symbols (`generate`), for arrays of real or complex numbers, and in scikit-fem forms.
+function, so that it works for terms (see `compiled_elements`), for arrays of real or complex numbers, and in
+scikit-fem forms.
 """
 
 from collections.abc import Callable

@@ -1,32 +1,19 @@
-"""What is written by `beamfem.physics.generate` is what the definitions give, and what they mean."""
+"""Compiled passes that are derived are what the definitions mean."""
 
 import numpy as np
 import pytest
 
 from beamfem.element.fields import Axis
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, Structural
-from beamfem.equations.routines import MEASURE_PASSES
 from beamfem.kernels import point
 from beamfem.kernels.block import ELASTIC_LINE, GREEN_LAGRANGE, STRUCTURAL
 from beamfem.kernels.record import ROW
 from beamfem.parts.at_points import ANALYTIC
-from beamfem.physics import generate
 from beamfem.physics.compiled_connections import in_python, passes_of
+from beamfem.physics.compiled_elements import MEASURE_PASSES
 from beamfem.physics.connections import CABLE, Connection
-from beamfem.physics.measures import MEASURES
 from beamfem.physics.stations import DEAD, FOLLOWING, GROUNDED, STATIONS, STRETCHING
 from beamfem.precision.roundoff_bounds import depends
-
-
-def test_the_committed_passes_are_those_of_the_definitions():
-    written = {name: (generate.FOLDER / name).read_text() for name in generate.sources()}
-    assert written == generate.sources()
-    assert {path.name for path in generate.FOLDER.glob("*.py")} == {*written, "__init__.py"}
-
-
-def test_the_passes_stand_in_the_order_of_the_measures():
-    names = [passes.strains.__module__.rpartition(".")[2] for passes in MEASURE_PASSES]
-    assert names == [f"{measure.__name__}_pass" for measure in MEASURES]
 
 
 def test_round_off_reaches_strains_through_the_vectors_of_their_definition():
@@ -46,7 +33,7 @@ def test_compiled_strains_are_those_of_post_processing(number, forces, rng):
     at = Axis(*rng.uniform(0.5, 1.0, (5, 4, 2)))
     rows = np.zeros((point.POINT_ROWS, ROW))
     rows[:6, :4] = np.concatenate([at.r_s.T, at.d.T, (at.r_ss if number == 2 else at.d_s).T])
-    MEASURE_PASSES[forces.code].strains(4, rows)
+    MEASURE_PASSES[forces.code]["strains"](4, rows)
     expected = forces.strains(at)
     np.testing.assert_allclose(rows[point.STRAIN : point.STRAIN + expected.shape[1], :4].T, expected, rtol=1e-12)
 

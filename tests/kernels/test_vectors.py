@@ -11,15 +11,14 @@ from beamfem.kernels import inertia_forces as inertia
 from beamfem.kernels.band import band
 from beamfem.kernels.bidirectional_lu import bidirectional_lu
 from beamfem.kernels.compiler.machine import assembly_code
-from beamfem.kernels.generated import elastic_line_pass as elastic_line
-from beamfem.kernels.generated import green_lagrange_pass as green_lagrange
-from beamfem.kernels.generated import structural_pass as structural
+from beamfem.physics.compiled_elements import MEASURE_PASSES
 
+green_lagrange, structural, elastic_line = MEASURE_PASSES
 PASSES = [
     *(stiffness.columns, stiffness.combine, stiffness.products, inertia.add_inertia, inertia.add_mass),
     *(field.interpolate, field.distribute, linear_law.four_resultants, linear_law.six_resultants),
-    *(getattr(forces, name) for forces in (green_lagrange, structural) for name in ("strains", "forces", "rates")),
-    *(forces.hessian for forces in (green_lagrange, structural)),
+    *(forces[name] for forces in (green_lagrange, structural) for name in ("strains", "forces", "rates")),
+    *(forces["hessian"] for forces in (green_lagrange, structural)),
     *(band(half_width).factor for half_width in (5, 8, 11)),
     *(bidirectional_lu(half_width, short=False).solve for half_width in (5, 8, 11)),
 ]
@@ -45,9 +44,9 @@ def test_products_of_a_pass_are_packed(routine):
 def test_divisions_and_roots_of_a_pass_are_packed():
     for forces in (structural, elastic_line):
         for name in ("strains", "forces", "rates", "hessian"):
-            routine = getattr(forces, name)
+            routine = forces[name]
             assert packed(routine, "div"), routine.name
-    assert packed(structural.strains, "sqrt")
+    assert packed(structural["strains"], "sqrt")
 
 
 def test_a_loop_that_cannot_be_packed_is_told_apart():

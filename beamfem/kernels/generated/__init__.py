@@ -1,1 +1,0 @@
-"""Passes written by `beamfem.physics.generate`."""

@@ -9,14 +9,21 @@ from scipy.sparse import csc_array, csr_array, dia_array
 
 from beamfem.equations.system import system_of
 from beamfem.errors import InputError
+from beamfem.linalg.eigenpairs import digits_for, orthonormal
 from beamfem.linalg.lapack import superlu
 from beamfem.model.load_base import Load
 from beamfem.model.model import Model
 from beamfem.results.solution import State
-from beamfem.solve.linear.damped_modes import damped_modes
 from beamfem.solve.linear.linear_outputs import Quantity, output_row
+from beamfem.solve.linear.quadratic_modes import slowest_rates
+from beamfem.solve.modes.mode_stiffness import upright
 from beamfem.solve.modes.modes import Modes
+from beamfem.solve.modes.pencil import Pencil
+from beamfem.solve.modes.rigid_modes import sort_rigid
+from beamfem.validation import count as whole_number
 from beamfem.validation import items
+
+_REAL = 1e-9  # of shapes: imaginary parts below this fraction are round-off
 
 
 def scale_of(model: Model, transformation: csr_array) -> np.ndarray:
@@ -136,8 +143,26 @@ class LinearModel:
         >>> damped.frequencies.round(2), damped.ratios.round(3)
         (array([ 20.76, 129.06]), array([0.097, 0.015]))
         """
-        matrices = self.mass, self.damping, self.stiffness
-        return damped_modes(self.state, matrices, self.transformation, self.scale, self.round_off, count)
+        mass = self.mass
+        if whole_number("count", count) > len(self):
+            raise InputError(f"count is {count}, but this model has only {len(self)} modes")
+        with digits_for("modes"):
+            rates, vectors = slowest_rates(mass, self.damping, self.stiffness, self.scale, self.round_off, count)
+            rigid = np.count_nonzero(rates == 0.0)
+            shapes, words = np.empty((0, self.model.size)), tuple[str, ...]()
+            if rigid:
+                still = orthonormal(vectors[:, :rigid].real, mass).T @ self.transformation.T
+                pencil = Pencil(system_of(self.model, static=True), self.state.p, self.state.at)
+                shapes, words = sort_rigid(pencil, still)
+        rates, vectors = rates[rigid:], vectors[:, rigid:]
+        order = np.lexsort((-rates.real, rates.imag))
+        rates, vectors = rates[order], vectors[:, order]
+        vectors = vectors / np.sqrt(np.real((np.conj(vectors) * (mass @ vectors)).sum(axis=0)))
+        elastic = upright(vectors.T @ self.transformation.T)
+        if np.abs(elastic.imag).max(initial=0.0) <= _REAL * np.abs(elastic).max(initial=0.0):
+            elastic = elastic.real
+        shapes, rates = np.concatenate([upright(shapes), elastic]), np.append(np.zeros(rigid), rates)
+        return Modes(self.model, self.state, rates.imag / (2.0 * np.pi), rates.real, shapes, words)
 
     def state_space(
         self, outputs: Sequence[Quantity] | None = None

@@ -6,17 +6,19 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from beamfem.equations import equations
+from beamfem.equations.applied_loads import LoadsAt
 from beamfem.equations.equations import INERTIA, STATICS
 from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError
+from beamfem.linalg.lapack import qr, solve_triangular
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.beam import beam_in_words
-from beamfem.model.load_base import Load
+from beamfem.model.imposed_strains import ImposedStrain
+from beamfem.model.load_base import BodyLoad, LineLoad, Load, factor, forces_of
 from beamfem.model.model import Model
 from beamfem.results.solution import Solution, State
-from beamfem.solve.linear.input_forces import input_forces
 from beamfem.solve.linear.linear_model import LinearModel, scale_of
-from beamfem.solve.linear.null_space import independent_motions
+from beamfem.solve.start.mechanisms import dependent
 from beamfem.solve.start.start_checks import refuse_frame, require_equilibrium
 from beamfem.solve.start.start_state import last_state, require_finite, resting_state
 from beamfem.validation import items
@@ -147,3 +149,106 @@ def _names(system: System) -> dict[int, str]:
             for label, dof in mesh.coordinates_of(node).items():
                 names.setdefault(dof, f"{beam}, node {node}, {label}")
     return names
+
+
+_DEPENDENT = 1e-10  # of a condition of unit size: its part that is independent of all others
+_NOTHING = 1e-14  # of the largest entry of a basis
+
+
+def independent_motions(system: System, p: np.ndarray, tangent: csr_array) -> tuple[np.ndarray, csr_array]:
+    """Return the independent coordinates (m,) of the unknowns in a state p (n,), and a basis T (unknown, m).
+
+    They are x = T x[independent].
+
+    The conditions G x = 0 are those of multipliers, the last rows of the tangent [K, G^T; G, 0], and of inclined
+    rollers. They are solved for as many coordinates, which pivoting selects. Multipliers have zero rows. Raises
+    InputError if conditions are redundant.
+    """
+    unknown = len(system.free_dofs)
+    multipliers = len(system.connectors.multipliers)
+    size = unknown - multipliers
+    first, normals = system.rotated
+    active = size + np.flatnonzero(tangent.diagonal()[size:] == 0.0)  # of conditions that come and go, too
+    rows = tangent[active, :size].toarray() if len(active) else np.empty((0, size))
+    rollers = np.zeros((len(first), size))
+    rollers[np.arange(len(first)), first] = normals[:, 0]
+    rollers[np.arange(len(first)), first + 1] = normals[:, 1]
+    conditions = np.vstack([rows, rollers])
+    constrained = np.flatnonzero(conditions.any(axis=0))
+    scale = system.scale[system.free_dofs[constrained]]
+    solved, free, solution = _solved_for(conditions[:, constrained] * scale, system, p)
+    solution *= scale[solved][:, None] / scale[free]
+    dependents, drivers = constrained[solved], constrained[free]
+    independent = np.setdiff1d(np.arange(size), dependents)
+    number = np.zeros(size, dtype=np.int64)
+    number[independent] = np.arange(len(independent))
+    row, column = np.nonzero(solution)
+    entries = np.concatenate([np.ones(len(independent)), solution[row, column]])
+    places = np.append(independent, dependents[row]), np.append(number[independent], number[drivers[column]])
+    return independent, csr_array(coo_array((entries, places), shape=(unknown, len(independent))))
+
+
+def _solved_for(conditions: np.ndarray, system: System, p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the columns that conditions (k, n) are solved for, the others, and the solution (k, n - k) X with x = X y.
+
+    Raises InputError if conditions are redundant.
+    """
+    count = len(conditions)
+    sizes = np.linalg.norm(conditions, axis=1, keepdims=True)
+    triangle, order = qr(conditions / np.where(sizes > 0.0, sizes, 1.0), mode="r", pivoting=True)
+    diagonal = np.abs(np.diagonal(triangle))
+    if len(diagonal) < count or np.any(diagonal <= _DEPENDENT):
+        raise InputError(dependent(system, p))
+    solution = -solve_triangular(triangle[:, :count], triangle[:, count:])
+    solution[np.abs(solution) <= _NOTHING * np.abs(solution).max(initial=0.0)] = 0.0
+    return order[:count], order[count:], solution
+
+
+_LARGE = 2.0**30  # factor of a load beside which internal forces are round-off
+_WIDTH = 2.0**-14  # of the factor of an imposed strain, to which laws of sections may respond nonlinearly
+
+
+def input_forces(system: System, p: np.ndarray, loads: Sequence[Load], time: float) -> np.ndarray:
+    """Return the external forces (n, loads) [N, N m] per unit factor of loads of the model in a state p (n,).
+
+    The forces of follower loads have the directions of the state; those of imposed strains are -dr/d(factor).
+    """
+    return np.array([_force(system, p, load, time) for load in loads]).reshape(len(loads), len(p)).T
+
+
+def _force(system: System, p: np.ndarray, load: Load, time: float) -> np.ndarray:
+    """Return the external force (n,) per unit factor of a load, by a central difference; it is linear but for laws."""
+    imposed = isinstance(load, ImposedStrain)
+    middle, width = (factor(load, time, system.static), _WIDTH) if imposed else (0.0, _LARGE)
+    ends = [_residual(system, p, load, middle + side * width) for side in (-1.0, 1.0)]
+    return (ends[0] - ends[1]) / (2.0 * width)
+
+
+def _residual(system: System, p: np.ndarray, load: Load, size: float) -> np.ndarray:
+    """Return the residual (n,) at rest under one load alone, with its factor `size`."""
+    assembler, result, zeros = system.assembler(), np.empty(len(p)), np.zeros(len(p))
+    assembler.take(_alone(system, load, size))
+    assembler.weigh((1.0, 0.0, 0.0))
+    assembler.balance(p, zeros, zeros, result, np.empty(0), False)
+    gravity = size * np.array(load.vector) if isinstance(load, BodyLoad) else np.zeros(2)
+    for item in system.called.items:
+        np.add.at(result, item.all, item.force_in((p, zeros, zeros), 0.0, gravity))
+    return result
+
+
+def _alone(system: System, load: Load, size: float) -> LoadsAt:
+    """Return a load with its factor `size`, without all other loads."""
+    model, body = system.model, np.zeros((len(system.model.beams), 4))
+    if isinstance(load, BodyLoad):
+        body[:, :2] = size * np.array(load.vector)
+    if isinstance(load, LineLoad) and load.even:
+        body[model.number_of(load.beam), 2:] = size * forces_of(load, np.zeros(1))[0]
+    points = []
+    for actions in system.actions:
+        # a load that is listed twice is one input
+        rows = [number for number, own in enumerate(actions.loads) if own is load][:1]
+        points.append(size * actions.unit * np.isin(actions.source, rows)[:, None])
+    numbers = [number for number, (_, own) in enumerate(model.imposing) if own is load][:1]
+    imposing = np.zeros(len(model.imposing))
+    imposing[numbers] = size
+    return LoadsAt(body, tuple(points), imposing)

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from beamfem.cached_properties import cached_property
-from beamfem.equations.rigid_velocity import RigidVelocity
+from beamfem.equations.equations import residual
+from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.equations.system import Proven, system_of
 from beamfem.errors import InputError
 from beamfem.linalg.eigenpairs import Pairs, digits_for, general_pairs, nothing_known
@@ -22,17 +23,17 @@ from beamfem.results.status import Finding, Statistics, Status, counted
 from beamfem.solve.accuracy.adapted_mesh import Shares, prepared, refined_until, require_unlocked
 from beamfem.solve.accuracy.error_estimate import enriched, enriched_state
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
-from beamfem.solve.modes.participation import participation
 from beamfem.solve.modes.pencil import WRONG, Pencil, lowest_pairs
 from beamfem.solve.modes.rigid_modes import unresisted
 from beamfem.solve.start.start_checks import refuse_dampers, require_equilibrium
 from beamfem.solve.start.start_state import resting_state
 from beamfem.tables import as_pandas
 from beamfem.validation import count as whole_number
-from beamfem.validation import number_below, positive, squared
+from beamfem.validation import number_below, positive, squared, vector
 
 _REAL = 1e-8  # imaginary parts of lambda below this fraction are round-off
 _SPARE = 4  # eigenvalues found beyond those asked for
+_LARGE = 2.0**30  # acceleration beside whose inertia forces all others are round-off
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +144,18 @@ class Modes:
         --------
         >>> factors = bf.solve_modes(model, count=2).participation((0.0, 1.0))
         """
-        return participation(self.state, self.modes, direction)
+        if np.iscomplexobj(self.modes):
+            raise InputError("participation factors are those of undamped modes, which are real; these are complex")
+        system, p, motion = system_of(self.model, static=True), self.state.p, direction
+        if not isinstance(motion, RigidVelocity):
+            x, y = vector("direction", motion)
+            size = float(np.hypot(x, y))
+            if size == 0.0:
+                raise InputError("direction must not be (0, 0)")
+            motion = RigidVelocity((x / size, y / size))
+        rates = _LARGE * rigid_rates(system, motion, p)
+        ends = [residual(system, p, np.zeros_like(p), side * rates, self.state.at) for side in (1.0, -1.0)]
+        return np.asarray(self.modes @ (ends[0] - ends[1]) / (2.0 * _LARGE))
 
     def effective_masses(self, direction: tuple[float, float] | RigidVelocity) -> np.ndarray:
         """Return the effective masses (phi^T M r)^2 of undamped modes in a direction.

@@ -15,15 +15,23 @@ from beamfem.model.model import Model
 from beamfem.precision.roundoff import FEW_DIGITS, remainder
 from beamfem.progress import kept, progress
 from beamfem.results.full_turns import first_turns
+from beamfem.results.locking import locking
 from beamfem.results.path import Bifurcation, Path, PathState
+from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import advice, warned
 from beamfem.results.status import Statistics, Status
-from beamfem.solve.accuracy.adapted_mesh import prepared, refined_until
+from beamfem.solve.accuracy.adapted_mesh import Shares, prepared, refined_until, require_unlocked
+from beamfem.solve.accuracy.error_estimate import (
+    carried_coordinates,
+    carried_stresses,
+    enriched,
+    error_shares,
+    largest_displacement_error,
+)
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 from beamfem.solve.continuation.steps import Refused, Step, longest_step, take_step, too_small
 from beamfem.solve.newton.newton import Newton, require_newton
-from beamfem.solve.paths.path_error import path_attempt
 from beamfem.solve.start.functions_of_time import SAME, Jump, functions_of_time, jumps_between, kinks_between
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.start_checks import refuse_memory
@@ -113,6 +121,42 @@ class PathRecord:
             limit_points=tuple(self.limit_points),
             bifurcations=tuple(self.bifurcations),
         )
+
+
+_MOST_ROWS = 24  # of a path whose errors are estimated
+
+
+def path_attempt(path: Path) -> tuple[Path, float, Shares]:
+    """Return a path, its largest estimated error [-], and the shares of the elements in it.
+
+    The error is that of displacements relative to the size of the model, or that of load factors relative to the
+    largest one. Each of some rows is corrected in the plane across the path, so that limit points do not amplify it.
+    Raises InputError for elements that lock.
+    """
+    require_unlocked(path.computed(locking))
+    model = enriched(path.model)
+    system, newton = system_of(model, static=True), Newton()
+    largest = float(np.abs(path.load_factor).max()) or 1.0
+    line = Continuation(system, newton, largest, largest)
+    rows = np.unique(np.linspace(0, len(path) - 1, _MOST_ROWS).round().astype(int)).tolist()
+    points = [np.append(carried_coordinates(path[row], model), path[row].at) for row in rows]
+    worst, shares = 0.0, None
+    for number in range(1, len(rows)):
+        chord = points[min(number + 1, len(rows) - 1)] - points[number - 1]
+        state = path[rows[number]]
+        stresses = carried_stresses(state, model)
+        corrected = line.correct(points[number], stresses, chord / line.length(chord))
+        if not corrected.ended.good:
+            return path, np.inf, None
+        p, at = corrected.y[:-1], float(corrected.y[-1])
+        rest = np.zeros((1, model.size))
+        summary = Statistics(corrected.iterations, 1, 0, "an equilibrium on the enriched space")
+        finer = Solution(model, True, np.array([at]), p[None], rest, rest.copy(), summary)
+        moved = largest_displacement_error(state, finer, between_nodes=True) / system.extent
+        error = max(moved, abs(at - state.at) / largest)
+        if error > worst:
+            worst, shares = error, error_shares(state, finer)
+    return path, worst, shares
 
 
 _FIRST_MODE = 0.02  # distance along the mode of the first search: lengths of the model, radians

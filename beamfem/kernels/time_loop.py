@@ -32,11 +32,11 @@ def _is_inside_out(system, solver):
 
 
 @inlined
-def _load(system, solver, step):
-    """Take the loads of a step, its imposed strains and the values of the prescribed coordinates."""
-    solver.now = step
-    solver.prescribed_now = at(solver.prescribed_values, 3 * solver.prescribed * step)
-    row = step if solver.varies != 0 else 0
+def load_row(system, solver, row):
+    """Take the loads, imposed strains and values of prescribed coordinates of a row, which is a step or a stage."""
+    solver.now = row
+    solver.prescribed_now = at(solver.prescribed_values, 3 * solver.prescribed * row)
+    row = row if solver.varies != 0 else 0
     system.body = at(solver.bodies, row * solver.body_size)
     for number in range(system.group_count):
         group = system.groups[number]
@@ -63,7 +63,7 @@ def march(system: System, solver: MotionSolver) -> int:
     n, state, before, every = system.size, solver.state, solver.before, solver.every
     rule, limits, statistics = solver.rule, solver.limits, solver.statistics
     for step in range(solver.steps):
-        _load(system, solver, step)
+        load_row(system, solver, step)
         rule.order = statistics.best_order
         call.predict(solver)
         size, first_size, iteration, far = 0.0, 0.0, 0, 0

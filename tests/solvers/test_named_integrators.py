@@ -96,25 +96,16 @@ def test_each_has_its_order_with_hinges_and_prescribed_motion(integrator, elemen
     assert np.log2(coarse / fine) == pytest.approx(order, abs=0.1)
 
 
+@pytest.mark.parametrize("moved", [False, True])
 @pytest.mark.parametrize("element", [ROTATIONS, GRADIENTS])
-def test_the_midpoint_rule_is_of_second_order_with_hinges(element):
-    coarse, fine = np.linalg.norm(errors(bf.Midpoint(), element, (2e-3, 1e-3), moved=False), axis=1)
-    assert np.log2(coarse / fine) == pytest.approx(2.0, abs=0.05)
-
-
-@pytest.mark.parametrize("element", [ROTATIONS, GRADIENTS])
-def test_moved_supports_give_the_midpoint_rule_an_error_of_first_order(element):
-    """The error is a h + b h^2, where b is so much larger that two steps may show any order."""
+def test_the_midpoint_rule_is_of_second_order_with_hinges_and_moved_supports(element, moved):
+    """A part of first order would be small beside the other at two steps; at five it is seen."""
     steps = np.array([4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4])
-    found = errors(bf.Midpoint(), element, steps, moved=True)
+    found = errors(bf.Midpoint(), element, steps, moved)
     size = np.linalg.norm(found, axis=1)[:, None]
-
-    def misfit(powers):
-        factors = np.linalg.lstsq(powers / size, found / size)[0]
-        return np.max(np.linalg.norm((powers @ factors - found) / size, axis=1))
-
-    assert misfit(np.column_stack([steps, steps**2])) < 0.01
-    assert misfit(steps[:, None] ** 2) > 0.1
+    powers = steps[:, None] ** 2
+    factors = np.linalg.lstsq(powers / size, found / size)[0]
+    assert np.max(np.linalg.norm((powers @ factors - found) / size, axis=1)) < 0.01
 
 
 def test_bad_parameters_are_refused():

@@ -23,35 +23,18 @@ def not_converged(statistics: MotionStatistics, limits: MotionLimits) -> str:
     )
 
 
-class CompiledSteps:
-    """Marches through time steps; keeps tangent and differences of the acceleration between calls.
+class StepsInCalls:
+    """Takes time steps, many in one compiled call; step [s]: their size; space: its own workspace."""
 
-    space: its own workspace; rule: step, alpha_m, alpha_f, gamma, beta.
-    """
-
-    def __init__(self, system: System, space: MotionWorkspace, rule: np.ndarray, statistics: MotionStatistics) -> None:
-        h, alpha_m, alpha_f, gamma, beta = map(float, rule)
-        self._system, self._space, self._statistics, self._step = system, space, statistics, h
-        sparse, connected = system.unknowns.pattern is not None, bool(system.called.items)
-        bordered = system.unknowns.border_size > 0
-        self._limits = SPARSE if sparse else BORDERED if connected or bordered else BAND
-        space.solver.fill(
-            rule=Rule(time_step=h, alpha_m=alpha_m, alpha_f=alpha_f, gamma=gamma, beta=beta),
-            limits=self._limits,
-            statistics=statistics,
-        )
-        space.solver.differences[:] = 0.0
-        space.assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))), self._step)
-        space.assembler.require("tangent", "prediction")
-        self._coupled = CoupledStages(system, space) if sparse or connected else None
-        self._untried = bordered and self._coupled is None
+    def __init__(self, system: System, space: MotionWorkspace, statistics: MotionStatistics, step: float) -> None:
+        self._system, self._space, self._statistics, self._step = system, space, statistics, step
         self._deferred: Deferred | None = None
         self._error: BaseException | None = None
 
     @property
     def why(self) -> str:
         """Why a step has failed."""
-        return not_converged(self._statistics, self._limits)
+        raise NotImplementedError
 
     @property
     def broken(self) -> bool:
@@ -80,13 +63,59 @@ class CompiledSteps:
 
     def _advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """Do what `advance` does in one compiled call."""
+        raise NotImplementedError
+
+    def memory(self, state: np.ndarray) -> None:
+        """Return None: the state (4, n) is all that the next steps need."""
+
+    def recall(self, memory: object, state: np.ndarray) -> None:
+        """Recall nothing."""
+
+    def raise_error(self) -> None:
+        """Raise what has ended the last call early, if it was an error or a Ctrl-C."""
+        if self._deferred is not None:
+            self._deferred.deliver()
+        if self._error is not None:
+            raise self._error
+
+
+class CompiledSteps(StepsInCalls):
+    """Marches through time steps; keeps tangent and differences of the acceleration between calls.
+
+    rule: step, alpha_m, alpha_f, gamma, beta.
+    """
+
+    def __init__(self, system: System, space: MotionWorkspace, rule: np.ndarray, statistics: MotionStatistics) -> None:
+        h, alpha_m, alpha_f, gamma, beta = map(float, rule)
+        super().__init__(system, space, statistics, h)
+        sparse, connected = system.unknowns.pattern is not None, bool(system.called.items)
+        bordered = system.unknowns.border_size > 0
+        self._limits = SPARSE if sparse else BORDERED if connected or bordered else BAND
+        space.solver.fill(
+            rule=Rule(time_step=h, alpha_m=alpha_m, alpha_f=alpha_f, gamma=gamma, beta=beta),
+            limits=self._limits,
+            statistics=statistics,
+        )
+        space.solver.differences[:] = 0.0
+        space.assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))), self._step)
+        space.assembler.require("tangent", "prediction")
+        self._coupled = CoupledStages(system, space) if sparse or connected else None
+        self._untried = bordered and self._coupled is None
+
+    @property
+    def why(self) -> str:
+        """Why a step has failed."""
+        return not_converged(self._statistics, self._limits)
+
+    def _advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
+        """Do what `advance` does in one compiled call."""
         space, unknowns = self._space, self._system.unknowns
         if self._untried:
             self._untried = False
             p, v, a, _ = state
             weak = is_weak(self._system, (p, v, a), float(times[0]), space.assembler.weights, self._step)
             self._coupled = CoupledStages(self._system, space) if weak else None
-        body, values, imposing = _sample_loads(self._system, times)
+        body, values, imposing = sample_loads(self._system, times)
         assembler, solver = space.assembler, space.solver
         assembler.load(body, values, imposing)
         assembler.place(state[0], state[1], state[2], space.residual, solver.rows)
@@ -119,21 +148,8 @@ class CompiledSteps:
         self._error = next((error for error in (*errors, assembler.take_error()) if error is not None), None)
         return completed if self._deferred.lost is None else 0
 
-    def memory(self, state: np.ndarray) -> None:
-        """Return None: the state (4, n) is all that the next steps need."""
 
-    def recall(self, memory: object, state: np.ndarray) -> None:
-        """Recall nothing."""
-
-    def raise_error(self) -> None:
-        """Raise what has ended the last call early, if it was an error or a Ctrl-C."""
-        if self._deferred is not None:
-            self._deferred.deliver()
-        if self._error is not None:
-            raise self._error
-
-
-def _sample_loads(system: System, times: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...], np.ndarray]:
+def sample_loads(system: System, times: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...], np.ndarray]:
     """Return body forces (steps, beams, 4), point values of each block (steps, nl, 3), factors (steps, k) of strains.
 
     The last are those of imposed strains. There is one row only if nothing varies.

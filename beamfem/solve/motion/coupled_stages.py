@@ -113,22 +113,50 @@ _Solve = CFUNCTYPE(None, *(c_int64,) * 2, *(c_void_p,) * 2)
 _Correct = CFUNCTYPE(c_double, *(c_int64,) * 2)
 
 
-class CoupledStages:
-    """The routines of a motion with connectors or a sparse tangent.
+class PythonRoutines:
+    """Routines in Python that compiled time steps call; spoiled: right-hand sides that an error fills with nan.
 
     An error in them cannot propagate through compiled code: it is kept, the corrections become nan, which ends any
     iteration, and `take_error` returns it. So do they where a tangent cannot be formed.
     """
 
+    def __init__(self, spoiled: np.ndarray) -> None:
+        self._spoiled, self._errors, self._deferred = spoiled, KeptErrors(), Deferred()
+        self._factors: CoupledFactors | None = None
+
+    def take_error(self) -> BaseException | None:
+        """Return the first error since the last call, if there is one."""
+        return self._errors.take()
+
+    def _guarded(self, function: Callable[..., float | None]) -> Callable[..., Any]:
+        """Return a function that compiled code may call: it raises nothing."""
+
+        def guarded(*arguments: int) -> float | None:
+            try:
+                if not (self._errors.waiting or self._deferred.lost):
+                    return function(*arguments)
+            except LinAlgError:
+                self._factors = None
+            except BaseException as error:
+                self._errors.keep(error)
+            self._spoiled[:] = np.nan
+            return np.nan
+
+        return guarded
+
+
+class CoupledStages(PythonRoutines):
+    """The routines of a motion with connectors or a sparse tangent."""
+
     def __init__(self, system: System, space: MotionWorkspace) -> None:
-        self.system, self._errors = system, KeptErrors()
-        self._state, self._times, self._deferred = np.empty((4, 0)), np.empty(0), Deferred()
+        super().__init__(space.solver.right)
+        self.system = system
+        self._state, self._times = np.empty((4, 0)), np.empty(0)
         self._equations, self._solver = space.assembler.record, space.solver
         self._weights = space.assembler.weights
         self._coupled: list[np.ndarray] | None = []
         factorisation = BandFactorisation if system.unknowns.pattern is None else SparseFactorisation
         self._factorised = factorisation(system, space.solver.rows)
-        self._factors: CoupledFactors | None = None
         self._functions = {
             "assemble": _Assemble(self._guarded(self._assemble)),
             "factor": _Factor(self._guarded(self._factor)),
@@ -147,26 +175,6 @@ class CoupledStages:
             return int(march(self._equations, self._solver))
         finally:
             self._solver.routines = usual
-
-    def take_error(self) -> BaseException | None:
-        """Return the first error since the last call, if there is one."""
-        return self._errors.take()
-
-    def _guarded(self, function: Callable[..., float | None]) -> Callable[..., Any]:
-        """Return a function that compiled code may call: it raises nothing."""
-
-        def guarded(*arguments: int) -> float | None:
-            try:
-                if not (self._errors.waiting or self._deferred.lost):
-                    return function(*arguments)
-            except LinAlgError:
-                self._factors = None
-            except BaseException as error:
-                self._errors.keep(error)
-            self._solver.right[:] = np.nan
-            return np.nan
-
-        return guarded
 
     def _assemble(self, system: int, solver: int) -> None:
         """See `motion_stages.assemble`."""

@@ -12,7 +12,9 @@ import numpy as np
 from beamfem.equations.motion_workspace import motion_workspace
 from beamfem.equations.system import System
 from beamfem.kernels.motion_record import MotionStatistics
-from beamfem.solve.motion.compiled_steps import CompiledSteps
+from beamfem.solve.motion.collocation import coefficients, is_collocation
+from beamfem.solve.motion.collocation_steps import CollocationSteps
+from beamfem.solve.motion.compiled_steps import CompiledSteps, StepsInCalls
 from beamfem.solve.motion.energy_judgement import CHUNK, EnergyJudge
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.generalized_alpha import Scheme, is_scheme
@@ -165,7 +167,7 @@ class StepCutter:
 
     def _advance(
         self,
-        motion: CompiledSteps | OwnSteps,
+        motion: StepsInCalls | OwnSteps,
         part: Stretch,
         prescribed: np.ndarray,
         states: tuple[np.ndarray, np.ndarray, np.ndarray],
@@ -269,8 +271,13 @@ def keep_momentum(rule: np.ndarray, state: np.ndarray) -> None:
 @contextmanager
 def _steps(
     system: System, integrator: Scheme | Integrator, part: Stretch, statistics: MotionStatistics
-) -> Iterator[CompiledSteps | OwnSteps]:
+) -> Iterator[StepsInCalls | OwnSteps]:
     """Provide the object that takes the steps of a stretch."""
+    if is_collocation(integrator):
+        with motion_workspace(system) as space:
+            begin, step = part.loads_from, part.step
+            yield CollocationSteps(system, space, coefficients(integrator), begin, step, statistics)
+        return
     if not is_scheme(integrator):
         solved = np.zeros(1, dtype=np.int64)
         try:

@@ -9,6 +9,7 @@ from beamfem.equations.compilation_notice import announce_compilation
 from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError
 from beamfem.model.model import Model
+from beamfem.solve.motion.collocation import is_collocation
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.events import Event, Watch
 from beamfem.solve.motion.generalized_alpha import GeneralizedAlpha, Scheme, is_scheme, require_rule
@@ -77,7 +78,7 @@ def settings_of(
     if step is not None and step > duration:
         raise InputError(f"step ({step:g}) must not exceed duration ({duration:g})")
     integrator = GeneralizedAlpha() if integrator is None else integrator
-    user_defined = not is_scheme(integrator)
+    user_defined = not is_scheme(integrator) and not is_collocation(integrator)
     steps = any(callable(getattr(integrator, name, None)) for name in ("step", "run"))
     if isinstance(integrator, type) or (user_defined and not steps):
         raise InputError(

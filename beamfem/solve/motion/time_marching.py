@@ -7,6 +7,7 @@ import numpy as np
 from beamfem.equations.system import System
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.progress import progress
+from beamfem.solve.motion.collocation import is_collocation
 from beamfem.solve.motion.cut_steps import Rows, StepCutter, keep_momentum
 from beamfem.solve.motion.energy_judgement import EnergyJudge
 from beamfem.solve.motion.equations_of_motion import Integrator
@@ -138,8 +139,9 @@ def cutter_of(
     first_chunk = _FIRST_CHUNK // 50 if calls_python else _FIRST_CHUNK
     size, end = 1, float(parts[-1].times[-1])
     judge, largest = None, 1
-    if is_scheme(integrator):
+    if is_scheme(integrator) or is_collocation(integrator):
         size, largest = max(first_chunk // system.model.size, 1), max(_LARGEST_CHUNK // system.model.size, 1)
+    if is_scheme(integrator):
         judge = EnergyJudge(system, integrator.rule(parts[0].step), 0.0, state[:3])
     return StepCutter(system, integrator, record.statistics, record.pairs, end, size, largest, judge, relaxed)
 

@@ -1,0 +1,70 @@
+"""The records that time steps of a collocation method share with Python."""
+
+from typing import Annotated
+
+from beamfem.kernels.records import Reals, Record, calls
+
+
+class StageRoutines(Record):
+    """The compiled functions that such a step calls."""
+
+    predict = calls("stage_steps:predict")
+    residual = calls("stage_steps:residual")
+    factorise = calls("stage_steps:factorise")
+    solve = calls("stage_steps:solve")
+    correct = calls("stage_steps:correct")
+    complete = calls("stage_steps:complete")
+    accelerate = calls("stage_steps:accelerate")
+    iterate = calls("stage_steps:iterate")
+    factor_planes = calls("stage_steps:factor_planes")
+    solve_planes = calls("stage_steps:solve_planes")
+    factor_complex = calls("complex_band:ANY.factor")
+    solve_complex = calls("complex_band:ANY.solve")
+
+
+class Stages(Record):
+    """A collocation method of s stages, and its steps: accelerations a_j of the stages, p_i = p + c_i h v + h^2 A^2 a.
+
+    Planes are the real numbers that the transformed stages consist of: one for a real eigenvalue of A, which comes
+    first, two for each complex pair, real and imaginary part.
+    """
+
+    routines: StageRoutines
+    stages: int  # s
+    real: int  # number of real eigenvalues, 0 or 1
+    samples: int  # rows of loads and prescribed coordinates of a step: the stages, and its end unless it is the last
+    first: int  # of the steps to take
+    steps: int
+    stride: int  # padded(n)
+    height: int  # padded(unknown)
+    time_step: float
+    nodes: Annotated[Reals, "stages"]  # c
+    of_p: Annotated[Reals, "stages", "stages"]  # h^2 A^2
+    of_v: Annotated[Reals, "stages", "stages"]  # h A
+    to_multipliers: Annotated[Reals, "stages", "stages"]  # inverse of h^2 A^2
+    at_end: Annotated[Reals, 3, "stages"]  # h^2 b A, h b, and the polynomial of accelerations at the end
+    ahead: Reals  # (s, s + 1): that through the stages and the end, at the stages of the next step, equal to this one
+    into: Annotated[Reals, "stages", "stages"]  # planes of stages
+    back: Annotated[Reals, "stages", "stages"]  # stages of planes
+    weights: Annotated[Reals, "stages", 3]  # of p, p' and p'' in the tangent of each plane
+
+    # limits and estimates of iterations
+    error_factor: float  # error of a step by the size of its first correction: factor size^power
+    error_power: float
+    kept_rate: float  # of convergence, above which the next step gets new tangents
+    rate: float  # of the last step
+    iteration: int
+    known: int  # whether `a` has the accelerations of the last step
+    factored: int
+    solved: int  # whether `p`, `v` and `a` have those of the next step already
+
+    begin: Annotated[Reals, 3, "stride"]
+    p: Annotated[Reals, "stages", "stride"]
+    v: Annotated[Reals, "stages", "stride"]
+    a: Annotated[Reals, "stages", "stride"]
+    last: Annotated[Reals, "stages", "stride"]
+    change: Annotated[Reals, "stages", "stride"]
+    right: Annotated[Reals, "stages", "height"]
+    planes: Annotated[Reals, "stages", "height"]
+    entries: int
+    matrices: Annotated[Reals, "stages", "entries"]

@@ -1,0 +1,342 @@
+"""Time steps of collocation methods, many in one compiled call: simplified Newton iterations on all stages.
+
+In the eigenvectors of A they need one linear system of the size of the model for each real eigenvalue and each complex
+pair (Hairer and Wanner 1996, IV.8). Tangents are kept, rotated with the sections at the middle stage, while iterations
+converge fast.
+"""
+
+from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.motion_record import MotionSolver
+from beamfem.kernels.pointers import at, small_code
+from beamfem.kernels.predictor import FAST
+from beamfem.kernels.record import System
+from beamfem.kernels.simd import WIDTH, as_rows, larger, largest, zeros
+from beamfem.kernels.stage_record import Stages
+from beamfem.kernels.time_loop import load_row
+
+_ITERATIONS = 15
+_SLOW = 0.8  # rate of convergence above which an iteration is given up
+_LARGEST = 1e3  # of the model: a larger correction means divergence
+_COARSEST = 1e-10  # of the model: error of an iteration at most, and size below which corrections may be round-off
+_FINEST = 1e-16
+_SMALLEST_RATE = 0.01  # of convergence: a smaller one is chance, as the next correction may be in other directions
+_SHARE = 1e-3  # of the estimated error of the step
+
+
+@inlined
+def _place(solver, stages, i):
+    """Set p, p' and p'' of the prescribed coordinates at a stage."""
+    stride, dofs, values, count = stages.stride, solver.prescribed_dofs, solver.prescribed_now, solver.prescribed
+    p, v, a = at(stages.p, i * stride), at(stages.v, i * stride), at(stages.a, i * stride)
+    for k in range(count):
+        p[dofs[k]], v[dofs[k]], a[dofs[k]] = values[k], values[count + k], values[2 * count + k]
+
+
+@routine(fastmath=FAST)
+def predict(system: System, solver: MotionSolver, stages: Stages, step: int, attempt: int) -> None:
+    """Fill p, p' and p'' of the stages to begin iterations with.
+
+    Accelerations are those of the polynomial through the last stages and the beginning, if they are known, else that of
+    the beginning; 0 in the last attempt (2), for vibrations that steps do not resolve, whose accelerations say nothing
+    of the next step. Of multipliers, the same polynomial gives p.
+    """
+    s, stride, begin = stages.stages, stages.stride, stages.begin
+    now, last, h, nodes = as_rows(begin), as_rows(stages.last), stages.time_step, stages.nodes
+    p, v, a = as_rows(stages.p), as_rows(stages.v), as_rows(stages.a)
+    for i in range(solver.conditions):
+        begin[2 * stride + solver.multipliers[i]] = begin[solver.multipliers[i]]
+    for k in range(0, stride, WIDTH):
+        for i in range(s):
+            ahead, total = at(stages.ahead, i * (s + 1)), zeros()
+            if attempt < 2 and stages.known != 0:
+                total = ahead[s] * now[2 * stride + k]
+                for j in range(s):
+                    total += ahead[j] * last[j * stride + k]
+            elif attempt < 2:
+                total = zeros() + now[2 * stride + k]
+            a[i * stride + k] = total
+    if attempt < 2:
+        for number in range(solver.conditions):
+            own, changes, start = (
+                at(stages.a, solver.multipliers[number]),
+                stages.planes,
+                begin[solver.multipliers[number]],
+            )
+            for i in range(s):
+                changes[i] = own[i * stride] - start
+            for i in range(s):
+                total_of_one = 0.0
+                for j in range(s):
+                    total_of_one += stages.to_multipliers[i * s + j] * changes[j]
+                own[i * stride] = total_of_one
+    for k in range(0, stride, WIDTH):
+        for i in range(s):
+            at_p, at_v = now[k] + h * nodes[i] * now[stride + k], zeros() + now[stride + k]
+            for j in range(s):
+                at_p += stages.of_p[i * s + j] * a[j * stride + k]
+                at_v += stages.of_v[i * s + j] * a[j * stride + k]
+            p[i * stride + k], v[i * stride + k] = at_p, at_v
+    for i in range(s):
+        load_row(system, solver, step * stages.samples + i)
+        _place(solver, stages, i)
+
+
+@inlined
+def _take(system, stages, i):
+    """Take a stage as the state of the model."""
+    offset = i * stages.stride
+    system.p, system.v, system.a = at(stages.p, offset), at(stages.v, offset), at(stages.a, offset)
+    system.since_committed = stages.nodes[i] * stages.time_step
+
+
+@routine()
+def residual(system: System, solver: MotionSolver, stages: Stages, step: int, i: int) -> None:
+    """Fill the right-hand side of a stage with the residual of the unknown coordinates, negative."""
+    load_row(system, solver, step * stages.samples + i)
+    _take(system, stages, i)
+    system.tangent, solver.rotations_wanted = 0, i == stages.stages // 2 and stages.iteration == 0
+    solver.routines.assemble(system, solver)
+    right, forces, free = at(stages.right, i * stages.height), system.residual, solver.free_dofs
+    for k in range(solver.unknown):
+        right[k] = -forces[free[k]]
+
+
+@routine()
+def factorise(system: System, solver: MotionSolver, stages: Stages, step: int) -> float:
+    """Factorise the tangents at the middle stage; return the smallest ratio of a pivot to its diagonal entry."""
+    small_code()
+    middle, entries = stages.stages // 2, stages.entries
+    load_row(system, solver, step * stages.samples + middle)
+    _take(system, stages, middle)
+    system.tangent = 1
+    for plane in range(stages.stages):
+        system.matrix, solver.rotations_wanted = at(stages.matrices, plane * entries), plane == 0
+        weights = at(stages.weights, 3 * plane)
+        system.weight_p, system.weight_v, system.weight_a = weights[0], weights[1], weights[2]
+        solver.routines.assemble(system, solver)
+    return stages.routines.factor_planes(solver, stages)
+
+
+@routine()
+def factor_planes(solver: MotionSolver, stages: Stages) -> float:
+    """Factorise the matrices of all planes."""
+    small_code()
+    ratio, n, half, reach, space, entries = 1.0, solver.unknown, solver.half, solver.reach, solver.step, stages.entries
+    if stages.real != 0:
+        ratio = solver.routines.factor(n, half, reach, stages.matrices, space)
+    for plane in range(stages.real, stages.stages, 2):
+        re, im = at(stages.matrices, plane * entries), at(stages.matrices, (plane + 1) * entries)
+        ratio = min(ratio, stages.routines.factor_complex(n, half, reach, re, im, space))
+    return ratio
+
+
+@inlined
+def _rotate(solver, stages, sense):
+    """Rotate vectors of right-hand sides with their sections, see `motion_steps.rotate_pairs`."""
+    count, runs, stride, rotations = solver.pair_run_count, solver.pair_runs, solver.node_stride, solver.rotations
+    for i in range(stages.stages):
+        solver.routines.rotate_pairs(count, sense, runs, stride, rotations, at(stages.right, i * stages.height))
+
+
+@inlined
+def _combine(stages, factors, source, target):
+    """Fill rows (s, height) with combinations of others."""
+    s, height, rows, combined = stages.stages, stages.height, as_rows(source), as_rows(target)
+    for k in range(0, height, WIDTH):
+        for i in range(s):
+            total = zeros()
+            for j in range(s):
+                total += factors[i * s + j] * rows[j * height + k]
+            combined[i * height + k] = total
+
+
+@routine(fastmath=FAST)
+def solve(solver: MotionSolver, stages: Stages) -> None:
+    """Replace the right-hand sides by corrections of the accelerations of the stages."""
+    _rotate(solver, stages, -1.0)
+    _combine(stages, stages.into, stages.right, stages.planes)
+    stages.routines.solve_planes(solver, stages)
+    _combine(stages, stages.back, stages.planes, stages.right)
+    _rotate(solver, stages, 1.0)
+
+
+@routine()
+def solve_planes(solver: MotionSolver, stages: Stages) -> None:
+    """Solve for the right-hand side of each plane, or pair of planes."""
+    small_code()
+    n, half, entries, height, planes = solver.unknown, solver.half, stages.entries, stages.height, stages.planes
+    if stages.real != 0:
+        solver.routines.solve_both(n, half, stages.matrices, planes)
+    for plane in range(stages.real, stages.stages, 2):
+        re, im = at(stages.matrices, plane * entries), at(stages.matrices, (plane + 1) * entries)
+        stages.routines.solve_complex(n, half, re, im, at(planes, plane * height), at(planes, (plane + 1) * height))
+
+
+@routine(fastmath=FAST)
+def correct(solver: MotionSolver, stages: Stages) -> float:
+    """Add corrections to the stages; return the largest change of p, relative to its scale."""
+    s, stride, unknown, free = stages.stages, stages.stride, solver.unknown, solver.free_dofs
+    for i in range(s):
+        right, change = at(stages.right, i * stages.height), at(stages.change, i * stride)
+        for k in range(unknown):
+            change[free[k]] = right[k]
+    changes, p, v, a = as_rows(stages.change), as_rows(stages.p), as_rows(stages.v), as_rows(stages.a)
+    scale, size = as_rows(solver.inverse_scale), zeros()
+    for k in range(0, stride, WIDTH):
+        for i in range(s):
+            of_p, of_v = zeros(), zeros()
+            for j in range(s):
+                of_p += stages.of_p[i * s + j] * changes[j * stride + k]
+                of_v += stages.of_v[i * s + j] * changes[j * stride + k]
+            size = larger(size, of_p * scale[k])
+            p[i * stride + k] += of_p
+            v[i * stride + k] += of_v
+            a[i * stride + k] += changes[i * stride + k]
+    return largest(size)
+
+
+@routine()
+def accelerate(system: System, solver: MotionSolver, stages: Stages) -> None:
+    """Set p'' in the state reached to that of the equations; it has that of prescribed coordinates, and else zeros."""
+    small_code()
+    n, unknown, free, state, right, rows = (
+        solver.size,
+        solver.unknown,
+        solver.free_dofs,
+        solver.state,
+        stages.right,
+        solver.rows,
+    )
+    system.p, system.v, system.a, system.matrix = state, at(state, n), at(state, 2 * n), rows
+    system.weight_p, system.weight_v, system.weight_a, system.since_committed = 0.0, 0.0, 1.0, 0.0
+    system.tangent, solver.rotations_wanted = 1, 0
+    solver.routines.assemble(system, solver)
+    for k in range(unknown):
+        right[k] = -system.residual[free[k]]
+    solver.routines.factor(unknown, solver.half, solver.reach, rows, solver.step)
+    solver.routines.solve_both(unknown, solver.half, rows, right)
+    for k in range(unknown):
+        state[2 * n + free[k]] = right[k]
+
+
+@routine()
+def complete(system: System, solver: MotionSolver, stages: Stages, step: int) -> None:
+    """Set the state to that at the end of the step, and keep the accelerations of its stages."""
+    s, n, stride, state, h = stages.stages, solver.size, stages.stride, solver.state, stages.time_step
+    begin, a, at_end, last = stages.begin, stages.a, stages.at_end, stages.last
+    for k in range(s * stride):
+        last[k] = a[k]
+    for i in range(s):
+        for k in range(solver.conditions):
+            last[i * stride + solver.multipliers[k]] = stages.p[i * stride + solver.multipliers[k]]
+    if stages.samples == s:  # the last stage is the end
+        offset = (s - 1) * stride
+        for k in range(n):
+            state[k], state[n + k], state[2 * n + k] = stages.p[offset + k], stages.v[offset + k], a[offset + k]
+    else:
+        for k in range(n):
+            p, v, acceleration = begin[k] + h * begin[stride + k], begin[stride + k], 0.0
+            for j in range(s):
+                p += at_end[j] * a[j * stride + k]
+                v += at_end[s + j] * a[j * stride + k]
+                acceleration += at_end[2 * s + j] * a[j * stride + k]
+            state[k], state[n + k], state[2 * n + k] = p, v, acceleration
+        load_row(system, solver, step * stages.samples + s)
+        for k in range(solver.unknown):
+            state[2 * n + solver.free_dofs[k]] = 0.0
+        dofs, values, count = solver.prescribed_dofs, solver.prescribed_now, solver.prescribed
+        for k in range(count):
+            for row in range(3):
+                state[row * n + dofs[k]] = values[row * count + k]
+        stages.routines.accelerate(system, solver, stages)
+    for i in range(solver.conditions):
+        state[n + solver.multipliers[i]] = 0.0  # multipliers have no rates
+        state[2 * n + solver.multipliers[i]] = 0.0
+    for k in range(n):
+        state[3 * n + k] = state[2 * n + k]
+
+
+@routine()
+def iterate(system: System, solver: MotionSolver, stages: Stages, step: int, fresh: int) -> int:
+    """Iterate from the stages predicted; return whether they converge.
+
+    Iterations end where their estimated error is a share of that of the step, or where corrections are round-off.
+    """
+    small_code()
+    own, statistics, size, tolerance = stages.routines, solver.statistics, 0.0, _FINEST
+    rate = 1.0 if fresh != 0 else max(stages.rate, _SMALLEST_RATE) ** 0.8
+    for iteration in range(_ITERATIONS):
+        stages.iteration = iteration
+        for i in range(stages.stages):
+            own.residual(system, solver, stages, step, i)
+        own.solve(solver, stages)
+        before, size = size, own.correct(solver, stages)
+        statistics.iterations += 1
+        statistics.correction = size
+        if not size < _LARGEST:
+            return 0
+        if iteration == 0 and stages.known != 0:
+            estimated = stages.error_factor * size**stages.error_power
+            tolerance = min(max(_SHARE * estimated, _FINEST), _COARSEST)
+        if iteration > 0:
+            rate = max(size / before, _SMALLEST_RATE)
+            if rate > _SLOW:
+                if size > _COARSEST or (fresh == 0 and size > statistics.noise):
+                    return 0
+                statistics.noise = max(statistics.noise, 2.0 * before)
+                return 1
+        if rate < 1.0 and rate * size <= (1.0 - rate) * tolerance:
+            if iteration > 0:
+                stages.rate = rate
+                stages.factored = rate <= stages.kept_rate
+            return 1
+    return 0
+
+
+@routine()
+def march_stages(system: System, solver: MotionSolver, stages: Stages) -> int:
+    """March through steps from `state`, advanced in place; return how many were completed."""
+    small_code()
+    own, n, state, before, every, begin = (
+        stages.routines,
+        solver.size,
+        solver.state,
+        solver.before,
+        solver.every,
+        stages.begin,
+    )
+    statistics = solver.statistics
+    for step in range(stages.first, stages.steps):
+        for k in range(4 * n):
+            before[k] = state[k]
+        for row in range(3):
+            for k in range(n):
+                begin[row * stages.stride + k] = state[row * n + k]
+        attempt, done = 0, stages.solved
+        while done == 0 and attempt < 3:
+            own.predict(system, solver, stages, step, attempt)
+            fresh = 1 if attempt > 0 or stages.factored == 0 else 0
+            if fresh != 0:
+                attempt = max(attempt, 1)
+                ratio = own.factorise(system, solver, stages, step)
+                stages.factored = ratio > 0.0
+                statistics.pivot_ratio = min(statistics.pivot_ratio, ratio)
+                statistics.tangents += 1
+            if stages.factored != 0:
+                done = own.iterate(system, solver, stages, step, fresh)
+            attempt += 1
+        if done == 0:
+            stages.factored = 0
+            return step
+        stages.solved = 0
+        own.complete(system, solver, stages, step)
+        stages.known = 1
+        solver.routines.count_rotations(solver.rotation_count, solver.rotation_table, before, state, solver.rotated_by)
+        if (solver.first_step + step) % every == 0:
+            row = (solver.first_step + step) // every
+            to = at(solver.saved, 3 * n * row)
+            for k in range(3 * n):
+                to[k] = state[k]
+            for k in range(solver.rotation_count):
+                solver.saved_rotations[row * solver.rotation_count + k] = solver.rotated_by[k]
+    return stages.steps

@@ -1,0 +1,196 @@
+"""Time steps of collocation methods; one compiled call takes many steps."""
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.linalg import LinAlgError
+from scipy.sparse import csr_array
+
+from beamfem.equations.callbacks import Deferred
+from beamfem.equations.motion_workspace import MotionWorkspace
+from beamfem.equations.system import System
+from beamfem.errors import ConvergenceError
+from beamfem.kernels.complex_band import complex_band
+from beamfem.kernels.motion_record import MotionLimits, MotionStatistics
+from beamfem.kernels.predictor import padded
+from beamfem.kernels.records import aligned
+from beamfem.kernels.stage_record import StageRoutines, Stages
+from beamfem.kernels.stage_steps import march_stages, predict
+from beamfem.solve.motion.collocation import Coefficients
+from beamfem.solve.motion.compiled_steps import StepsInCalls, sample_loads
+from beamfem.solve.motion.coupled_planes import CoupledPlanes, is_coupled
+from beamfem.solve.motion.equations_of_motion import EquationsOfMotion
+from beamfem.solve.motion.stored_states import Saving
+
+_KEPT = 0.1  # rate of convergence up to which factors are kept for the next step
+_TOGETHER = 1e-11  # of the model: correction that ends an iteration on all stages
+
+
+class CollocationSteps(StepsInCalls):
+    """Marches through time steps; keeps factors and accelerations of the stages between calls.
+
+    begin, step [s]: time at the start of the first step, and size of the steps.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        space: MotionWorkspace,
+        rule: Coefficients,
+        begin: float,
+        step: float,
+        statistics: MotionStatistics,
+    ) -> None:
+        super().__init__(system, space, statistics, step)
+        self._rule, self._time = rule, begin
+        solver, h, s = space.solver, step, len(rule.nodes)
+        a, b, stride = rule.a, rule.weights, padded(solver.size)
+        z = h * rule.values
+        real = s % 2
+        planes = [(z[0].real ** 2, z[0].real, 1.0)] * real
+        for each in z[real:]:
+            planes += [((each**2).real, each.real, 1.0), ((each**2).imag, each.imag, 0.0)]
+        own = Stages(
+            stages=s,
+            real=real,
+            samples=len(rule.samples),
+            stride=stride,
+            height=padded(solver.unknown),
+            entries=system.unknowns.entries,
+            time_step=h,
+            error_factor=rule.error[0],
+            error_power=rule.error[1],
+            kept_rate=_KEPT,
+        )
+        own.fill(
+            routines=_routines(solver.half),
+            nodes=rule.nodes,
+            of_p=h * h * a @ a,
+            of_v=h * a,
+            to_multipliers=np.linalg.inv(h * h * a @ a),
+            at_end=np.array([h * h * b @ a, h * b, rule.at_end]),
+            ahead=rule.ahead,
+            into=rule.into,
+            back=rule.back,
+            weights=np.array(planes),
+            **aligned(own.shapes("begin", "p", "v", "a", "last", "change", "right", "planes", "matrices")),
+        )
+        self._stages = own
+        self._coupled = CoupledPlanes(system, space, own) if is_coupled(system) else None
+        solver.fill(limits=MotionLimits(), statistics=statistics)
+        space.assembler.weigh((1.0, 1.0, 1.0), h, moving=True)
+        space.assembler.require("tangent")
+
+    @property
+    def why(self) -> str:
+        """Why a step has failed."""
+        size = self._statistics.correction
+        return f"the iteration on its stages did not converge; the last correction was {size:.2e} of the model"
+
+    def _advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
+        """Do what `advance` does in one compiled call."""
+        system, rule, space, own = self._system, self._rule, self._space, self._stages
+        solver, begins = space.solver, np.append(self._time, times[:-1])
+        sampled = (begins[:, None] + np.outer(times - begins, rule.samples)).ravel()
+        body, values, imposing = sample_loads(system, sampled)
+        space.assembler.load(body, values, imposing)
+        space.assembler.place(state[0], state[1], state[2], space.residual, solver.rows)
+        conditions = len(system.connectors.multipliers)
+        solver.fill(
+            state=state,
+            steps=len(sampled),
+            prescribed_values=self._prescribed(begins, times),
+            varies=len(body) > 1,
+            body_size=body[0].size,
+            bodies=body,
+            first_step=saving.first,
+            every=saving.every,
+            saved=saving.states,
+            rotation_count=len(saving.pairs),
+            rotation_table=saving.pairs,
+            rotated_by=saving.rotations,
+            saved_rotations=saving.saved_rotations,
+            conditions=conditions,
+        )
+        if self._coupled is None and not space.assembler.calls_python:
+            done = self._march(state, begins, times, lambda: march_stages(space.assembler.record, solver, own))
+        else:
+            with Deferred() as self._deferred:
+                done = self._march(state, begins, times, lambda: self._called(state, sampled))
+        self._time = float(times[done - 1]) if done else self._time
+        return done
+
+    def _called(self, state: np.ndarray, times: np.ndarray) -> int:
+        """March with routines in Python, and keep the first error in them."""
+        space, coupled = self._space, self._coupled
+        if coupled is None:
+            done = int(march_stages(space.assembler.record, space.solver, self._stages))
+        else:
+            done = coupled.march(state, times, self._deferred or Deferred())
+        errors = () if coupled is None else (coupled.take_error(),)
+        self._error = next((each for each in (*errors, space.assembler.take_error()) if each is not None), None)
+        return done
+
+    def _march(self, state: np.ndarray, begins: np.ndarray, ends: np.ndarray, march: Callable[[], int]) -> int:
+        """March through steps between times [s]; a step that fails is solved with the tangents of all its stages."""
+        done, self._stages.steps = 0, len(ends)
+        while True:
+            self._stages.first = done
+            done = march()
+            if done == len(ends) or self.broken or not self._solved_together(state, done, begins, ends):
+                return done
+
+    def _prescribed(self, begins: np.ndarray, ends: np.ndarray) -> np.ndarray:
+        """Return prescribed coordinates and their rates (rows, 3, nh) at the stages of steps, and at their ends [s]."""
+        system, rule = self._system, self._rule
+        result = np.zeros((len(ends), len(rule.samples), 3, len(system.prescribed_dofs)))
+        result[:, :, 0] = system.prescribed_values(0.0)
+        if any(callable(item.value) for item in system.prescribed):
+            for own, begin, end in zip(result, begins.tolist(), ends.tolist(), strict=True):
+                at = begin + (end - begin) * rule.points
+                moved = np.array([system.prescribed_changes(time) for time in at])
+                own[:] = rule.motion(moved, self._step).swapaxes(0, 1)
+            result[:, :, 0] += system.reference[system.prescribed_dofs]
+        return result.reshape(-1, *result.shape[2:])
+
+    def _solved_together(self, state: np.ndarray, step: int, begins: np.ndarray, ends: np.ndarray) -> bool:
+        """Solve for the stages of a step by Newton's method on all of them; return whether it has converged.
+
+        Each stage has a tangent of its own.
+        """
+        system, own, counted, n = self._system, self._stages, np.zeros(1, dtype=np.int64), state.shape[1]
+        motion = EquationsOfMotion(system, counted, float(begins[step]))
+        times = (begins[step] + (ends[step] - begins[step]) * self._rule.nodes).tolist()
+        p, v, a = (rows[:, :n] for rows in (own.p, own.v, own.a))
+        stages = range(len(times))
+        weights = [[(float(own.of_p[i, j]), float(own.of_v[i, j]), float(i == j)) for j in stages] for i in stages]
+
+        def linearised() -> tuple[np.ndarray, list[list[csr_array]]]:
+            states = list(zip(p, v, a, times, strict=True))
+            left = np.array([motion.residual(*each) for each in states])
+            return left, [[motion.tangent(*states[i], weights[i][j]) for j in stages] for i in stages]
+
+        def move(change: np.ndarray) -> np.ndarray:
+            a[:, motion.free] += change
+            p[:, motion.free] += own.of_p @ change
+            v[:, motion.free] += own.of_v @ change
+            return own.of_p @ change
+
+        for attempt in (1, 2):
+            predict(self._space.assembler.record, self._space.solver, own, step, attempt)
+            try:
+                motion.iterate(linearised, move, _TOGETHER)
+                own.solved = 1
+            except (ConvergenceError, LinAlgError):
+                continue
+            finally:
+                self._statistics.iterations += int(counted[0])
+                counted[0] = 0
+            return True
+        return False
+
+
+def _routines(half_width: int) -> StageRoutines:
+    """Return the compiled functions for a band of a half width."""
+    own = complex_band(half_width)
+    return StageRoutines.usual(factor_complex=own.factor, solve_complex=own.solve)

@@ -1,0 +1,104 @@
+"""Routines in Python for steps of collocation methods, of models with connectors or a tangent that is no plain band."""
+
+from collections.abc import Callable
+from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p, cast
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from beamfem.equations.callbacks import Deferred
+from beamfem.equations.equations import tangent_of
+from beamfem.equations.motion_workspace import MotionWorkspace
+from beamfem.equations.system import System
+from beamfem.errors import ConvergenceError
+from beamfem.kernels import motion_stages
+from beamfem.kernels.stage_record import Stages
+from beamfem.kernels.stage_steps import march_stages
+from beamfem.linalg.lapack import LinAlgError
+from beamfem.linalg.tangent import UNROTATED
+from beamfem.solve.motion.coupled_stages import PythonRoutines
+from beamfem.solve.motion.equations_of_motion import EquationsOfMotion
+from beamfem.solve.motion.start_acceleration import initial_acceleration
+
+_Two = CFUNCTYPE(None, *(c_int64,) * 2)
+_Three = CFUNCTYPE(None, *(c_int64,) * 3)
+_Factor = CFUNCTYPE(c_double, *(c_int64,) * 2)
+
+
+def is_coupled(system: System) -> bool:
+    """Return whether the equations need `CoupledPlanes`."""
+    unknowns = system.unknowns
+    return bool(system.called.items or unknowns.pattern is not None or unknowns.border_size or len(system.rotated[0]))
+
+
+class CoupledPlanes(PythonRoutines):
+    """The routines of such steps: connectors add their forces, and SuperLU factorises the matrices of the planes."""
+
+    def __init__(self, system: System, space: MotionWorkspace, stages: Stages) -> None:
+        super().__init__(stages.right)
+        self._system, self._stages, self._solver = system, stages, space.solver
+        self._equations, self._state, self._times = space.assembler.record, np.empty((4, 0)), np.empty(0)
+        self._planes: list[csr_array] = []
+        self._solvers: list[Callable[[np.ndarray], np.ndarray]] = []
+        self._motion = EquationsOfMotion(system, np.zeros(1, dtype=np.int64))
+        self._functions = {
+            "accelerate": _Three(self._guarded(self._accelerate)),
+            "factor_planes": _Factor(self._guarded(self._factor)),
+            "solve_planes": _Two(self._guarded(self._solve)),
+        }
+        stages.routines.fill(**{name: cast(each, c_void_p).value for name, each in self._functions.items()})
+        self._assembling = _Two(self._guarded(self._assemble))
+
+    def march(self, state: np.ndarray, times: np.ndarray, deferred: Deferred) -> int:
+        """March a state (4, n) with loads at times (rows,) [s]; see `stage_steps.march_stages`."""
+        self._state, self._times, self._deferred = state, times, deferred
+        usual = self._solver.routines
+        self._solver.routines = usual.copy()
+        self._solver.routines.assemble = cast(self._assembling, c_void_p).value
+        try:
+            return int(march_stages(self._equations, self._solver, self._stages))
+        finally:
+            self._solver.routines = usual
+
+    def _assemble(self, system: int, solver: int) -> None:
+        """See `motion_stages.assemble`."""
+        motion_stages.assemble.compiled(system, solver)
+        row, n, own = self._solver.now, self._solver.size, self._stages
+        stage, time = row % own.samples, float(self._times[row])
+        state = (own.p[stage, :n], own.v[stage, :n], own.a[stage, :n])
+        connectors, record = self._system.called, self._equations
+        connectors.add_forces(record.residual, state, time)
+        if record.tangent:
+            weights = record.weight_p, record.weight_v, record.weight_a
+            self._planes.append(self._plane(connectors.tangents(state, time, weights)))
+
+    def _plane(self, coupled: list[np.ndarray]) -> csr_array:
+        matrix = self._stages.matrices[len(self._planes)]
+        return csr_array(tangent_of(self._system, matrix, coupled).sparse(UNROTATED))
+
+    def _factor(self, solver: int, stages: int) -> float:
+        """Factorise the matrices of the planes; return 1, or 0 if one is singular."""
+        planes, self._planes, real = self._planes, [], self._stages.real
+        pairs = zip(planes[real::2], planes[real + 1 :: 2], strict=True)
+        try:
+            self._solvers = [self._motion.solver(each) for each in planes[:real]]
+            self._solvers += [self._motion.solver(csr_array(re + 1j * im)) for re, im in pairs]
+        except (ConvergenceError, LinAlgError):
+            return 0.0
+        return 1.0
+
+    def _solve(self, solver: int, stages: int) -> None:
+        """Replace the right-hand sides of the planes by solutions."""
+        own, unknown = self._stages, self._solver.unknown
+        planes = own.planes[:, :unknown]
+        for number, solve in enumerate(self._solvers):
+            if number < own.real:
+                planes[number] = solve(planes[number])
+            else:
+                re = 2 * number - own.real
+                solution = solve(planes[re] + 1j * planes[re + 1])
+                planes[re], planes[re + 1] = solution.real, solution.imag
+
+    def _accelerate(self, system: int, solver: int, stages: int) -> None:
+        """Set p'' at the end of a step, and multipliers."""
+        self._state[2] = initial_acceleration(self._system, self._state, float(self._times[self._solver.now]))

@@ -1,7 +1,9 @@
 """Steps along an equilibrium path: prediction, correction, acceptance or rejection, and the length of the next one."""
 
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -33,6 +35,9 @@ _WANTED_ITERATIONS = 8
 # one that keeps the determinant away from zero, as two pivots can change their signs together.
 _PAIR = 1.0 / 64.0
 _LARGEST_INCREASE = 4.0
+
+
+_Found = TypeVar("_Found")
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +101,24 @@ def too_small(line: Continuation, point: PathPoint, size: float) -> bool:
     return size < _SMALLEST * max(1.0, abs(point.load_factor) / line.load_scale)
 
 
+def longest_accepted(
+    line: Continuation, point: PathPoint, size: float, attempt: Callable[[float], _Found | Refused]
+) -> tuple[_Found | None, list[str], float]:
+    """Return what `attempt` finds with the longest step up to `size` that it accepts, None if none is.
+
+    Also return the reasons of all refusals, and the length of the last step.
+    """
+    reasons: list[str] = []
+    while True:
+        found = attempt(size)
+        if not isinstance(found, Refused):
+            return found, reasons, size
+        reasons.append(found.reason)
+        size *= 0.5
+        if too_small(line, point, size):
+            return None, reasons, size
+
+
 def take_step(
     line: Continuation, point: PathPoint, size: float, to: float | None = None, strict: bool = True
 ) -> Step | Refused:
@@ -119,7 +142,10 @@ def take_step(
         new = line.linearised(corrected.y, point.tangent)
     except LinAlgError:
         return Refused("the tangent is singular", corrected.iterations)
-    if _may_hide_pair(line, point, new) and size > _PAIR * longest_step(line, point):
+    # the sign of the determinant of an unsymmetric tangent does not show an even number of pivots
+    change_of_pivots = new.negative_pivots - point.negative_pivots
+    hidden = not line.system.symmetric and change_of_pivots != 0 and change_of_pivots % 2 == 0
+    if hidden and size > _PAIR * longest_step(line, point):
         return Refused("the tangent may be singular at an even number of points within the step", corrected.iterations)
     if strict and _crosses_over(line, (point, new), corrected):
         return Refused("another path lies between the start and the end of the step", corrected.iterations)
@@ -156,15 +182,6 @@ def _beside_tangents(line: Continuation, before: PathPoint, after: PathPoint) ->
         if squared > 0.0:
             chord = chord - line.dot(chord, direction) / squared * direction
     return line.length(chord) / size
-
-
-def _may_hide_pair(line: Continuation, before: PathPoint, after: PathPoint) -> bool:
-    """Return whether pivots changed by an even number, which the sign of the determinant does not show.
-
-    A symmetric tangent has as many negative eigenvalues as negative pivots, so that nothing is hidden.
-    """
-    change = after.negative_pivots - before.negative_pivots
-    return not line.system.symmetric and change != 0 and change % 2 == 0
 
 
 def _crosses_over(line: Continuation, ends: tuple[PathPoint, PathPoint], corrected: Corrected) -> bool:

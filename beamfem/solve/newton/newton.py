@@ -144,9 +144,6 @@ class Correction(NamedTuple):
     def stagnates(self) -> bool:
         return self.number > 2 and self.size > STALLED * self.before and self.size < STAGNANT
 
-    def is_small(self, newton: Newton) -> bool:
-        return self.size <= newton.tolerance or self.stagnates
-
 
 class Balance(NamedTuple):
     """Balance of forces in a state p (n,): residual (n,), its largest unconstrained component, and the largest force.
@@ -172,13 +169,6 @@ class Balance(NamedTuple):
 def balance_of(system: System, p: np.ndarray, load_factor: float) -> Balance:
     """Return the balance of a state (n,) at a load factor."""
     unbalanced = residual_at_rest(system, p, load_factor)
-    return balance_with(system, p, load_factor, unbalanced, system.assembler().smallest_jacobian(p))
-
-
-def balance_with(system: System, p: np.ndarray, load_factor: float, unbalanced: np.ndarray, jacobian: float) -> Balance:
-    """Return the balance of a state whose residual (n,) and smallest r0' x d are known."""
-    # without reactions the largest load counts
-    load = load_size(system, system.loads_at(load_factor))
     forces = np.abs(unbalanced) * system.scale
     free = np.abs(system.along_free(unbalanced)) * system.scale[system.free_dofs]
     multipliers = system.connectors.multipliers
@@ -186,14 +176,14 @@ def balance_with(system: System, p: np.ndarray, load_factor: float, unbalanced: 
         forces[multipliers] = free[system.unknowns.free[multipliers]] = 0.0
     largest, force = float(np.max(free, initial=0.0)), float(np.max(forces, initial=0.0))
     gap = _largest_gap(system, p, load_factor, unbalanced) if len(multipliers) else 0.0
-    return Balance(p, unbalanced, largest, max(force, load), jacobian <= 0.0, gap)
+    force = max(force, load_size(system, system.loads_at(load_factor)))  # without reactions the largest load counts
+    return Balance(p, unbalanced, largest, force, system.assembler().smallest_jacobian(p) <= 0.0, gap)
 
 
 def _largest_gap(system: System, p: np.ndarray, load_factor: float, unbalanced: np.ndarray) -> float:
     """Return the largest gap of a condition, see `Balance`; its gradient makes it a movement, whatever its unit is."""
     zeros, connectors = np.zeros(len(p)), system.connectors
-    largest = 0.0
-    tangents = connectors.tangents((p, zeros, zeros), load_factor, STATICS)
+    tangents, largest = connectors.tangents((p, zeros, zeros), load_factor, STATICS), 0.0
     for item, tangent in zip(connectors.items, tangents, strict=True):
         first = len(item.dofs)
         gradients = np.abs(tangent[first : first + len(item.multipliers), :first])
@@ -222,14 +212,11 @@ def check_convergence(system: System, balance: Balance, newton: Newton, correcti
 
 def _settled(system: System, p: np.ndarray, correction: Correction) -> bool:
     """Return whether the next correction, at the present rate, is small relative to the movement or below round-off."""
-    if correction.stagnates:
-        return True
     size, before = correction.size, correction.before
     following = size * min(size / before, 1.0) if correction.number > 1 else size
     moved = float((np.abs(p - system.reference) / system.scale).max(initial=0.0))
-    if following <= _SURE * moved:
-        return True
-    return following <= _EPS * float((np.abs(p) / system.scale).max(initial=1.0))
+    lasting = max(_SURE * moved, _EPS * float((np.abs(p) / system.scale).max(initial=1.0)))
+    return correction.stagnates or following <= lasting
 
 
 class Problem(Protocol):
@@ -308,17 +295,6 @@ class PrescribedStep:
         return residual_change(self.system, self.start, self.step, self.load_factor)
 
 
-def count_after(system: System, start: np.ndarray, step: np.ndarray, load_factor: float) -> int:
-    """Return the negative pivots of the tangent in `start` (n,) with the stress resultants of a linear step (n,).
-
-    The shape after the step may be far off, so that the count of its tangent says nothing. -1 if it is singular.
-    """
-    try:
-        return linearise_after(system, start, step, load_factor).factorised(system.rotated).negative_pivots
-    except LinAlgError:
-        return -1
-
-
 class Equilibrium(ABC):
     """An equilibrium of a system that is sought from the state `start` (n,); state: the one reached.
 
@@ -346,7 +322,8 @@ class Equilibrium(ABC):
     def count_after_linear(self) -> int:
         """Return the negative pivots of the tangent at the start with the stress resultants of a linear step.
 
-        -1 if it is singular. It is called at most once, if there is a count to keep and the second tangent has another.
+        The shape after the step may be far off, so that the count there says nothing. -1 if the tangent is singular. It
+        is called at most once, if there is a count to keep and the second tangent has another.
         """
         return self.second
 
@@ -357,7 +334,7 @@ class Equilibrium(ABC):
             return Termination.LOST
         if correction.diverges:
             return Termination.DIVERGED
-        if not correction.is_small(self.newton):
+        if correction.size > self.newton.tolerance and not correction.stagnates:
             return None
         ended = check_convergence(self.system, self.balance(), self.newton, correction)
         return Termination.LOST if ended is not None and lost else ended
@@ -501,7 +478,12 @@ class PivotedProblem(SingleCorrections, Equilibrium):
         return balance_of(self.system, self.state, self.load_factor)
 
     def count_after_linear(self) -> int:
-        return count_after(self.system, self.start, self.linear - self.start, self.load_factor)
+        system, step = self.system, self.linear - self.start
+        try:
+            tangent = linearise_after(system, self.start, step, self.load_factor)
+            return tangent.factorised(system.rotated).negative_pivots
+        except LinAlgError:
+            return -1
 
 
 def solve_equilibrium(
@@ -516,9 +498,8 @@ def solve_equilibrium(
     result = _with_digits(system, load_factor, newton, _solve(system, start, load_factor, newton, keep))
     if not result.ended.good:
         loses_digits(system, start, load_factor)
-    if Proven.LOSES_DIGITS in system.proven and not mixed:
-        return _with_digits(system, load_factor, newton, _solve(system, start, load_factor, newton, keep))
-    return result
+    again = Proven.LOSES_DIGITS in system.proven and not mixed
+    return solve_equilibrium(system, start, load_factor, newton, keep) if again else result
 
 
 def _with_digits(system: System, load_factor: float, newton: Newton, result: NewtonResult) -> NewtonResult:

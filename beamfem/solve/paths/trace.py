@@ -1,6 +1,5 @@
 """Equilibrium paths by arc-length continuation, through limit points in load and in displacement."""
 
-import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
@@ -30,7 +29,7 @@ from beamfem.solve.accuracy.error_estimate import (
 )
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
-from beamfem.solve.continuation.steps import Refused, Step, longest_step, take_step, too_small
+from beamfem.solve.continuation.steps import Refused, Step, longest_accepted, longest_step, take_step, too_small
 from beamfem.solve.newton.newton import Newton, require_newton
 from beamfem.solve.start.functions_of_time import SAME, Jump, functions_of_time, jumps_between, kinks_between
 from beamfem.solve.start.mechanisms import require_support
@@ -512,33 +511,33 @@ def _step(
     kink: load factor of the next kink of a function that acts, at which the step ends if it is that long. Raises
     ConvergenceError with the most frequent reason for rejections, since round-off decides the shortest steps.
     """
-    size = min(size, longest_step(line, point, end))
-    reasons: list[str] = []
-    while True:
-        to_kink = np.inf if kink is None else (kink - point.load_factor) / float(point.tangent[-1])
+    to_kink = np.inf if kink is None else (kink - point.load_factor) / float(point.tangent[-1])
+
+    def attempt(size: float) -> tuple[Step, PathPoint | None] | Refused:
         reaches = size >= to_kink / _AHEAD
         outcome = take_step(line, point, to_kink, kink) if reaches else take_step(line, point, size)
         record.iterations += outcome.iterations
-        ends = (outcome.segment.before, outcome.segment.after) if isinstance(outcome, Step) else ()
-        if kink is not None and math.prod(end.load_factor - kink for end in ends) < 0.0:
-            outcome = Refused(f"a function has a kink at load factor {kink:.6g} within the step", outcome.iterations)
-        if isinstance(outcome, Step):
-            try:
-                landing = None if end is None else _landing(line, outcome, end)
-            except SegmentLostError as error:
-                outcome = Refused(f"the load factor {end:g} was not found on the path: {error}", outcome.iterations)
-            else:
-                return outcome if not reasons else replace(outcome, next_size=min(outcome.next_size, size)), landing
-        record.cuts += 1
-        reasons.append(outcome.reason)
-        size *= 0.5
-        if too_small(line, point, size):
-            record.ended = max(reasons, key=reasons.count)
-            raise ConvergenceError(
-                f"the path ends at load factor {point.load_factor:.6g} after {len(record.rows)} points: "
-                f"{record.ended}, with steps along it down to {size:.1e}{advice(record.model, point.y[:-1])}",
-                record.path(),
-            )
+        if isinstance(outcome, Refused):
+            return outcome
+        ends = outcome.segment.before.load_factor, outcome.segment.after.load_factor
+        if kink is not None and (ends[0] - kink) * (ends[1] - kink) < 0.0:
+            return Refused(f"a function has a kink at load factor {kink:.6g} within the step", outcome.iterations)
+        try:
+            return outcome, None if end is None else _landing(line, outcome, end)
+        except SegmentLostError as error:
+            return Refused(f"the load factor {end:g} was not found on the path: {error}", outcome.iterations)
+
+    found, reasons, size = longest_accepted(line, point, min(size, longest_step(line, point, end)), attempt)
+    record.cuts += len(reasons)
+    if found is None:
+        record.ended = max(reasons, key=reasons.count)
+        raise ConvergenceError(
+            f"the path ends at load factor {point.load_factor:.6g} after {len(record.rows)} points: "
+            f"{record.ended}, with steps along it down to {size:.1e}{advice(record.model, point.y[:-1])}",
+            record.path(),
+        )
+    step, landing = found
+    return replace(step, next_size=min(step.next_size, size)) if reasons else step, landing
 
 
 def _landing(line: Continuation, step: Step, load_factor: float) -> PathPoint | None:

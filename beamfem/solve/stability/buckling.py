@@ -24,7 +24,7 @@ from beamfem.solve.accuracy.error_estimate import enriched, enriched_state
 from beamfem.solve.continuation.bifurcations import DISTANCE, Crossing, bifurcations, condensed
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError, interpolation_weights
-from beamfem.solve.continuation.steps import Refused, Step, longest_step, take_step, too_small
+from beamfem.solve.continuation.steps import Refused, Step, longest_accepted, longest_step, take_step
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.newton.newton import Newton, Termination
 from beamfem.solve.stability.linearised import (
@@ -358,11 +358,11 @@ class _LoadingPath:
         while len(self.points) < _MOST_POINTS:
             point = self.points[-1]
             taken = self._step(point, size)
-            if isinstance(taken, Refused):
-                self.lost = taken.reason != Termination.INVERTED.value
+            if isinstance(taken, str):
+                self.lost = taken != Termination.INVERTED.value
                 where = f"beyond load factor {point.load_factor:.6g}"
                 inverted = f"{where} the beam would be turned inside out"
-                lost = f"{where} no step along the path is accepted: {taken.reason}"
+                lost = f"{where} no step along the path is accepted: {taken}"
                 return lost if self.lost else inverted, Status.STOPPED
             step, criticals = taken
             after = step.segment.after
@@ -385,19 +385,20 @@ class _LoadingPath:
                 return beyond, Status.STOPPED
         return f"the {_MOST_POINTS} points of the path are used up", Status.STOPPED
 
-    def _step(self, point: PathPoint, size: float) -> tuple[Step, list[_Critical]] | Refused:
+    def _step(self, point: PathPoint, size: float) -> tuple[Step, list[_Critical]] | str:
         """Return the longest accepted step from a point with its critical points, or why the last one was refused."""
-        size = min(size, longest_step(self.line, point))
-        while True:
+
+        def attempt(size: float) -> tuple[Step, list[_Critical]] | Refused:
             outcome = take_step(self.line, point, size, strict=False)
-            if isinstance(outcome, Step):
-                try:
-                    return outcome, [each for part in _parts(outcome) for each in _critical_points(part)]
-                except SegmentLostError as error:
-                    outcome = Refused(str(error), outcome.iterations)
-            size *= 0.5
-            if too_small(self.line, point, size):
+            if isinstance(outcome, Refused):
                 return outcome
+            try:
+                return outcome, [each for part in _parts(outcome) for each in _critical_points(part)]
+            except SegmentLostError as error:
+                return Refused(str(error), outcome.iterations)
+
+        found, reasons, _ = longest_accepted(self.line, point, min(size, longest_step(self.line, point)), attempt)
+        return found or reasons[-1]
 
     def _beyond(self, p: np.ndarray, load_factor: float) -> str:
         """Return which limit of the search a state p (n,) is beyond, nothing if none."""

@@ -45,31 +45,34 @@ class FunctionOfTime:
         Also return its scale, the largest value of an amplitude or the range of a motion. side [s]: distance from the
         ends of a step at which it is evaluated if it declares kinks, at which it may jump.
         """
-        inset = side if self.kinks else 0.0
-        low = high = self._values(times)
-        if inset:
-            low = np.append(self._values(times[:-1] + inset), high[-1])
-            high = np.append(high[0], self._values(times[1:] - inset))
-        inner = self._values((times[:-1, None] + np.diff(times)[:, None] * _SHARES).ravel()).reshape(-1, len(_SHARES))
+        low = high = self.values(times)
+        if side and self.kinks:
+            low = np.append(self.values(times[:-1] + side), high[-1])
+            high = np.append(high[0], self.values(times[1:] - side))
+        inner = self.values((times[:-1, None] + np.diff(times)[:, None] * _SHARES).ravel()).reshape(-1, len(_SHARES))
         above = inner.max(axis=1) - np.maximum(low[:-1], high[1:])
         below = np.minimum(low[:-1], high[1:]) - inner.min(axis=1)
-        every = np.concatenate([low, high, inner.ravel()])
-        size = self._size(every)
+        size = self._size(np.concatenate([low, high, inner.ravel()]))
         return np.maximum(above, below) > _BULGE * size, size
+
+    def bend(self, begin: float, end: float) -> float:
+        """Return its largest deviation from the straight line between two times [s]."""
+        low, high = self.at(begin), self.at(end)
+        return max(abs(self.at(begin + s * (end - begin)) - (1.0 - s) * low - s * high) for s in _SHARES.tolist())
 
     def bulges(self, begin: float, end: float) -> bool:
         """Return whether it varies more between two times or load factors than its values there tell."""
         low, high = sorted((begin, end))
         kinks = [time for time in self.kinks if low < time < high]
-        inner = self._values(np.append(begin + (end - begin) * _MANY_SHARES, kinks))
-        ends = self._values(np.array([begin, end]))
+        inner = self.values(np.append(begin + (end - begin) * _MANY_SHARES, kinks))
+        ends = self.values(np.array([begin, end]))
         beyond = max(inner.max() - ends.max(), ends.min() - inner.min())
         return bool(beyond > _BULGE * self._size(np.append(inner, ends)))
 
     def _size(self, values: np.ndarray) -> float:
         return float(np.abs(values).max() if self.amplitude else np.ptp(values))
 
-    def _values(self, times: np.ndarray) -> np.ndarray:
+    def values(self, times: np.ndarray) -> np.ndarray:
         """Return its values at times (n,) [s], without the checks of `at` unless one fails."""
         try:
             values = np.array([self.function(time) for time in times.tolist()], dtype=float)
@@ -78,11 +81,6 @@ class FunctionOfTime:
         if values.shape == times.shape and np.isfinite(values).all():
             return values
         return np.array([self.at(time) for time in times.tolist()])
-
-    def bend(self, begin: float, end: float) -> float:
-        """Return its largest deviation from the straight line between two times [s]."""
-        low, high = self.at(begin), self.at(end)
-        return max(abs(self.at(begin + s * (end - begin)) - (1.0 - s) * low - s * high) for s in _SHARES.tolist())
 
 
 def functions_of_time(system: System) -> list[FunctionOfTime]:
@@ -147,7 +145,7 @@ def jumps_between(functions: Sequence[FunctionOfTime], low: float, high: float) 
     for function in functions:
         near, places = _NEAR * (high - low), (low, *_kinks(function, low, high), high)
         around = [(max(at - near, low), min(at + near, high)) for at in places]
-        values = _values(function, np.array([*np.linspace(low, high, 9), *places, *chain(*around)]))
+        values = function.values(np.array([*np.linspace(low, high, 9), *places, *chain(*around)]))
         jumps = [_jump(function, *ends, _LEAST * float(np.ptp(values))) for ends in around]
         # found from both sides of an end, a jump is one
         found += {jump.before: jump for jump in jumps if jump is not None}.values()
@@ -187,16 +185,12 @@ def _apart(found: list[float], begin: float, end: float) -> list[float]:
     return sorted(result, key=lambda at: abs(at - begin))
 
 
-def _values(function: FunctionOfTime, at: np.ndarray) -> np.ndarray:
-    return np.array([function.at(x) for x in at.tolist()])
-
-
 def _extremes(function: FunctionOfTime, begin: float, end: float) -> list[float]:
     """Return where a function that is smooth between two load factors turns, to the accuracy that its values allow."""
     from scipy.optimize import minimize_scalar  # slow to import and rarely needed
 
     at = np.linspace(begin, end, _SAMPLES)[1:-1]  # at its ends the function may jump
-    values = _values(function, at)
+    values = function.values(at)
     change = np.diff(values)
     rising = np.sign(np.where(np.abs(change) > 1e-12 * np.abs(values).max(), change, 0.0))
     found = []
@@ -211,7 +205,7 @@ def _extremes(function: FunctionOfTime, begin: float, end: float) -> list[float]
 
 def _jumps_of_slope(function: FunctionOfTime, low: float, high: float) -> list[float]:
     at = np.linspace(low, high, _SAMPLES)
-    values = _values(function, at)
+    values = function.values(at)
     slopes = np.diff(values) / np.diff(at)
     jumps = np.abs(np.diff(slopes))
     notable = _NOTABLE * float(np.abs(slopes).max(initial=0.0))
@@ -231,7 +225,7 @@ def _kinks_within(
     if times == 0:
         return [_meeting(function, left, right)]
     inner = np.linspace(left, right, _PARTS)
-    change = np.diff(np.diff(_values(function, inner)) / np.diff(inner))
+    change = np.diff(np.diff(function.values(inner)) / np.diff(inner))
     size = np.abs(change)
     if size.max() < _SHARP * first:
         return []
@@ -249,8 +243,7 @@ def _kinks_within(
 def _meeting(function: FunctionOfTime, left: float, right: float) -> float:
     """Return where the lines beside a narrow interval meet, or its middle if its values jump."""
     width = right - left
-    x = np.array([left - width, left, right, right + width])
-    a, b, c, d = _values(function, x).tolist()
+    a, b, c, d = function.values(np.array([left - width, left, right, right + width])).tolist()
     before, after = (b - a) / width, (d - c) / width
     middle = 0.5 * (left + right)
     if before == after:
@@ -292,9 +285,6 @@ def _unresolved(
     functions: list[FunctionOfTime], ends: np.ndarray, side: float
 ) -> list[tuple[FunctionOfTime, int, int]]:
     """Return the functions that vary more between `ends` than at them, with the first interval and their number."""
-    found = []
-    for function in functions:
-        bulging, _ = function.look(ends, side)
-        if bulging.any():
-            found.append((function, int(np.argmax(bulging)), int(bulging.sum())))
-    return found
+    steps = [function.look(ends, side)[0] for function in functions]
+    found = zip(functions, steps, strict=True)
+    return [(function, int(np.argmax(own)), int(own.sum())) for function, own in found if own.any()]

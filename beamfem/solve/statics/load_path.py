@@ -12,7 +12,7 @@ from beamfem.errors import BeamfemError
 from beamfem.solve.continuation.bifurcations import Crossing
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
-from beamfem.solve.continuation.steps import Step, longest_step, take_step, too_small
+from beamfem.solve.continuation.steps import Refused, Step, longest_accepted, longest_step, take_step
 from beamfem.solve.newton.newton import Newton
 from beamfem.solve.statics.static_record import StaticRecord, is_unstable
 
@@ -133,19 +133,19 @@ class PathFollower:
 
         Functions of the load factor may turn at `end`, so a step that would pass it ends there.
         """
-        size = min(self.size, longest_step(line, point))
         slope = float(point.tangent[-1])
-        while True:
-            ends = bool(line.functions_of_time) and point.load_factor + size * slope > end
-            size = (end - point.load_factor) / slope if ends else size
-            outcome = take_step(line, point, size, end if ends else None)
+        to_end = (end - point.load_factor) / slope if line.functions_of_time and slope > 0.0 else np.inf
+
+        def attempt(size: float) -> Step | Refused:
+            outcome = take_step(line, point, size, end if size >= to_end else None)
             self.done.iterations += outcome.iterations
-            if isinstance(outcome, Step):
-                return outcome
-            self.done.cuts += 1
-            size *= 0.5
-            if too_small(line, point, size):
-                raise PathLostError(f"{outcome.reason}, with steps along it cut to round-off")
+            return outcome
+
+        step, reasons, _ = longest_accepted(line, point, min(self.size, longest_step(line, point), to_end), attempt)
+        self.done.cuts += len(reasons)
+        if step is None:
+            raise PathLostError(f"{reasons[-1]}, with steps along it cut to round-off")
+        return step
 
 
 def _require_stable(step: Step, limit: float, end: float) -> None:

@@ -2,16 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.linalg import LinAlgError
 from scipy.sparse import coo_array, csr_array
 
 from beamfem.cached_properties import cached_property
-from beamfem.element.fields import rule_of
+from beamfem.element.fields import r_slots, rule_of
 from beamfem.errors import InputError
 from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.mesh.reference import jacobians, length_points
+from beamfem.mesh.reference import jacobians, length_points, reference_vectors, scales
 from beamfem.model.beam import Point
 from beamfem.model.contribution import (
     At,
@@ -24,7 +25,7 @@ from beamfem.model.contribution import (
 )
 from beamfem.model.load_base import factor
 from beamfem.model.model import Model
-from beamfem.parts.at_points import PartAlongBeam, PartAtPoints, Station
+from beamfem.parts.at_points import AxisRows, PartAlongBeam, PartAtPoints, Station
 from beamfem.physics.compiled_connections import passes_of
 from beamfem.physics.connections import Connection
 from beamfem.validation import called, finite
@@ -149,6 +150,11 @@ class Connector:
             return result
         return np.concatenate([result, np.zeros_like(result[..., :1])], axis=-1)
 
+    def on_points(self, forces: np.ndarray, q: np.ndarray) -> np.ndarray:
+        """Return forces (..., d) as forces and moments on its points (..., m, 3), in a state q."""
+        result = self.by_point(forces)
+        return result if len(q) == len(self.item.points) else self.item.on_points(result, q)  # type: ignore[attr-defined]
+
     def at(self, motion: Motion, time: float, gravity: np.ndarray) -> At:
         """Return the state at which the contribution is evaluated; the motion may be complex."""
         q, rate, second = (self.by_point(values[self.dofs]) for values in motion)
@@ -221,6 +227,8 @@ class Connector:
         """
         if self.compiled is not None:
             return self._compiled_tangent(self.compiled, motion, gravity, weights)
+        if hasattr(self.item, "exact_tangent"):
+            return np.asarray(weights[0] * self.item.exact_tangent(self.at(motion, time, gravity)))
         alone, columns = self.alone, []
         for number in range(len(self.dofs) + len(self.own)):
             moved = p, v, a = self.own_motion(motion)
@@ -508,7 +516,9 @@ class Connectors:
             rows = np.vstack([forces, conditions])
             sizes = np.abs(rows).max(axis=1, initial=0.0)
             motions = rows[sizes > 0.0] / sizes[sizes > 0.0, None]
-            result.append((item, item.by_point(motions).reshape(len(motions), item.reference.size)))
+            result.append(
+                (item, item.on_points(motions, item.reference).reshape(len(motions), 3 * len(item.item.points)))
+            )
         return result
 
     @cached_property
@@ -538,10 +548,11 @@ def _checked_connectors(model: Model) -> tuple[Connector, ...]:
     for given in model.at_points:
         for item, nodes in _with_nodes(given, model):
             dofs, positions = [], []
-            for mesh, node in nodes:
-                numbers = mesh.coordinates_of(node)
-                dofs += [numbers[name] for name in _COORDINATES[: 3 if uses_rotations(item) else 2]]
-                positions.append([*mesh.position[node].tolist(), 0.0])
+            for mesh, node, *slope in nodes:
+                numbers, place = mesh.coordinates_of(node), slope[0] if slope else mesh.position[node].tolist()
+                names = ("r_x^x", "r_x^y") if slope else _COORDINATES[: 3 if uses_rotations(item) else 2]
+                dofs += [numbers[name] for name in names]
+                positions.append([*place, 0.0])
             values = len(prescribed_by(item))
             own = np.concatenate([np.arange(first, first + item.unknowns), np.arange(value, value + values)])
             first, value = first + item.unknowns, value + values
@@ -560,7 +571,10 @@ def first_value(model: Model) -> int:
     return model.coordinates + sum(item.unknowns for item in model.at_points)
 
 
-def _with_nodes(given: Contribution, model: Model) -> list[tuple[Contribution, list[tuple[BeamMesh, int]]]]:
+_Nodes = list[tuple[Any, ...]]  # a mesh and a node, and the reference slope if r_x is meant
+
+
+def _with_nodes(given: Contribution, model: Model) -> list[tuple[Contribution, _Nodes]]:
     """Return a part with its nodes; of one along a beam, what acts at its nodes and quadrature points."""
     if not isinstance(given, PartAlongBeam):
         places = [(model.mesh_of(point), point.fraction) for point in given.points]
@@ -578,13 +592,35 @@ def _with_nodes(given: Contribution, model: Model) -> list[tuple[Contribution, l
     elements = np.repeat(np.arange(mesh.elements), len(xi))
     arcs[mesh.node.ravel()] = mesh.arc_length(elements, np.tile(xi, mesh.elements))
     points = [given.beam.at(min(arc / given.beam.curve.length, 1.0)) for arc in arcs.tolist()]
+    if type(given).on_axis is not PartAlongBeam.on_axis:
+        return [_on_axis(given, mesh, points, model)]
     at_nodes = [(item, [(mesh, node)]) for node, item in enumerate(given.at_nodes(points, lengths))]
     return [*at_nodes, *_at_stations(given, mesh, points)]
 
 
-def _at_stations(
-    given: PartAlongBeam, mesh: BeamMesh, points: Sequence[Point]
-) -> list[tuple[Contribution, list[tuple[BeamMesh, int]]]]:
+def _on_axis(given: PartAlongBeam, mesh: BeamMesh, points: list[Point], model: Model) -> tuple[Contribution, _Nodes]:
+    """Return what acts on the axis of a beam and on a point, with its rows: the first node, the point, the others."""
+    element, field, point = mesh.beam.element, mesh.beam.element.field, given.points[1]
+    wanted = [name for name in field.vectors if name in ("r", "r_x")]
+    if any(f"{name}^x" not in mesh.labels(node) for node in range(mesh.nodes) for name in wanted):
+        raise InputError(
+            f"{type(given).__name__} needs r_x as a coordinate, which the nodes of {element.name} do not have; take "
+            "another element, such as CRBF(3)"
+        )
+    vectors = reference_vectors(mesh, np.arange(mesh.elements)).reshape(*mesh.node.shape, -1, 2)
+    slope = np.zeros((mesh.nodes, 2))
+    slope[mesh.node] = vectors[:, :, len(wanted) - 1]
+    other = model.mesh_of(point)
+    rows: _Nodes = [(mesh, node) for node in range(mesh.nodes)]
+    rows.insert(1, (other, other.node_at(point.fraction)))
+    rows += [(mesh, node, slope[node].tolist()) for node in range(mesh.nodes) if "r_x" in wanted]
+    places = np.stack([mesh.node + (mesh.node > 0), mesh.node + mesh.nodes + 1][: len(wanted)], axis=2)
+    scale = scales(element, mesh.lengths)[:, r_slots(field)]
+    axis = AxisRows(field, places.reshape(mesh.elements, -1), scale, (points[0], point, *points[1:]))
+    return given.on_axis(axis), rows
+
+
+def _at_stations(given: PartAlongBeam, mesh: BeamMesh, points: Sequence[Point]) -> list[tuple[Contribution, _Nodes]]:
     """Return what acts at the quadrature points of a part along a beam, with the nodes of the element."""
     if type(given).at_stations is PartAlongBeam.at_stations:
         return []

@@ -132,10 +132,10 @@ def _of_load(load: Load, acting: Mapping[str, np.ndarray], points: AxisPoints, p
 def _connectors(model: Model) -> Iterator[_Vertices]:
     of_loads = {id(part): load for load in model.loads for part in load.parts}
     for connector in model.at_points:
-        if isinstance(connector, PartAlongBeam):
-            continue  # acts along a beam
         kind = type(of_loads.get(id(connector), connector)).__name__
-        for number, point in enumerate(connector.points):
+        along = isinstance(connector, PartAlongBeam)  # of one that slides along a beam, what acts on its point
+        points = list(enumerate(connector.points))
+        for number, point in points[1 if connector.unknowns else 2 :] if along else points:
             values = partial(_of_connector, connector, number)
             yield _Vertices(kind, _CONNECTOR, _ACTION, _at(model, point), values)
 

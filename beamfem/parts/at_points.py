@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
+from beamfem.element.fields import Field
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point, require_point_of
-from beamfem.model.contribution import At
+from beamfem.model.contribution import At, Contribution
 from beamfem.model.load_shapes import ConnectorShape
 from beamfem.model.supports import Value
 from beamfem.physics.compiled_connections import in_python
@@ -174,6 +175,19 @@ class Station(NamedTuple):
     length: float
 
 
+class AxisRows(NamedTuple):
+    """Where the vectors of the axis of a beam are among the rows of q: those of its points, then slopes at its nodes.
+
+    rows (ne, k), scale (ne, k): of each element, r = sum N_i(xi) scale_i q_i with the shape functions of the field;
+    points: the first node, the point of another beam, the other nodes.
+    """
+
+    field: Field
+    rows: np.ndarray
+    scale: np.ndarray
+    points: tuple[Point, ...]
+
+
 class PartAlongBeam:
     """A part along a beam that acts at all of its nodes, or at the quadrature points of its elements.
 
@@ -204,6 +218,14 @@ class PartAlongBeam:
 
         Fields of order k have stations, the cubic one with r_x has none.
         """
+        return ()
+
+    def on_axis(self, axis: AxisRows) -> Contribution:
+        """Return what acts on all vectors of the axis and on the second of its points, which is on another beam."""
+        raise NotImplementedError
+
+    def shapes(self) -> tuple[ConnectorShape, ...]:
+        """Return the shapes to draw, by default none."""
         return ()
 
     def force(self, at: At) -> np.ndarray:

@@ -101,7 +101,8 @@ def forces_at(solution: Solution, items: Sequence[Connector]) -> np.ndarray:
     v, a = seen_from_rest(system, solution.p, solution.v, solution.a, times)
     for *state, at in zip(solution.p, v, a, times.tolist(), strict=True):
         motion, gravity = (state[0], state[1], state[2]), system.connectors.gravity(at)
-        forces.append([item.by_point(-item.force_in(motion, at, gravity)[: len(item.dofs)]) for item in items])
+        acting = ((item, -item.force_in(motion, at, gravity)[: len(item.dofs)]) for item in items)
+        forces.append([item.on_points(force, item.by_point(state[0][item.dofs])) for item, force in acting])
     return np.array(forces).reshape(len(solution), -1, 3)
 
 

@@ -104,10 +104,8 @@ def _draw_connectors(axes: Any, solution: Solution, row: int) -> list[Any]:
     only = solution[row : row + 1] if connectors else solution
     artists, stamps, line = [], Stamps(), {"color": INK, "zorder": 6.0}
     for connector in connectors:
-        if isinstance(connector, PartAlongBeam):
-            continue  # of the velocity
-        shapes = connector.shapes() if isinstance(connector, PartAtPoints) else ()
-        if not shapes:
+        shapes = connector.shapes() if isinstance(connector, PartAtPoints | PartAlongBeam) else ()
+        if not shapes and not isinstance(connector, PartAlongBeam):
             x, y = np.array([only.position(point)[0] for point in connector.points]).T
             artists += axes.plot(x, y, linestyle="--", linewidth=1.0, marker="o", markersize=5.0, **line)
             continue

@@ -92,7 +92,7 @@ class Assembler:
         self.equations, self.size, self.record = equations, equations.size, equations.record.copy()
         self._imposes = any(group.imposed is not None for group in equations.groups)
         self._damped = any(group.record.damped or group.record.mass_damping for group in equations.groups)
-        self._laws = tuple(group.law for group in equations.groups if group.law is not None)
+        self._laws = tuple(group.law for group in equations.groups if group.law is not None and group.law.in_python)
         self.works = tuple(Work(group, group.record.copy()) for group in equations.groups)
         self.scratch = self.numbers = 0
         for number, (group, own) in enumerate((work.group, work.record) for work in self.works):

@@ -317,6 +317,7 @@ def make_group(block: Block, layout: Layout, stations: Stations) -> ElementGroup
         history=np.ascontiguousarray(block.history) if block.history.size else None,
         slot=np.ascontiguousarray(layout.slot, dtype=np.int32),
         routines=element_routines.record,
+        **(block.law.fields if block.law is not None else {}),
         **{name: np.ascontiguousarray(values, dtype=float) for name, values in arrays.items()},
     )
     constant = _constant_of_nodes(structure, frame)

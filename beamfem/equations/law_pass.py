@@ -1,15 +1,18 @@
 """A section law as a pass over rows of points that compiled code can call, see `kernels.linear_law`."""
 
 from ctypes import CFUNCTYPE, c_int64, c_void_p, cast
+from typing import Any
 
 import numpy as np
 
 from beamfem.element.thickness_law import THICKNESS, ThicknessLaw
 from beamfem.equations.callbacks import KeptErrors
+from beamfem.errors import InputError
 from beamfem.kernels.compiler.value_types import REALS
 from beamfem.kernels.point import POINT_ROWS, RESULTANT, STIFFNESS, STRAIN
 from beamfem.kernels.record import ROW, Group, System
 from beamfem.kernels.records import memory_at
+from beamfem.kernels.user_law import MOST_HISTORY, user_resultants
 from beamfem.section.law import ConstitutiveLaw
 
 _MEASURES = 4  # stretch, shear, curvature and thickness stretch; a law has only the first three
@@ -27,6 +30,8 @@ class LawPass:
     points: number of points of an element where it acts; thickness: whether thickness stretch, which laws do not have,
     is resisted, by the linear stiffness in the tables of the compiled code.
 
+    A law in C is called without Python, see `kernels.user_law`; results still call its functions in Python.
+
     An error in a user's function cannot propagate through compiled code: it is stored, the resultants become nan, which
     stops any iteration, and `take_error` returns it.
     """
@@ -34,8 +39,13 @@ class LawPass:
     def __init__(self, law: ConstitutiveLaw, points: int, thickness: bool) -> None:
         self._law, self._points, self._thickness = law, points, thickness
         self._errors = KeptErrors()
-        self._pass = _Pass(self._fill)
-        self.address = int(cast(self._pass, c_void_p).value or 0)
+        self._pass, self.fields, compiled = _Pass(self._fill), dict[str, Any](), law.compiled
+        self.in_python, self.address = compiled is None, int(cast(self._pass, c_void_p).value or 0)
+        if len(law.start) > MOST_HISTORY and compiled is not None:
+            raise InputError(f"{law.name} has more than {MOST_HISTORY} history variables, too many for a law in C")
+        if compiled is not None:
+            self.address = user_resultants.address
+            self.fields = {"law_acts": points, "thickens": thickness, "user_law": compiled[0], "law_data": compiled[1]}
 
     def linearised(
         self, strain: np.ndarray, history: np.ndarray, stiffness: np.ndarray

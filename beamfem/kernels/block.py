@@ -1,6 +1,6 @@
 """Plain data of a group of like elements, as compiled kernels need them."""
 
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -31,6 +31,16 @@ class Law(Protocol):
     @property
     def address(self) -> int:
         """Address of its pass, valid as long as this object exists."""
+        ...
+
+    @property
+    def fields(self) -> dict[str, Any]:
+        """Fields of `record.Group` that its pass reads."""
+        ...
+
+    @property
+    def in_python(self) -> bool:
+        """Whether its pass calls Python."""
         ...
 
     def take_error(self) -> BaseException | None:

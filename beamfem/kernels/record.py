@@ -14,6 +14,7 @@ LANES = 64
 ROW = 72  # longer than a batch, so that rows do not all map to the same cache sets
 # of passes derived in `physics`: over rows of points or nodes, and forces and tangents of parts at points and stations
 ROWS_PASS, CONVECT_PASS = signature_of("iv"), signature_of("iddv")
+USER_LAW = signature_of("rrdrrr")  # of strain, history, dt, data, resultants and tangent
 POINT_FORCE = signature_of("rrrrrrrr")  # of q, v, a, own, turned, data, gravity and the result
 POINT_TANGENT = signature_of("rrrrrrrdddr")  # likewise, with ck, cv and ca before the result
 
@@ -142,6 +143,10 @@ class Group(Record):
     law_points: int  # quadrature points where a law with history acts
     variables: int
     history: Annotated[Wholes, "elements", "law_points", "variables"]  # coordinates that are history variables of a law
+    law_acts: int  # quadrature points where a user's law in C acts, see `user_law`
+    thickens: int  # whether thickness stretch is resisted beside it
+    law_data: Reals
+    user_law = calls(USER_LAW)
     natural: Reals  # (elements, points, measures): strains imposed by loads, if there are any
     natural_of_steps: Reals  # (steps or 1, elements, points, measures): those of the steps of a motion
 

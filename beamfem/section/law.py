@@ -1,6 +1,7 @@
 """Section laws: resultants that are nonlinear functions of the strains, with or without history."""
 
 from collections.abc import Sequence
+from ctypes import CFUNCTYPE, c_double, c_void_p
 from dataclasses import dataclass
 from typing import Any, Protocol, cast, runtime_checkable
 
@@ -22,6 +23,9 @@ class SectionLaw(Protocol):
     round-off. Both methods must therefore consist of analytic functions and evaluate many strains at once:
     `np.tanh` and `x**2`, not `abs`. Cases are distinguished by real parts, `np.where(strain[:, 0].real < 0.0, ...)`.
     `beamfem.testing.check_law` tests this.
+
+    A law may also be a C function, which is called in iterations in place of `resultants`: an optional method
+    `compiled(material)` returns its address and its numbers, see the page on section laws.
     """
 
     def resultants(self, strain: np.ndarray, material: Material | None) -> np.ndarray:
@@ -72,6 +76,17 @@ class ConstitutiveLaw:
 
     section: SectionLaw | RememberingLaw
     material: Material | None
+
+    @cached_property
+    def compiled(self) -> tuple[int, np.ndarray] | None:
+        """Address of the law as a C function, and its numbers, None if it has none. Raises InputError."""
+        if not hasattr(self.section, "compiled"):
+            return None
+        name = f"compiled of {self.name}"
+        address, *others = items(name, called(name, self.section.compiled, self.material)) or [None]
+        if not isinstance(address, int) or address <= 0 or len(others) != 1:
+            raise InputError(f"{name} must return the address of a C function, an int, and numbers, got {address!r}")
+        return address, np.array([finite(name, number) for number in items(name, others[0])], dtype=float)
 
     @property
     def name(self) -> str:
@@ -124,6 +139,16 @@ class ConstitutiveLaw:
         forces = self.resultants(moved, past, dt).reshape(3, count, 3)
         tangent = np.moveaxis(forces.imag / COMPLEX_STEP, 0, -1)
         return forces[0].real, 0.5 * (tangent + np.swapaxes(tangent, 1, 2))
+
+    def linearised_in_c(self, strain: np.ndarray, history: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return what the C function of the law gives, as `linearised` does."""
+        assert self.compiled is not None
+        (address, numbers), forces, tangent = self.compiled, np.empty(strain.shape), np.empty((*strain.shape, 3))
+        function = CFUNCTYPE(None, c_void_p, c_void_p, c_double, *[c_void_p] * 3)(address)
+        for row in zip(*map(np.ascontiguousarray, (strain, history)), forces, tangent, strict=True):
+            own, past, resultants, slopes = (each.ctypes.data for each in row)
+            function(own, past, dt, numbers.ctypes.data, resultants, slopes)
+        return forces, tangent
 
     def remember(self, strain: np.ndarray, history: np.ndarray, dt: float = 0.0) -> np.ndarray:
         """Return the history variables (n, k) after an accepted step to strains (n, 3).

@@ -23,7 +23,7 @@ def check_law(section: CrossSection, material: Material | None = None) -> None:
     Resultants are zero at zero strain and analytic: derivatives by complex steps are those by differences, and
     symmetric. They are the derivatives of the energy, and the stiffness at zero strain is the rigidity of the section.
     With history, a state determines its section forces, and it is elastic at the history that `remember` has just
-    returned, see `RememberingLaw`.
+    returned, see `RememberingLaw`. A law in C agrees with its `resultants`.
 
     Parameters
     ----------
@@ -88,6 +88,11 @@ def _check_consistent(law: ConstitutiveLaw, strain: np.ndarray, unit: np.ndarray
             f"and by differences disagree (abs, hypot, linalg.norm or conj lose complex steps)"
         )
     least = _AGREE * max(np.abs(work).max(), largest)
+    if law.compiled is not None:
+        in_c, tangent_in_c = law.linearised_in_c(strain, history, dt)
+        close = np.abs(in_c * unit - work).max() <= least
+        if not (close and np.abs(tangent_in_c * unit[:, None] * unit - whole).max() <= _AGREE * largest):
+            raise AssertionError(f"the C function of {law.name} is not that of its resultants {where}")
     if law.remembers:
         history = law.remember(strain, history, dt)
         again, elastic = law.linearised(strain, history)

@@ -61,17 +61,14 @@ class Shapes:
     @cached_property
     def body(self) -> list[np.ndarray]:
         """Lower and upper face of each beam (rows, points, 2 faces, 2) [m]."""
-        return [
-            r[:, :, None] + points.faces[None, :, :, None] * d[:, :, None]
-            for points, (r, d) in zip(self.points, self._moved, strict=True)
-        ]
+        return [_at_heights(points.faces, *moved) for points, moved in zip(self.points, self._moved, strict=True)]
 
     @cached_property
     def layers(self) -> list[list[np.ndarray]]:
         """Lower and upper face of each layer of each beam (rows, points, 2 faces, 2) [m], from the bottom up."""
         return [
-            [r[:, :, None] + heights[None, :, :, None] * d[:, :, None] for heights in np.moveaxis(points.layers, 1, 0)]
-            for points, (r, d) in zip(self.points, self._moved, strict=True)
+            [_at_heights(heights, *moved) for heights in np.moveaxis(points.layers, 1, 0)]
+            for points, moved in zip(self.points, self._moved, strict=True)
         ]
 
     @cached_property
@@ -139,9 +136,7 @@ class Shapes:
         """Lower left and upper right corner (2, 2) [m] of all shapes, the undeformed axes and ends of springs."""
         parts = [body.reshape(-1, 2) for body in self.body] + [points.reference for points in self.points]
         parts += [place[None] for place in grounds(self.solution.model)]
-        return np.stack(
-            [np.min([f.min(axis=0) for f in parts], axis=0), np.max([f.max(axis=0) for f in parts], axis=0)]
-        )
+        return np.stack([end([end(part, axis=0) for part in parts], axis=0) for end in (np.min, np.max)])
 
     @cached_property
     def centre(self) -> np.ndarray:
@@ -168,13 +163,11 @@ class Shapes:
         drawn: list[Any] = [lines]
         if self._bodies_drawn:
             parts = [(number, faces[order]) for layers in self.layers for number, faces in enumerate(layers)]
-            outlines = [np.concatenate([faces[:, 0], faces[::-1, 1]]) for _, faces in parts]
+            outlines = [_outline(faces) for _, faces in parts]
             # neighbouring layers differ in strength
             colours = [(*colour, 0.45 if number % 2 == 0 else 0.25) for number, _ in parts]
             drawn.insert(0, PolyCollection(outlines, facecolors=colours, edgecolors="none", zorder=2 + fraction))
-        for artist in drawn:
-            axes.add_collection(artist, autolim=False)
-        return drawn
+        return _added(axes, drawn)
 
     def _by_field(self, axes: Any, order: int, fraction: float) -> list[Any]:
         from matplotlib.collections import LineCollection, PolyCollection
@@ -184,16 +177,13 @@ class Shapes:
             slabs, means = [], []
             for points, strips in zip(self.points, self.strips(order), strict=True):
                 for faces, field in strips:
-                    ends = _between(points, faces)
-                    corners = [ends[:, 0, 0], ends[:, 1, 0], ends[:, 1, 1], ends[:, 0, 1]]
-                    slabs.append(np.stack(corners, axis=1))
+                    slabs.append(_between(points, faces)[:, [0, 1, 1, 0], [0, 0, 1, 1]])
                     means.append(_between(points, field).mean(axis=(1, 2)))
             colours = self._colours(np.concatenate(means), fraction)
             drawn.append(
                 PolyCollection(list(np.concatenate(slabs)), facecolors=colours, edgecolors="face", linewidths=0.3)
             )
-            parts = [faces[order] for layers in self.layers for faces in layers]
-            outlines = [np.concatenate([faces[:, 0], faces[::-1, 1]]) for faces in parts]
+            outlines = [_outline(faces[order]) for layers in self.layers for faces in layers]
             edges = str(1.0 - 0.75 * _strength(fraction))
             drawn.append(PolyCollection(outlines, facecolors="none", edgecolors=edges, linewidths=0.4))
         lines, along = [], []
@@ -206,11 +196,9 @@ class Shapes:
         if lines:
             colours = self._colours(np.concatenate(along), fraction)
             drawn.append(LineCollection(list(np.concatenate(lines)), colors=colours, linewidths=2.0, capstyle="round"))
-        layer = 2 + fraction
         for artist in drawn:
-            artist.set_zorder(layer)
-            axes.add_collection(artist, autolim=False)
-        return drawn
+            artist.set_zorder(2 + fraction)
+        return _added(axes, drawn)
 
     def _colours(self, values: np.ndarray, fraction: float) -> np.ndarray:
         """Return the colours (n, 3) of values (n,) of the field."""
@@ -220,6 +208,21 @@ class Shapes:
         fractions = (values - low) / (high - low)
         colours = np.where(np.isfinite(fractions)[:, None], colormaps[FIELD_COLOURS](fractions)[:, :3], _UNKNOWN)
         return np.asarray(1.0 - _strength(fraction) * (1.0 - colours))
+
+
+def _at_heights(heights: np.ndarray, r: np.ndarray, d: np.ndarray) -> np.ndarray:
+    """Return positions (rows, points, 2 faces, 2) [m] at heights (points, 2) [m]."""
+    return np.asarray(r[:, :, None] + heights[None, :, :, None] * d[:, :, None])
+
+
+def _outline(faces: np.ndarray) -> np.ndarray:
+    return np.concatenate([faces[:, 0], faces[::-1, 1]])
+
+
+def _added(axes: Any, drawn: list[Any]) -> list[Any]:
+    for artist in drawn:
+        axes.add_collection(artist, autolim=False)
+    return drawn
 
 
 def _between(points: AxisPoints, values: np.ndarray) -> np.ndarray:

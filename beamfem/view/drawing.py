@@ -54,34 +54,26 @@ class _Extreme:
 def _extreme_of(shapes: Shapes) -> _Extreme:
     """Return the value of largest magnitude of the field of some shapes, at and between the points of their axes."""
     assert shapes.quantity is not None
-    fields = []
-    for points, values in zip(shapes.points, shapes.values, strict=True):
-        fields.append(points.by_element(values))
+    along, meshes = shapes.quantity.values, [points.mesh for points in shapes.points]
+    fields = [points.by_element(values) for points, values in zip(shapes.points, shapes.values, strict=True)]
     estimates = np.array([estimate(*field, np.abs) for field in fields])
-    beam, found = extreme_of_beams(estimates, np.abs, lambda number: _of_beam(shapes, number, *fields[number]))
+
+    def of_beam(beam: int) -> extremes.Extreme:
+        def at(order: int, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
+            return along(AxisPoints(meshes[beam], element, xi), shapes.solution, shapes.rows[[order]])[0]
+
+        return extremes.extreme(*fields[beam], np.abs, at)
+
+    beam, found = extreme_of_beams(estimates, np.abs, of_beam)
     solution, unit = shapes.solution, shapes.quantity.unit
     value = f"{found.value:.4g}" + ("" if unit == "-" else f" {solution.model.unit(unit)}")
     if even(shapes.values):
         return _Extreme(value, "everywhere", None)
     row = int(shapes.rows[found.row])
-    points = _points_at(shapes, beam, np.array([found.element]), np.array([found.xi]))
+    points = AxisPoints(meshes[beam], np.array([found.element]), np.array([found.xi]))
     where = f"at {place(solution.model, points.reference[0])}"
     when = f", {moment_of(solution, row)}" if len(shapes.rows) > 1 else ""
     return _Extreme(f"extreme {value}", where + when, points.positions(solution.p[[row]])[0][0, 0])
-
-
-def _of_beam(shapes: Shapes, beam: int, values: np.ndarray, xi: np.ndarray) -> extremes.Extreme:
-    assert shapes.quantity is not None
-    along = shapes.quantity.values
-
-    def at(order: int, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
-        return along(_points_at(shapes, beam, element, xi), shapes.solution, shapes.rows[[order]])[0]
-
-    return extremes.extreme(values, xi, np.abs, at)
-
-
-def _points_at(shapes: Shapes, beam: int, element: np.ndarray, xi: np.ndarray) -> AxisPoints:
-    return AxisPoints(shapes.points[beam].mesh, element, xi)
 
 
 _ROOM = 0.45  # [inch] around the shapes for symbols and arrows

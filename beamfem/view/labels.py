@@ -1,8 +1,6 @@
 """Numbers beside points of a curve, where they cover neither each other nor the points nor, if possible, the curve."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -28,24 +26,6 @@ _STEP = 2.0  # between the points of a curve that are looked at [points of print
 _COVERS, _CROSSES = 1000.0, 1.0  # how bad it is to cover something, or a point of the curve
 
 
-@dataclass(frozen=True)
-class _Box:
-    """A rectangle [points of print]: its middle and half of its sides, (2,) each."""
-
-    middle: np.ndarray
-    half: np.ndarray
-
-    def covers(self, other: "_Box") -> bool:
-        return bool(np.all(np.abs(self.middle - other.middle) < self.half + other.half))
-
-    def counted(self, points: np.ndarray) -> int:
-        """Return how many of points (n, 2) lie in it."""
-        return int(np.sum(np.all(np.abs(points - self.middle) < self.half, axis=1)))
-
-    def beyond(self, room: "_Box") -> bool:
-        return bool(np.any(np.abs(self.middle - room.middle) + self.half > room.half))
-
-
 def write_labels(
     axes: Any,
     points: Sequence[tuple[float, float]],
@@ -63,12 +43,19 @@ def write_labels(
     def on_paper(given: Any) -> np.ndarray:
         return np.asarray(axes.transData.transform(np.asarray(given, dtype=float).reshape(-1, 2)) * points_per_pixel)
 
+    # boxes (n, 2, 2): their middles and half of their sides
     places, line = on_paper(points), _dense(on_paper(curve))
-    marks = [_Box(at, np.full(2, _MARK)) for at in places]
+    taken = [np.array([at, (_MARK, _MARK)]) for at in places]
+    crossed = np.stack([line, np.zeros_like(line)], axis=1)
     frame = axes.get_window_extent()
-    corners = np.array([[frame.x0, frame.y0], [frame.x1, frame.y1]]) * points_per_pixel
-    room = _Box(corners.mean(axis=0), 0.5 * (corners[1] - corners[0]))
-    written: list[_Box] = []
+    low, high = np.array([[frame.x0, frame.y0], [frame.x1, frame.y1]]) * points_per_pixel
+    room = np.array([low + high, high - low]) / 2.0
+
+    def badness(box: np.ndarray) -> float:
+        """Return how much a text in a box would cover, and whether it is outside of the axes."""
+        beyond = np.any(np.abs(box[0] - room[0]) + box[1] > room[1])
+        return _COVERS * (_covered(box, np.array(taken)) + bool(beyond)) + _CROSSES * _covered(box, crossed)
+
     named: list[tuple[str, np.ndarray]] = []
     for point, at, text, colour in zip(points, places, texts, colours, strict=True):
         if any(text == name and np.linalg.norm(at - there) < _SAME for name, there in named):
@@ -77,13 +64,11 @@ def write_labels(
         extent = note.get_window_extent()
         half = 0.5 * points_per_pixel * np.array([extent.width, extent.height]) + 1.0
         note.remove()
-
         # the first of equals is the nearest
-        boxes = [_Box(at + offset, half) for offset in _offsets(half)]
-        best = min(boxes, key=partial(_badness, [*marks, *written], room, line))
-        offset = best.middle - at
-        written.append(best)
+        best = min((np.array([at + offset, half]) for offset in _offsets(half)), key=badness)
+        taken.append(best)
         named.append((text, at))
+        offset = best[0] - at
         away = np.any(np.abs(offset) > half + _APART[0] + 1.0)
         axes.annotate(
             text,
@@ -99,10 +84,9 @@ def write_labels(
         ).set_in_layout(False)
 
 
-def _badness(others: Sequence[_Box], room: _Box, line: np.ndarray, box: _Box) -> float:
-    """Return how much a text in a box would cover, and whether it is outside of the axes."""
-    covered = sum(box.covers(other) for other in others) + box.beyond(room)
-    return _COVERS * covered + _CROSSES * box.counted(line)
+def _covered(box: np.ndarray, others: np.ndarray) -> int:
+    """Return how many of other boxes (n, 2, 2) a box (2, 2) covers."""
+    return int(np.sum(np.all(np.abs(others[:, 0] - box[0]) < others[:, 1] + box[1], axis=1)))
 
 
 def _offsets(half: np.ndarray) -> list[np.ndarray]:

@@ -217,15 +217,11 @@ def _supports(shapes: Shapes) -> tuple[list[Any], list[Any]]:
     outlines = [
         {
             "line": np.round(by_row[0].outlines[key], 3).tolist(),
-            "colour": _css(colour),
+            # matplotlib takes a number for a grey
+            "colour": colour if colour.startswith("#") else f"rgb({','.join([str(round(255 * float(colour)))] * 3)})",
             "fill": {"none": None, "white": "#fff"}.get(fill, fill),
         }
         for key, colour, _, fill in by_row[0].places
     ]
     places = [[[_short(place) for place in group] for group in stamps.places.values()] for stamps in by_row]
     return outlines, places[:1] if all(row_places == places[0] for row_places in places) else places
-
-
-def _css(colour: str) -> str:
-    """Return a colour of matplotlib, a name or a grey between 0 and 1, as CSS."""
-    return colour if colour.startswith("#") else f"rgb({','.join([str(round(255 * float(colour)))] * 3)})"

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,10 +13,14 @@ from beamfem.results.axis_points import AxisPoints
 from beamfem.results.path import Path, PathState
 from beamfem.results.quantities import AT_POINT, UNITS, value_of
 from beamfem.results.solution import Solution
+from beamfem.solve.linear.linear_outputs import QUANTITIES as LINEAR
 from beamfem.validation import items, one_of, require_known, shown
 from beamfem.view.frames import axis_of_rows
 from beamfem.view.labels import place, write_labels
-from beamfem.view.plots import COLOURS, new_figure, save_figure
+from beamfem.view.plots import COLOURS, empty_figure, new_figure, quiet, save_figure
+
+if TYPE_CHECKING:
+    from beamfem.solve.linear.frequency_response import FrequencyResponse
 
 _STYLES = ("-", "--", ":")
 # of a point, by name
@@ -186,3 +190,26 @@ def _of_section(solution: Solution, quantity: Quantity, point: Point) -> tuple[s
         why = quantity.unknown_of([point.beam])
         raise InputError(f"the section at this point has no {quantity.label} to draw: {why}")
     return quantity.label, quantity.unit, values
+
+
+def plot_response(response: "FrequencyResponse", path: str | PathLike[str] | None = None) -> Any:
+    """Draw amplitude, on a logarithmic axis, and phase [deg] against frequency [Hz]; return the matplotlib figure.
+
+    Raises MissingPackageError without matplotlib.
+    """
+    figure = empty_figure(6.4, 5.4)
+    amplitude, phase = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+    model, (name, point) = response.model, response.quantity
+    label, unit = LINEAR[name]
+    order = np.argsort(response.frequencies, kind="stable")
+    for axes, values in ((amplitude, response.amplitude), (phase, np.degrees(response.phase))):
+        quiet(axes)
+        axes.plot(response.frequencies[order], values[order], color=COLOURS[0], linewidth=1.5)
+    if response.amplitude.any():
+        amplitude.set_yscale("log")
+    amplitude.set_ylabel(f"{label} at {place(model, point.reference)} [{model.unit(unit)}]")
+    phase.set_ylabel("phase [deg]")
+    phase.set_yticks([-180, -90, 0, 90, 180])
+    phase.set_xlabel(f"frequency [{model.unit('Hz')}]")
+    phase.margins(x=0.02)
+    return save_figure(figure, path)

@@ -151,9 +151,8 @@ class _Scene:
         flat = np.concatenate([faces for of_beam in parts for faces in of_beam])
         widths = [np.tile(width, len(of_beam)) for width, of_beam in zip(self.widths, parts, strict=True)]
         z = 0.5 * np.concatenate(widths)[:, None, None] * np.array([-1.0, 1.0])
-        corners = np.concatenate(
-            [np.repeat(flat[:, :, None], 2, axis=2), np.broadcast_to(z, (len(flat), 2, 2))[..., None]], axis=-1
-        )
+        corners = np.empty((len(flat), 2, 2, 3))
+        corners[..., :2], corners[..., 2] = flat[:, :, None], z
         return corners.reshape(-1, 3)
 
     def _values(self, order: int) -> np.ndarray:
@@ -187,8 +186,7 @@ def _faces(points: Sequence[AxisPoints], counts: Sequence[int]) -> np.ndarray:
         start = within[(within + 1) % (own.pieces + 1) != 0]
         faces.append((4 * (first + start)[:, None, None] + sides).reshape(-1, 4))
         last = 4 * (first + number - 1)
-        faces.append(np.array([(4 * first, 4 * first + 2, 4 * first + 3, 4 * first + 1),
-                               (last, last + 1, last + 3, last + 2)]))  # fmt: skip
+        faces.append(np.add([[4 * first], [last]], [(0, 2, 3, 1), (0, 1, 3, 2)]))
         first += number
     table = np.concatenate(faces)
     return np.column_stack([np.full(len(table), 4), table]).ravel()

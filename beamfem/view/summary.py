@@ -12,8 +12,7 @@ from beamfem.model.beam import Beam, names
 from beamfem.model.model import Model
 from beamfem.results.beam_stress import PARTS, BeamStress
 from beamfem.results.energies import Energy
-from beamfem.results.extremes import Force
-from beamfem.results.section_forces import SectionForces, extreme_force
+from beamfem.results.section_forces import FORCES, SectionForces, extreme_force
 from beamfem.results.solution import Solution, State
 from beamfem.solve.motion.period_error import lengthened_period
 from beamfem.tables import as_html
@@ -115,15 +114,13 @@ def buckling_table(buckling: "Buckling") -> str:
 def _beams(model: Model) -> str:
     unit = model.unit("m")
     head = ("beam", f"from [{unit}]", f"to [{unit}]", f"length [{unit}]", "element", "elements", "forces")
-    lines, labels = [], names(model.beams)
-    for number, (beam, mesh) in enumerate(zip(model.beams, model.meshes, strict=True)):
-        if number == _BEAMS:
-            lines.append(("…", f"{len(model.beams) - _BEAMS} more", *[""] * 5))
-            break
+    lines = []
+    for label, beam, mesh in list(zip(names(model.beams), model.beams, model.meshes, strict=True))[:_BEAMS]:
         ends = [place(model, at) for at in (mesh.position[0], mesh.position[-1])]
         kind = (beam.element.name, str(mesh.elements), beam.element.forces.name)
-        lines.append((labels[number], *ends, f"{beam.curve.length:.4g}", *kind))
-    return as_html(head, lines)
+        lines.append((label, *ends, f"{beam.curve.length:.4g}", *kind))
+    further = len(model.beams) - _BEAMS
+    return as_html(head, [*lines, *([("…", f"{further} more", *[""] * 5)] if further > 0 else [])])
 
 
 def _kinds(items: Sequence[object]) -> str:
@@ -162,11 +159,8 @@ def energy_table(energy: Energy) -> str:
     """Return energies as an HTML table: at the start, at the end, and between which values they were."""
     unit = energy.unit
     head = ("energy", *(f"{name} [{unit}]" for name in ("first", "last", "smallest", "largest")))
-    rows = []
-    for name in ("kinetic", "strain", "potential", "total"):
-        values = getattr(energy, name)
-        if len(values):
-            rows.append((name, *map(float, (values[0], values[-1], values.min(), values.max()))))
+    each = ((name, getattr(energy, name)) for name in ("kinetic", "strain", "potential", "total"))
+    rows = [(name, *map(float, (e[0], e[-1], e.min(), e.max()))) for name, e in each if len(e)]
     return f"<b>Energy</b>{as_html(head, rows)}"
 
 
@@ -174,8 +168,7 @@ def section_forces_table(forces: SectionForces) -> str:
     """Return the extremes of section forces as an HTML table, each with its place and row."""
     unit = forces.units.of
     rows = []
-    named: tuple[tuple[Force, str], ...] = (("normal", "N"), ("shear", "N"), ("moment", "N m"))
-    for name, si in named:
+    for name, si in zip(FORCES, ("N", "N", "N m"), strict=True):
         for which, measure in (("smallest", np.negative), ("largest", np.asarray)):
             value, at, row = extreme_force(forces, name, measure)
             value = 0.0 if abs(value) <= _EQUAL * np.abs(getattr(forces, name)).max() else value

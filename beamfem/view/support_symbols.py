@@ -210,14 +210,13 @@ def _constraint(stamps: Stamps, support: Constraint, now: np.ndarray, centre: np
                 _stamp(stamps, symbols.ROLLER, now, np.array(down))
     if "rotation" in fixed and not fixed >= {"ux", "uy"}:
         _stamp(stamps, symbols.NO_TURN, now, np.array([0.0, -1.0]), 1.2)
+    moved = {name: value for name, value in prescribed.items() if name not in fixed}
+    signs = {name: 1.0 if callable(value) or value > 0.0 else -1.0 for name, value in moved.items()}
     for name, direction in (("ux", (1.0, 0.0)), ("uy", (0.0, 1.0))):
-        if name in prescribed and name not in fixed:
-            value = prescribed[name]
-            sign = 1.0 if callable(value) or value > 0.0 else -1.0
-            _moved(stamps, now, sign * np.array(direction))
-    if "rotation" in prescribed and "rotation" not in fixed:
-        value = prescribed["rotation"]
-        arc, head = symbols.turn(0.5 * np.pi, 1.1, 1.4 * np.pi * (1.0 if callable(value) or value > 0.0 else -1.0))
+        if name in signs:
+            _moved(stamps, now, signs[name] * np.array(direction))
+    if "rotation" in signs:
+        arc, head = symbols.turn(0.5 * np.pi, 1.1, 1.4 * np.pi * signs["rotation"])
         stamps.add(now, arc, PRESCRIBED, 1.4)
         stamps.add(now, head, PRESCRIBED, 0.5, PRESCRIBED)
 

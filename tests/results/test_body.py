@@ -25,7 +25,8 @@ def test_surface_encloses_the_volume_of_the_beam(bent):
     shapes = Shapes(bent, np.array([0]))
     scene = body._Scene.__new__(body._Scene)
     scene.shapes = shapes
-    surface = pyvista.PolyData(scene._points(0), scene._surface()).triangulate().clean()
+    faces = body._faces(shapes.points, [len(parts) for parts in scene._parts(0)])
+    surface = pyvista.PolyData(scene._points(0), faces).triangulate().clean()
     assert surface.n_open_edges == 0
     assert surface.volume == pytest.approx(1e-4, rel=1e-9)
 

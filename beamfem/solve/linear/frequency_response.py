@@ -74,7 +74,7 @@ class FrequencyResponse:
         >>> response = bf.frequency_response(model, model.loads[0], ("uy", beam.end), sweep)
         >>> figure = response.plot("response.png")
         """
-        from beamfem.view.response_curve import plot_response
+        from beamfem.view.quantity_curve import plot_response
 
         return plot_response(self, path)
 

@@ -19,9 +19,6 @@ if TYPE_CHECKING:
 
 Rows = Sequence[Sequence[Any]]
 
-_WIDTH = 76  # characters of a table that shows itself at a prompt
-_CUT = 24  # of a cell there
-_LEAST = 12  # of the last column there
 
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")  # what a spreadsheet takes for the begin of a formula
 
@@ -45,8 +42,8 @@ def as_text(header: Sequence[str], rows: Rows, title: str = "") -> str:
     from rich import box  # slow to import
     from rich.text import Text
 
-    terminal = sys.stdout.isatty()
-    table = _table(header, rows, box.ROUNDED if terminal else box.SIMPLE_HEAD if _unicode() else box.ASCII2)
+    terminal, unicode = sys.stdout.isatty(), (sys.stdout.encoding or "").lower().startswith("utf")
+    table = _table(header, rows, box.ROUNDED if terminal else box.SIMPLE_HEAD if unicode else box.ASCII2)
     table.title, table.title_justify = Text(title) if title else None, "left"  # [m] is no markup
     return _printed(table, terminal)
 
@@ -58,24 +55,6 @@ def _printed(table: "Table", terminal: bool = False) -> str:
     out = StringIO()
     Console(file=out, force_terminal=terminal, width=None if terminal else 10_000, legacy_windows=False).print(table)
     return "\n".join(line.rstrip() for line in out.getvalue().splitlines()).strip("\n")
-
-
-def as_brief(header: Sequence[str], rows: Rows, most: int) -> str:
-    """Return a plain table for a prompt: at most `most` rows, cut texts, no columns for which there is no room.
-
-    The last column has the room that the others leave.
-    """
-    from rich import box  # slow to import
-
-    lines = [[*(cut(text, _CUT) for text in line[:-1]), line[-1]] for line in [list(header), *cells(few(rows, most))]]
-    ends = np.cumsum([1 + 2 + max(map(len, column)) for column in zip(*lines, strict=True)])
-    room = _WIDTH - 3 - int(ends[-2]) if len(ends) > 1 else _WIDTH
-    if room >= _LEAST:
-        lines = [[*line[:-1], cut(line[-1], room)] for line in lines]
-    else:
-        fitting = max(1, int(np.sum(ends <= _WIDTH - 6)))
-        lines = [[*line[:fitting], "..."] for line in lines]
-    return _printed(_table(lines[0], lines[1:], box.SIMPLE_HEAD if _unicode() else box.ASCII2))
 
 
 def few(rows: Rows, most: int) -> list[list[Any]]:
@@ -96,12 +75,9 @@ def cut(text: str, size: int) -> str:
 def as_markdown(header: Sequence[str], rows: Rows) -> str:
     """Return a Markdown table."""
     from rich import box  # slow to import
-    from rich.console import Console
 
     escaped = [[text.replace("|", "\\|") for text in line] for line in [list(header), *cells(rows)]]
-    out = StringIO()
-    Console(file=out, force_terminal=False, width=100_000).print(_table(escaped[0], escaped[1:], box.MARKDOWN))
-    return "\n".join(line.rstrip() for line in out.getvalue().splitlines() if line.strip())
+    return _printed(_table(escaped[0], escaped[1:], box.MARKDOWN))
 
 
 def as_html(header: Sequence[str], rows: Rows) -> str:
@@ -133,10 +109,6 @@ def _cell(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return value.tolist()
     return f"'{value}" if isinstance(value, str) and value.startswith(_FORMULA) else value
-
-
-def _unicode() -> bool:
-    return (sys.stdout.encoding or "").lower().startswith("utf")
 
 
 def _table(header: Sequence[str], rows: Rows, frame: "Box") -> "Table":

@@ -18,6 +18,7 @@ from beamfem.view.plots import COLOURS, MARKERS, new_figure, save_figure
 
 _ROWS_REPORTED = 40
 _ROWS_PRINTED = 6
+_WIDTH = 70  # characters of a printed table
 _PRINTED = 110  # characters of a failure
 _NAMED = 12  # curves in a legend
 _ABOVE = 50  # characters of all names in a line
@@ -126,7 +127,7 @@ class Sweep:
         return value if isinstance(value, Mapping) else {self.function: value}
 
     def _rows(self) -> tuple[list[str], list[list[Any]]]:
-        rows = [row | dict(texts) for row, texts in zip(self.table(), self._texts(), strict=True)]
+        rows = [row | texts for row, texts in zip(self.table(), self._texts(), strict=True)]
         numbers = [name for name in rows[0] if not any(isinstance(row[name], Solution) for row in rows)]
         return numbers, [[row[name] for name in numbers] for row in rows]
 
@@ -143,7 +144,13 @@ class Sweep:
 
     def __str__(self) -> str:
         failed = [tabulate.cut(str(failure), _PRINTED) for failure in self.failures[:1]]
-        return "\n".join([tabulate.as_brief(*self._rows(), _ROWS_PRINTED), f"{self._note}; all by report()", *failed])
+        header, rows = self._rows()
+        few = tabulate.cells([header, *tabulate.few(rows, _ROWS_PRINTED)])
+        lines = [[tabulate.cut(text, _CUT) for text in row] for row in few]
+        ends = np.cumsum([3 + max(map(len, column)) for column in zip(*lines, strict=True)])
+        fitting = max(1, int(np.sum(ends <= _WIDTH)))
+        lines = [[*line[:fitting], *["..."] * (fitting < len(line))] for line in lines]
+        return "\n".join([tabulate.as_text(lines[0], lines[1:]), f"{self._note}; all by report()", *failed])
 
     def report(self) -> str:
         """Return a table of up to 40 points, without solutions, and every failure, as text."""

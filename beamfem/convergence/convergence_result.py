@@ -6,6 +6,7 @@ from html import escape
 from numbers import Real
 from os import PathLike
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,8 @@ from beamfem.extras import needed_for
 from beamfem.results.solution import Solution
 from beamfem.sweeps.workers import Failure
 from beamfem.validation import flag
+from beamfem.view.html_page import Entry, Part, Table, write_page
+from beamfem.view.plots import COLOURS, MARKERS, new_figure, save_figure
 
 EXPLANATION = (
     "Order between a value and the one before it; order of a curve: slope of the least-squares line of log error over "
@@ -66,14 +69,10 @@ class Convergence:
         """Name of the errors: "relative error", or "error" if the limit of a curve is zero."""
         return "relative error" if all(curve.relative for curve in self.curves) else "error"
 
-    @property
-    def _counted(self) -> str:
-        points = sum(len(curve.refinement) for curve in self.curves)
-        curves = "1 curve" if len(self.curves) == 1 else f"{len(self.curves)} curves"
-        return f"{curves} of {points} points, {len(self.failures)} failed"
-
     def __repr__(self) -> str:
-        return f"Convergence({self.quantity} over {self.refine}: {self._counted})"
+        points, number = sum(len(curve.refinement) for curve in self.curves), len(self.curves)
+        counted = f"{number} curve{'s' * (number != 1)} of {points} points, {len(self.failures)} failed"
+        return f"Convergence({self.quantity} over {self.refine}: {counted})"
 
     def __str__(self) -> str:
         return self.report()
@@ -141,19 +140,11 @@ class Convergence:
         header = ["curve", "order", "95 % band", f"fitted over {self.refine}", "limit", "estimated error", "remark"]
         rows = []
         for curve in self.curves:
-            fit = curve.fit
-            over = f"{curve.refinement[fit.first]} to {curve.refinement[fit.last]}" if fit else ""
-            rows.append(
-                [
-                    curve.label,
-                    f"{fit.order:.3f}" if fit else "",
-                    f"± {fit.band:.3f}" if fit and not np.isnan(fit.band) else "",
-                    over,
-                    f"{curve.limit:.12g}",
-                    _short(curve.estimated_error, ".2e"),
-                    "; ".join(curve.notes),
-                ]
-            )
+            row, fit = [curve.label, "", "", ""], curve.fit
+            if fit:
+                over = f"{curve.refinement[fit.first]} to {curve.refinement[fit.last]}"
+                row[1:] = [f"{fit.order:.3f}", _short(fit.band, ".3f", "± "), over]
+            rows.append([*row, f"{curve.limit:.12g}", _short(curve.estimated_error, ".2e"), "; ".join(curve.notes)])
         return header, rows
 
     def to_markdown(self) -> str:
@@ -211,19 +202,80 @@ class Convergence:
         >>> study = bf.converge(lambda n: 1.0 + 1.0 / n**2, refine="n", n=[4, 8, 16, 32], reference=1.0)
         >>> figure = study.plot("convergence.png")
         """
-        from beamfem.convergence.convergence_page import plot_errors
-
-        return plot_errors(self, path)
+        figure, axes = new_figure(7.2, 5.0)
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        # one triangle for each whole order, at the lowest curve, where there is room for it
+        triangles: dict[int, tuple[Curve, str]] = {}
+        for i, curve in enumerate(self.curves):
+            colour, marker = COLOURS[i % len(COLOURS)], MARKERS[i % len(MARKERS)]
+            x, y = np.array(curve.refinement, dtype=float), curve.error
+            positive = y > 0.0
+            label = curve.label
+            if curve.fit is not None:
+                band = "" if np.isnan(curve.fit.band) else f" ± {curve.fit.band:.2f}"
+                label = f"{label}: order {curve.fit.order:.2f}{band}"
+            axes.plot(x[positive], y[positive], color=colour, marker=marker, markersize=5, linewidth=1.4, label=label)
+            if curve.fit is None:
+                continue
+            noise = positive & (np.arange(len(x)) > curve.fit.last)
+            axes.plot(x[noise], y[noise], marker, markersize=5, color=colour, markerfacecolor="white")
+            other = triangles.get(round(curve.fit.order))
+            if other is None or np.nanmin(y) < np.nanmin(other[0].error):
+                triangles[round(curve.fit.order)] = curve, colour
+        for curve, colour in triangles.values():
+            _triangle(axes, curve, colour)
+        axes.set_xlabel(self.refine)
+        axes.set_ylabel(f"{self.error_name} of {self.quantity}")
+        ticks = sorted({value for curve in self.curves for value in curve.refinement})
+        if len(ticks) <= 12:
+            axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+            axes.minorticks_off()
+        if self.curves:
+            axes.legend(frameon=False, fontsize=9)
+        return save_figure(figure, path)
 
     def to_html(self, path: str | PathLike[str]) -> Path:
         """Write an HTML page with picture and tables, a single file that works offline, and return its path.
 
         Raises MissingPackageError without matplotlib.
         """
-        from beamfem.convergence.convergence_page import write_study
+        with TemporaryDirectory() as folder:
+            picture = Path(folder) / "errors.svg"
+            self.plot(picture)
+            reference = "Richardson extrapolation" if self.reference is None else f"the reference {self.reference!r}"
+            found = f"Errors against {reference}. {EXPLANATION}"
+            entry = Entry(self.error_name.capitalize(), picture, claim="", found=found)
+            named = (("Curves", self.summary()), ("Points", self.points(rounded=True)))
+            tables = [Table(title, header, tabulate.cells(rows)) for title, (header, rows) in named]
+            if self.failures:
+                rows = [(failure.label, failure.error) for failure in self.failures]
+                tables.append(Table("Failed calls", ("parameters", "error"), rows))
+            text = f"{self.function}() called with {self.refine} refined; {len(self.failures)} calls failed."
+            return write_page(path, self.title, [Part("Picture", text, [entry]), Part("Numbers", "", tables=tables)])
 
-        return write_study(self, path)
+
+def _short(number: float, form: str, before: str = "") -> str:
+    return "" if np.isnan(number) else f"{before}{number:{form}}"
 
 
-def _short(number: float, form: str) -> str:
-    return "" if np.isnan(number) else f"{number:{form}}"
+def _triangle(axes: Any, curve: Curve, colour: str) -> None:
+    """Below the last fitted interval: its legs are one step of refinement and the fall that the order promises."""
+    fit = curve.fit
+    assert fit is not None
+    left, right = float(curve.refinement[fit.last - 1]), float(curve.refinement[fit.last])
+    ratio = (curve.size[fit.last] / curve.size[fit.last - 1]) ** fit.order
+    # the middle half of the interval, below the curve
+    a, b = left * (right / left) ** 0.25, left * (right / left) ** 0.75
+    top = curve.error[fit.last - 1] * ratio**0.25 / 2.0
+    bottom = top * ratio**0.5
+    axes.fill([a, b, a], [top, bottom, bottom], facecolor=colour, alpha=0.25, edgecolor=colour, linewidth=0.8)
+    axes.annotate(
+        f"{fit.order:.1f}",
+        (a, np.sqrt(top * bottom)),
+        (-3, 0),
+        textcoords="offset points",
+        ha="right",
+        va="center",
+        fontsize=8,
+    )

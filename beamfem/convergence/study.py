@@ -8,8 +8,7 @@ import numpy as np
 
 from beamfem import validation
 from beamfem.convergence.convergence_result import Convergence
-from beamfem.convergence.observed_order import highest_order, scale_of
-from beamfem.convergence.refinement_curve import Curve, judge
+from beamfem.convergence.refinement_curve import Curve, highest_order, judge, scale_of
 from beamfem.errors import InputError
 from beamfem.progress import progress
 from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, name_of, split
@@ -174,15 +173,11 @@ def _quantity(value: Any, quantity: str | None) -> str | None:
     return quantity
 
 
-def _number(value: Any, quantity: str | None) -> Any:
-    return value if quantity is None else value[quantity]
-
-
 def _refuse_arrays(outcome: Outcome, quantity: str | None) -> Outcome:
     """Return a failure for a value that is not a finite number, since it has no error."""
     if outcome.error is not None:
         return outcome
-    number = _number(outcome.value, quantity)
+    number = outcome.value if quantity is None else outcome.value[quantity]
     if isinstance(number, np.ndarray) or not np.isfinite(number):
         return Outcome(seconds=outcome.seconds, error=f"{quantity or 'the value'} is {number}, not a finite number")
     return outcome
@@ -201,7 +196,7 @@ def _curve(line: _Line, quantity: str | None, counts: bool, reference: float | N
     curve = judge(
         refinement=tuple(by_value),
         size=sizes,
-        value=np.array([_number(outcome.value, quantity) for outcome in outcomes], dtype=float),
+        value=np.array([o.value if quantity is None else o.value[quantity] for o in outcomes], dtype=float),
         reference=reference,
         highest=highest_order(line.parameters),
     )

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import beamfem as bf
-from beamfem.convergence.observed_order import fit_order
+from beamfem.convergence.refinement_curve import fit_order
 from beamfem.view.html_page import Entry, Part, Table
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 from studies.paper.elastica import tip_displacement

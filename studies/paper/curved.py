@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 import beamfem as bf
-from beamfem.convergence.observed_order import fit_order
+from beamfem.convergence.refinement_curve import fit_order
 from beamfem.element.coordinates import Gradients
 from beamfem.element.fields import Lagrange
 from beamfem.view.html_page import Entry, Part, Table

@@ -15,8 +15,7 @@ from pathlib import Path
 import numpy as np
 
 import beamfem as bf
-from beamfem.convergence.observed_order import fit_order, order_of_three
-from beamfem.convergence.refinement_curve import extrapolate
+from beamfem.convergence.refinement_curve import extrapolate, fit_order, order_of_three
 from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.fields import Cubic, Lagrange
 from beamfem.view.html_page import Entry, Part, Table

@@ -10,8 +10,13 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.convergence.observed_order import clean_points, fit_order, grid_convergence_index, order_of_three
-from beamfem.convergence.refinement_curve import extrapolate
+from beamfem.convergence.refinement_curve import (
+    clean_points,
+    extrapolate,
+    fit_order,
+    grid_convergence_index,
+    order_of_three,
+)
 from beamfem.convergence.study import MOST_DOUBLINGS
 
 LIMIT = 2.5

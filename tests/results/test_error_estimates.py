@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.convergence.observed_order import chance_hits, fit_order, highest_order, scale_of
-from beamfem.convergence.refinement_curve import extrapolate
+from beamfem.convergence.refinement_curve import chance_hits, extrapolate, fit_order, highest_order, scale_of
 
 TOO_SMALL = 3.0
 

@@ -125,14 +125,10 @@ def _turn(start: float, end: float, full: float) -> float:
     return full if turn < _FLAT * full else turn
 
 
-def _light_polyline(entity: Any) -> Curve:
-    elevation = entity.dxf.elevation
-    if elevation != 0.0:
-        raise InputError(f"it must lie in the plane z = 0, but its elevation is {elevation:g}")
-    return _pieces(entity.get_points("xyb"), entity.closed, _side(entity))
-
-
 def _polyline(entity: Any) -> Curve:
+    if entity.dxftype() == "LWPOLYLINE":
+        _flat((0.0, 0.0, entity.dxf.elevation))
+        return _pieces(entity.get_points("xyb"), entity.closed, _side(entity))
     if not (entity.is_2d_polyline or entity.is_3d_polyline):
         raise InputError(f"it is a {entity.get_mode()}, not a curve")
     side = _side(entity) if entity.is_2d_polyline else 1.0
@@ -200,7 +196,7 @@ _READERS: dict[str, Callable[[Any], Curve]] = {
     "LINE": lambda entity: Line(_flat(entity.dxf.start), _flat(entity.dxf.end)),
     "ARC": _arc,
     "CIRCLE": _arc,
-    "LWPOLYLINE": _light_polyline,
+    "LWPOLYLINE": _polyline,
     "POLYLINE": _polyline,
     "SPLINE": _spline,
     "ELLIPSE": _ellipse,

@@ -135,11 +135,10 @@ def _with_values(beam: Beam, mesh: BeamMesh) -> Beam:
     """Return the beam with a varying section as samples: those that were used, and more for drawing."""
     if isinstance(beam.section, CrossSection | SampledSection):
         return beam
-    points = (stations(mesh), energy_points(mesh)[:2], length_points(mesh)[:2])
     drawn = np.linspace(0.0, 1.0, _DRAWN + 1)
+    also = np.repeat(np.arange(mesh.elements), len(drawn)), np.tile(drawn, mesh.elements)
+    points = (stations(mesh), energy_points(mesh)[:2], length_points(mesh)[:2], also)
     parts = [mesh.section_arc_length(element, xi) for element, xi in points]
-    element, xi = np.repeat(np.arange(mesh.elements), len(drawn)), np.tile(drawn, mesh.elements)
-    parts.append(mesh.section_arc_length(element, xi))
     at = np.unique(np.concatenate([*parts, [0.0, 0.5 * beam.curve.length, beam.curve.length]]))
     at = at[np.append(True, np.diff(at) > 1e-9 * beam.curve.length)]
     values = tuple(beam.section_at(float(arc)) for arc in at)

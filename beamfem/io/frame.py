@@ -116,8 +116,8 @@ def build_frame(
         curve, ends = _axis([_curve(points, cells, piece) for piece in line])
         parts = count("elements", arguments.pop("elements"))
         beam_name = None if name is None else f"{name}[{number + 1}]"
-        inner = np.linspace(ends[:-1], ends[1:], parts, endpoint=False, axis=1)
-        beam = Beam(curve, parts if len(line) == 1 else (*inner.ravel().tolist(), 1.0), **arguments, name=beam_name)
+        inner = np.linspace(ends[:-1], ends[1:], parts, endpoint=False, axis=1) if len(line) > 1 else None
+        beam = Beam(curve, parts if inner is None else (*inner.ravel().tolist(), 1.0), **arguments, name=beam_name)
         beams.append(beam)
         owner[[cell for cell, _ in line]] = number
         for (cell, backwards), fraction in zip(line, ends.tolist(), strict=False):

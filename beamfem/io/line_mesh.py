@@ -273,12 +273,10 @@ def _distance(nodes: np.ndarray, cells: np.ndarray, size: float) -> float:
 
 def _check_ends(nodes: np.ndarray, cells: np.ndarray, near: float) -> None:
     """Raise InputError for ends that are within a distance `near` [m] and are not one node."""
-    from scipy.spatial import cKDTree  # slow to import
-
     ends = np.unique(cells[:, :2])
-    pairs = cKDTree(nodes[ends]).query_pairs(near, output_type="ndarray")
+    pairs = _pairs(nodes, ends, near)
     if len(pairs):
-        one, other = ends[pairs[0]]
+        one, other = pairs[0]
         distance = np.linalg.norm(nodes[one] - nodes[other])
         raise InputError(
             f"two nodes are at {_at(nodes, one)}, {distance:.1g} apart, so that lines which meet there are not joined "
@@ -289,6 +287,13 @@ def _check_ends(nodes: np.ndarray, cells: np.ndarray, near: float) -> None:
     crossed = np.intersect1d(middle, ends)
     if len(crossed):
         raise InputError(f"a line ends in the middle of a line3 at {_at(nodes, crossed[0])}; split the line3 there")
+
+
+def _pairs(nodes: np.ndarray, ends: np.ndarray, near: float) -> np.ndarray:
+    """Return the pairs (n, 2) of ends that are within `near` [m] of each other."""
+    from scipy.spatial import cKDTree  # slow to import
+
+    return np.asarray(ends[cKDTree(nodes[ends]).query_pairs(near, output_type="ndarray")].reshape(-1, 2))
 
 
 def _refuse_repeated(nodes: np.ndarray, cells: np.ndarray, owner: np.ndarray, size: float) -> None:
@@ -325,9 +330,8 @@ def merged(nodes: np.ndarray, ends: np.ndarray, near: float) -> np.ndarray:
     """Return for each node (n,) the first of the ends that are within `near` [m] of it, or itself."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree  # slow to import
 
-    a, b = ends[cKDTree(nodes[ends]).query_pairs(near, output_type="ndarray")].reshape(-1, 2).T
+    a, b = _pairs(nodes, ends, near).T
     together = coo_array((np.ones(len(a)), (a, b)), shape=(len(nodes), len(nodes)))
     _, group = connected_components(together, directed=False)
     _, first = np.unique(group, return_index=True)
@@ -360,10 +364,7 @@ def divided(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndarr
 
 def warn_of_gaps(nodes: np.ndarray, cells: np.ndarray, reach: float) -> None:
     """Warn of ends that stand within `reach` [m] of another end or line and are not joined to it."""
-    from scipy.spatial import cKDTree  # slow to import
-
-    ends = np.unique(cells[:, :2])
-    pairs = ends[cKDTree(nodes[ends]).query_pairs(reach, output_type="ndarray")]
+    pairs = _pairs(nodes, np.unique(cells[:, :2]), reach)
     _, touching, _ = _touches(nodes, cells, reach)
     loose = np.unique(np.concatenate([pairs[:, 0], touching]))
     if not len(loose):

@@ -40,9 +40,8 @@ def read_through_meshio(path: Path) -> MeshFile:
     if kind is None:
         raise InputError(f"{path}: mesh files end in {', '.join(sorted(formats))}")
     printed = io.StringIO()
-    silence = contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed)
     try:
-        with silence[0], silence[1]:
+        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
             mesh = meshio.read(path, file_format=kind)
     except (Exception, SystemExit) as error:  # meshio raises anything for a bad file, and exits for some
         words = printed.getvalue().strip() if isinstance(error, SystemExit) else str(error)

@@ -121,12 +121,10 @@ def _loads(model: Model) -> Iterator[_Vertices]:
 def _of_load(load: Load, acting: Mapping[str, np.ndarray], points: AxisPoints, part: Solution) -> _Values:
     system, times = loading(part)
     factors = np.array([factor(load, float(time), system.static) for time in times])[:, None, None]
-    stations = StationsOfRows(part, points)
-    sized = {name: factors * numbers for name, numbers in acting.items()}
-    return {
-        name: _flat(in_plane(numbers, load.axes, stations)) if numbers.shape[-1] == 2 else numbers
-        for name, numbers in sized.items()
-    }
+    stations, result = StationsOfRows(part, points), {name: factors * numbers for name, numbers in acting.items()}
+    for name, numbers in result.items():
+        result[name] = _flat(in_plane(numbers, load.axes, stations)) if numbers.shape[-1] == 2 else numbers
+    return result
 
 
 def _connectors(model: Model) -> Iterator[_Vertices]:

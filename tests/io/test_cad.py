@@ -192,7 +192,7 @@ BAD = {
     "circle off the plane": (lambda space: space.add_circle((0, 0, 2), 1), "CIRCLE .* z = 2"),
     "polyline off the plane": (
         lambda space: space.add_lwpolyline([(0, 0), (1, 0)], dxfattribs={"elevation": 3}),
-        "LWPOLYLINE .*elevation is 3",
+        "LWPOLYLINE .*reaches z = 3",
     ),
     "old polyline off the plane": (
         lambda space: space.add_polyline2d([(0, 0), (1, 0)], dxfattribs={"elevation": (0, 0, 3)}),

@@ -10,7 +10,7 @@ from beamfem.curves.arc_length import ArcLength, measure
 from beamfem.curves.curve import Curve, along, numbers, points, turned, unit
 from beamfem.errors import InputError
 from beamfem.reprs import brief
-from beamfem.validation import convert, count, optional
+from beamfem.validation import convert, count, optional, positive
 
 
 @dataclass(frozen=True)
@@ -178,8 +178,7 @@ class BSpline(Curve):
             if len(self.weights) != size:
                 raise InputError(f"weights: {size} control points need {size}, got {len(self.weights)}")
             for i, weight in enumerate(self.weights):
-                if weight <= 0.0:
-                    raise InputError(f"weights[{i}] must be greater than zero, got {weight}")
+                positive(f"weights[{i}]", weight)
 
     def _check_knots(self) -> None:
         for i, (one, other) in enumerate(zip(self.knots, self.knots[1:], strict=False)):

@@ -147,12 +147,11 @@ def _of_mass(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, ac
     if not pull.any() and not acceleration.any():
         return _nothing(e)
     where, xi, inertia = inertia_points(mesh, elements)
-    element, (position, direction) = _numbers(elements, where), shape_tables(mesh, where, xi)
+    element, tables = np.searchsorted(elements, where), shape_tables(mesh, where, xi)
     mass, first, rotary = inertia.T[:, None, :, None]
-    free = pull[:, element] - _at(position, acceleration, element)
-    turn = _at(direction, acceleration, element)
+    free, turn = pull[:, element] - _at(tables[0], acceleration, element), _at(tables[1], acceleration, element)
     rule = np.full(len(xi), len(xi) // len(elements))
-    return Acting(element, xi, rule, position, direction, mass * free - first * turn, first * free - rotary * turn)
+    return Acting(element, xi, rule, *tables, mass * free - first * turn, first * free - rotary * turn)
 
 
 def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
@@ -161,11 +160,9 @@ def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> A
     if not load.any():
         return _nothing(e)
     where, xi, weight = length_points(mesh, elements)
-    element = _numbers(elements, where)
+    element, rule = np.searchsorted(elements, where), np.full(len(xi), len(xi) // len(elements))
     force = load[:, element] * weight[:, None]
-    rule = np.full(len(xi), len(xi) // len(elements))
-    position, direction = shape_tables(mesh, where, xi)
-    return Acting(element, xi, rule, position, direction, force, np.zeros_like(force))
+    return Acting(element, xi, rule, *shape_tables(mesh, where, xi), force, np.zeros_like(force))
 
 
 def _distributed(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
@@ -199,11 +196,6 @@ def _nothing(e: np.ndarray) -> Acting:
 def _beams(rows: Rows, mesh: BeamMesh, elements: np.ndarray) -> np.ndarray:
     """Return the number in the model of the beam of each element (ne,)."""
     return np.asarray(rows.system.blocks[mesh.block].beam[mesh.in_block(elements)])
-
-
-def _numbers(elements: np.ndarray, where: np.ndarray) -> np.ndarray:
-    """Return the indices of elements among those cut free, which are in ascending order."""
-    return np.searchsorted(elements, where)
 
 
 def _at(table: np.ndarray, vectors: np.ndarray, element: np.ndarray) -> np.ndarray:

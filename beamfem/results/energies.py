@@ -1,15 +1,17 @@
 """Energies of a solution."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
-from beamfem.model.load_base import Load, factor
+from beamfem.mesh.reference import inertia_points, length_points, reference_axis, reference_position
+from beamfem.model.beam import Beam, Point
+from beamfem.model.load_base import factor
 from beamfem.reprs import brief
-from beamfem.results.displacements import Displacements
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.postprocess import momenta
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
@@ -85,6 +87,42 @@ class Energy:
         return self.work - (self.total - self.total[:1]) - (self.dissipated - self.dissipated[:1])
 
 
+@dataclass(frozen=True, eq=False)
+class Displacements:
+    """The rows of a solution, with the members that the work of loads and the energy of supports need.
+
+    first: integral of the position over the mass of each beam (steps, 2) [kg m].
+    """
+
+    solution: Solution
+    first: Sequence[np.ndarray]
+
+    def __len__(self) -> int:
+        return len(self.solution)
+
+    @property
+    def first_moments(self) -> Iterator[np.ndarray]:
+        """Integral of the displacement over the mass of each beam (steps, 2) [kg m]."""
+        for mesh, first in zip(self.solution.model.meshes, self.first, strict=True):
+            element, xi, inertia = inertia_points(mesh)
+            at_rest = inertia[:, 0] @ reference_position(mesh, element, xi)
+            yield first - (at_rest + inertia[:, 1] @ reference_axis(mesh, element, xi).d)
+
+    def displacement(self, point: Point) -> np.ndarray:
+        """Return the displacement of a point (steps, 2) [m]."""
+        return self.solution.displacement(point)
+
+    def rotation(self, point: Point) -> np.ndarray:
+        """Return the rotation of the section at a point (steps,) [rad]."""
+        return self.solution.rotation(point)
+
+    def along(self, beam: Beam) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return displacements (steps, n, 2) [m] at points along a beam, and their weights and arc lengths (n,) [m]."""
+        element, xi, weight = length_points(mesh := self.solution.model.mesh_of(beam.start))
+        points = AxisPoints(mesh, element, xi)
+        return points.positions(self.solution.p)[0] - points.reference, weight, points.arc_length
+
+
 def potential(solution: Solution, first_moments: Sequence[np.ndarray]) -> np.ndarray:
     """Return the potential (steps,) [J] of loads, springs and foundations, zero in the reference configuration.
 
@@ -92,8 +130,14 @@ def potential(solution: Solution, first_moments: Sequence[np.ndarray]) -> np.nda
 
     first_moments: integral of the position over the mass of each beam (steps, 2) [kg m].
     """
-    displaced = Displacements(solution, first_moments)
-    return _of_loads(solution, displaced) + _of_supports(solution, displaced) + _of_frame(solution)
+    displaced, (system, times) = Displacements(solution, first_moments), loading(solution)
+    loads, springs = np.zeros(len(solution)), system.springs.potential(solution.p)
+    for load in solution.model.loads:
+        if load.conservative:
+            loads -= np.array([factor(load, at, system.static) for at in times]) * load.work(displaced)
+    for support in solution.model.supports:
+        springs += support.energy(displaced)
+    return np.asarray(loads + springs + _of_frame(solution))
 
 
 def recorded(solution: Solution, by_sections: np.ndarray) -> np.ndarray:
@@ -111,19 +155,6 @@ def recorded(solution: Solution, by_sections: np.ndarray) -> np.ndarray:
     return by_sections + sum(solution.p[:, each].sum(axis=1) for each in own)
 
 
-def _of_loads(solution: Solution, displaced: Displacements) -> np.ndarray:
-    result = np.zeros(len(solution))
-    for load in solution.model.loads:
-        if load.conservative:
-            result -= _factors(solution, load) * load.work(displaced)
-    return result
-
-
-def _factors(solution: Solution, load: Load) -> np.ndarray:
-    system, times = loading(solution)
-    return np.array([factor(load, at, system.static) for at in times])
-
-
 def _of_frame(solution: Solution) -> np.ndarray:
     """Return the potential (steps,) [J] of centrifugal forces, less the kinetic energy of the rotation of the frame."""
     frame = solution.model.frame
@@ -138,10 +169,3 @@ def _of_frame(solution: Solution) -> np.ndarray:
     moments += [system.connectors.energies((row, rate, zeros), 0.0)[0] for row, rate in zip(p, spin, strict=True)]
     factors = times if system.static else np.ones(len(times))
     return -(frame.speed**2) * factors * (moments[:-1] - moments[-1])
-
-
-def _of_supports(solution: Solution, displaced: Displacements) -> np.ndarray:
-    result = loading(solution)[0].springs.potential(solution.p)
-    for support in solution.model.supports:
-        result += support.energy(displaced)
-    return np.asarray(result)

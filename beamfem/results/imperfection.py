@@ -144,14 +144,12 @@ def _crooked(mesh: BeamMesh, moved: np.ndarray, slope: np.ndarray) -> _Crooked:
     # element ends are one point with the mean of the slopes on both sides, except at corners
     first = np.arange(_pieces(mesh) + 1, len(at), _pieces(mesh) + 1)
     corner = np.isclose(at[first][:, None], np.array(curve.corners), rtol=0.0, atol=1e-9 * curve.length).any(axis=1)
-    rate[first - 1], rate[first] = (
-        np.where(corner[:, None], rate[first - 1], 0.5 * (rate[first - 1] + rate[first])),
-        np.where(corner[:, None], rate[first], 0.5 * (rate[first - 1] + rate[first])),
-    )
+    smooth = first[~corner]
+    rate[smooth - 1] = rate[smooth] = 0.5 * (rate[smooth - 1] + rate[smooth])
     stops = [0, *first[corner].tolist(), len(at)]
     pieces, old, new = list[Curve](), [np.zeros(1)], [np.zeros(1)]
     for begin, end in pairwise(stops):
-        indices = np.setdiff1d(np.arange(begin, end), first[~corner])
+        indices = np.setdiff1d(np.arange(begin, end), smooth)
         spline = spline_through_hermite(at[indices], position[indices], rate[indices])
         old.append(at[indices][1:])
         new.append(new[-1][-1] + spline.arc_length(at[indices])[1:])
@@ -160,11 +158,8 @@ def _crooked(mesh: BeamMesh, moved: np.ndarray, slope: np.ndarray) -> _Crooked:
     line = pieces[0] if len(pieces) == 1 else Chain(tuple(pieces))
     ends = np.interp(mesh.vertices, before, after) / after[-1]
     ends[0], ends[-1] = 0.0, 1.0
-    section = beam.section
-    if not isinstance(section, CrossSection):
-        section = _along(section, before, after)
-    straight = replace(beam, curve=line, elements=tuple(ends.tolist()), section=section)
-    return _Crooked(straight, before, after)
+    section = beam.section if isinstance(beam.section, CrossSection) else _along(beam.section, before, after)
+    return _Crooked(replace(beam, curve=line, elements=tuple(ends.tolist()), section=section), before, after)
 
 
 def _along(function: Any, old: np.ndarray, new: np.ndarray) -> Moved:

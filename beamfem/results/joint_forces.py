@@ -58,9 +58,7 @@ def _of_motor(solution: Solution, motor: Motor) -> np.ndarray:
         return _of_load(solution, last)
     if not isinstance(last, PointSupport):
         return connector_force(solution, last)[:, 1]
-    result = np.zeros((len(solution), 3))
-    result[:, 2] = reaction_of(solution, [last])[:, 2]
-    return result
+    return reaction_of(solution, [last]) * (0.0, 0.0, 1.0)
 
 
 def _of_cut(solution: Solution, joint: Joint) -> np.ndarray:

@@ -10,11 +10,10 @@ import numpy as np
 from beamfem.curves import Line
 from beamfem.element.element import Element
 from beamfem.equations.system import System
-from beamfem.errors import CuspWarning, EnergyWarning, InputError, LargeStrainWarning, LockingWarning, warn
+from beamfem.errors import CuspWarning, EnergyWarning, LargeStrainWarning, LockingWarning, warn
 from beamfem.kernels.block import ELASTIC_LINE, GREEN_LAGRANGE, STRUCTURAL
 from beamfem.kernels.neighbouring_nodes import LOCKED, STRAINED, exceeds
 from beamfem.kernels.pointers import address_of
-from beamfem.material import Material
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import energy_points, energy_stiffness_at, reference_axis
 from beamfem.mesh.section_stress import layers
@@ -30,7 +29,7 @@ from beamfem.results.postprocess import nodal_rotations
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import imposed_measures, loading
 from beamfem.results.status import Finding
-from beamfem.section.protocol import CrossSection
+from beamfem.section.thermal import materials_of
 
 _MUCH = 1.5  # [rad]: an element that turns by this much between its ends is far from the curve that it stands for
 
@@ -159,7 +158,7 @@ def _strain_per_utilisation(mesh: BeamMesh) -> float:
     materials = [
         material
         for place in places
-        for material in _materials(beam.section_at(place * beam.curve.length), beam.material)
+        for material in materials_of(beam.section_at(place * beam.curve.length), beam.material)
     ]
     known = [material.youngs_modulus / material.strength for material in materials if material.strength is not None]
     return max(known, default=0.0)
@@ -222,13 +221,6 @@ def _where(solution: Solution, number: int, arc: float, row: int) -> str:
     model, at = solution.model, solution.at[row]
     when = f"load factor {at:.4g}" if solution.static else f"t = {at:.4g} {model.unit('s')}"
     return f"at {arc:.4g} {model.unit('m')} of {beam_in_words(model.beams, number)} in row {row}, {when}"
-
-
-def _materials(section: CrossSection, material: Material | None) -> list[Material]:
-    try:
-        return [own for own, _ in section.moments(material)]
-    except InputError:  # the section is defined by its stiffness and has no materials
-        return []
 
 
 _Solution = TypeVar("_Solution", bound=Solution)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from beamfem.element.fields import Axis
-from beamfem.errors import InputError, UnknownStressWarning, warn
+from beamfem.errors import UnknownStressWarning, warn
 from beamfem.mesh.beam_grid import Grid
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.joined_mesh import JoinedMesh
@@ -17,7 +17,7 @@ from beamfem.results.axis_points import AxisPoints
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import imposing
 from beamfem.section.protocol import CrossSection
-from beamfem.section.thermal import expands_evenly, thermal_strain
+from beamfem.section.thermal import expands_evenly, materials_of, thermal_strain
 
 
 def von_mises(along: np.ndarray, sheared: np.ndarray) -> np.ndarray:
@@ -78,17 +78,12 @@ def strengths(grid: Grid, element: np.ndarray, xi: np.ndarray, layers: int) -> n
     """
     prismatic = isinstance(grid.beam.section, CrossSection)
     sections = [grid.beam.section_at(0.0)] if prismatic else sections_at(grid, element, xi)
-    values = np.array([_strengths(grid, section, layers) for section in sections]).T
+    rows = []
+    for section in sections:
+        own = [material.strength for material in materials_of(section, grid.beam.material)] or [None]
+        rows.append((own + own[-1:] * layers)[:layers])  # the last one counts for missing layers too
+    values = np.array(rows, dtype=float).T
     return np.broadcast_to(values, (layers, len(element))) if prismatic else values
-
-
-def _strengths(grid: Grid, section: CrossSection, layers: int) -> list[float]:
-    try:
-        known = [material.strength for material, _ in section.moments(grid.beam.material)][:layers]
-    except InputError:  # the section is defined by its stiffness and has no materials
-        return [np.nan] * layers
-    own = [np.nan if strength is None else strength for strength in known]
-    return own + [own[-1]] * (layers - len(own))
 
 
 _NAMED = 10  # beams that the warning names

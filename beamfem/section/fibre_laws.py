@@ -60,8 +60,21 @@ class FibreLawWithHistory(Protocol):
         ...
 
 
+class _Elastic:
+    """A law that begins with the moduli of an isotropic material."""
+
+    youngs_modulus: float
+    poisson_ratio: float
+    density: float
+
+    @property
+    def material(self) -> Material:
+        """The moduli of a sudden strain from zero, and the density."""
+        return Material(self.youngs_modulus, self.poisson_ratio, self.density)
+
+
 @dataclass(frozen=True)
-class ElasticPlastic:
+class ElasticPlastic(_Elastic):
     """Yields at a stress, with linear kinematic hardening: a bilinear stress-strain curve.
 
     s = E (e - ep), |s - H ep| <= sy, integrated by return mapping (Simo and Hughes 1998, 1.4.3).
@@ -103,11 +116,6 @@ class ElasticPlastic:
         _ = self.material
 
     @property
-    def material(self) -> Material:
-        """The elastic moduli and the density."""
-        return Material(self.youngs_modulus, self.poisson_ratio, self.density)
-
-    @property
     def memory(self) -> tuple[float, float]:
         """Plastic strain [-] and dissipated energy [J/m^3]."""
         return 0.0, 0.0
@@ -136,7 +144,7 @@ class ElasticPlastic:
 
 
 @dataclass(frozen=True)
-class RambergOsgood:
+class RambergOsgood(_Elastic):
     """A smooth stress-strain curve without history: e = s / E + 0.002 (s / s0)^n.
 
     Parameters
@@ -175,11 +183,6 @@ class RambergOsgood:
             raise InputError(f"exponent of RambergOsgood must be at least 1, got {self.exponent:g}")
         _ = self.material
 
-    @property
-    def material(self) -> Material:
-        """The elastic moduli and the density."""
-        return Material(self.youngs_modulus, self.poisson_ratio, self.density)
-
     def stress(self, strain: np.ndarray) -> np.ndarray:
         """Return the stress [Pa], by Newton's method from above, where the strain is a convex function of it."""
         size, n = np.abs(strain.real), self.exponent
@@ -210,7 +213,7 @@ class RambergOsgood:
 
 
 @dataclass(frozen=True)
-class Maxwell:
+class Maxwell(_Elastic):
     """A spring beside Maxwell elements: a stress that relaxes by a Prony series.
 
     s = E (1 - sum g_i) e + sum g_i E (e - a_i), t_i da_i/dt = e - a_i, integrated exactly for a strain that is linear
@@ -255,11 +258,6 @@ class Maxwell:
             raise InputError(f"branches of Maxwell need shares that sum to 1 at most, got {total:g}")
         object.__setattr__(self, "branches", tuple(rows))
         _ = self.material
-
-    @property
-    def material(self) -> Material:
-        """The moduli of a sudden strain, and the density."""
-        return Material(self.youngs_modulus, self.poisson_ratio, self.density)
 
     @property
     def memory(self) -> tuple[float, ...]:

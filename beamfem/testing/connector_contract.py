@@ -1,6 +1,7 @@
 """Check of a connector: analytic, with energies that match its forces, and constraint forces that do no work."""
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -312,17 +313,14 @@ def _require_same(
 
 def _momentum(item: Connector, motion: Motion) -> np.ndarray:
     """Return the derivative (d,) of the kinetic energy by the velocities, by complex steps."""
-    return np.array([_kinetic_rate(item, motion, dof) for dof in item.dofs.tolist()])
-
-
-def _kinetic_rate(item: Connector, motion: Motion, dof: int) -> float:
-    moved = motion[1].astype(complex)
-    moved[dof] += 1j * COMPLEX_STEP
-    try:
-        kinetic = item.energy(item.at((motion[0], moved, motion[2]), TIMES[0], gravity_of(item)))[0]
-    except InputError:  # such as float() of a complex number
-        return np.nan
-    return float(np.imag(kinetic)) / COMPLEX_STEP
+    result = np.full(len(item.dofs), np.nan)
+    for number, dof in enumerate(item.dofs.tolist()):
+        moved = motion[1].astype(complex)
+        moved[dof] += 1j * COMPLEX_STEP
+        with suppress(InputError):  # such as float() of a complex number
+            kinetic = item.energy(item.at((motion[0], moved, motion[2]), TIMES[0], gravity_of(item)))[0]
+            result[number] = float(np.imag(kinetic)) / COMPLEX_STEP
+    return result
 
 
 def _slopes(

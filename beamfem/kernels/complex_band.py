@@ -12,6 +12,7 @@ from beamfem.kernels.band import KNOWN, push
 from beamfem.kernels.compiling import Routine, routine
 from beamfem.kernels.elimination import FAST
 from beamfem.kernels.pointers import at, room
+from beamfem.kernels.simd import as_pairs, first_of, paired, second_of
 
 
 class ComplexBand(NamedTuple):
@@ -66,35 +67,34 @@ def _complex_band(known: int) -> ComplexBand:
 
 
 def _solve_known(known: int, case: str) -> Routine:
-    width = 2 * known + 1
+    width, both = 2 * known + 1, 2 * known
 
     @routine("iirrrr", case=case, fastmath={"contract"})
     def solve(n, half, re, im, x, y):
-        """Do the same as `_solve`, with the last numbers in registers."""
-        last, other = room(known), room(known)
+        """Do the same as `_solve`, with pairs of real and imaginary parts, the last ones in registers."""
+        last, turned = as_pairs(room(both)), as_pairs(room(both))  # z and i z
         for j in range(known):
-            last[j], other[j] = 0.0, 0.0
+            last[2 * j], turned[2 * j] = paired(0.0, 0.0), paired(0.0, 0.0)
         for i in range(n):
-            row_re, row_im, a, b = at(re, i * width), at(im, i * width), x[i], y[i]
+            row_re, row_im, z = at(re, i * width), at(im, i * width), paired(x[i], y[i])
             for j in range(known):
-                a = a - row_re[j] * last[j] + row_im[j] * other[j]
-                b = b - row_re[j] * other[j] - row_im[j] * last[j]
-            push(last, known, a)
-            push(other, known, b)
-            x[i], y[i] = a, b
+                z -= paired(row_re[j], row_re[j]) * last[2 * j]
+                z -= paired(row_im[j], row_im[j]) * turned[2 * j]
+            x[i], y[i] = first_of(z), second_of(z)
+            push(last, known, z)
+            push(turned, known, paired(-second_of(z), first_of(z)))
         for j in range(known):
-            last[j], other[j] = 0.0, 0.0
+            last[2 * j], turned[2 * j] = paired(0.0, 0.0), paired(0.0, 0.0)
         for i in range(n - 1, -1, -1):
-            row_re, row_im = at(re, i * width), at(im, i * width)
-            a = x[i] * row_re[known] - y[i] * row_im[known]
-            b = x[i] * row_im[known] + y[i] * row_re[known]
+            row_re, row_im, a, b = at(re, i * width), at(im, i * width), x[i], y[i]
+            c, d = row_re[known], row_im[known]
+            z = paired(a * c - b * d, a * d + b * c)
             for j in range(known):
-                c, d = row_re[2 * known - j], row_im[2 * known - j]
-                a = a - c * last[j] + d * other[j]
-                b = b - c * other[j] - d * last[j]
-            push(last, known, a)
-            push(other, known, b)
-            x[i], y[i] = a, b
+                z -= paired(row_re[2 * known - j], row_re[2 * known - j]) * last[2 * j]
+                z -= paired(row_im[2 * known - j], row_im[2 * known - j]) * turned[2 * j]
+            x[i], y[i] = first_of(z), second_of(z)
+            push(last, known, z)
+            push(turned, known, paired(-second_of(z), first_of(z)))
 
     return solve
 

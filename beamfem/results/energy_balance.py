@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 _FAST = 0.2  # (w h)^4; a vibration that alternates from step to step has 16 times its share of the kinetic energy
 _REMOVED = 0.2  # of the energy
+_OF_COLLOCATION = 3  # numbers that describe a collocation method, see `Statistics`
 _COMPARED = 100  # most steps, at equal distances, whose velocities are compared
 
 
@@ -32,12 +33,14 @@ def resolved(solution: "Solution") -> bool:
 
     It gains energy only where steps h do not resolve a vibration w that carries energy, of which three successive
     velocities v have a second difference of (w h)^2 v; for what it loses see `removal`. Where not all steps are rows,
-    (w h)^2 is that of accelerations and velocities. Laws with history are not judged: their steps dissipate too.
+    and of collocation methods, which resolve a vibration if its period is long beside the time between stages, (w h)^2
+    is that of accelerations and velocities. Laws with history are not judged: their steps dissipate too.
     """
     system, rule, steps = system_of(solution.model, static=False), solution.statistics.rule, solution.statistics.steps
     if not rule or system.history.laws:
         return False
-    if len(solution) == steps + 1:
+    collocates = len(rule) == _OF_COLLOCATION
+    if len(solution) == steps + 1 and not collocates:
         before, now, after = (solution.v[first : steps - 1 + first : 1 + steps // _COMPARED] for first in range(3))
         squares = np.array((now, before - 2.0 * now + after)) ** 2 @ system.table(masses)
         speed, change = squares.max(axis=1, initial=0.0).tolist()
@@ -49,6 +52,9 @@ def resolved(solution: "Solution") -> bool:
         speed, acceleration = squares.sum(axis=1).tolist()
         change = acceleration**2 / (speed or 1.0)
     mean = change / (speed or 1.0)
+    if collocates:
+        _, stages, share = rule
+        return bool(mean <= _FAST * stages**4 and steps * share * mean ** (0.5 * stages) <= _REMOVED)
     second, fourth = removal(rule)
     return bool(mean <= _FAST and steps * (second * sqrt(mean) + fourth * mean) <= _REMOVED)
 

@@ -55,6 +55,11 @@ class Gauss:
         """Times (s,) of the stages within a step of 1."""
         return gauss(self.stages)[0]
 
+    @property
+    def removed(self) -> float:
+        """Share of the energy of a vibration w that a step h removes, over (w h)^(2 s)."""
+        return 0.0
+
 
 def Midpoint() -> Gauss:
     """Return the implicit midpoint rule: Gauss collocation with one stage, order 2, without numerical damping.
@@ -108,6 +113,11 @@ class Radau:
         """Times (s,) of the stages within a step of 1."""
         inner = roots_jacobi(self.stages - 1, 1.0, 0.0)[0] if self.stages > 1 else np.empty(0)
         return np.append(0.5 * (inner + 1.0), 1.0)
+
+    @property
+    def removed(self) -> float:
+        """Share of the energy of a slow vibration w that a step h removes, over (w h)^(2 s)."""
+        return (factorial(self.stages - 1) / factorial(2 * self.stages - 1)) ** 2
 
 
 def is_collocation(integrator: object) -> TypeGuard[Gauss | Radau]:

@@ -39,7 +39,7 @@ class MotionSettings:
 class MotionPlan:
     """Steps and rows of a motion.
 
-    rule (5,): of a scheme, else empty; rows_at [s]: time between the multiples of the step, `times` (steps + 1,); ends
+    rule: see `Statistics`; rows_at [s]: time between the multiples of the step, `times` (steps + 1,); ends
     (m + 1,) [s]: of all steps, those at kinks of loads included, in stretches `parts`; wanted (rows,) [s]: times of the
     rows, None for all steps; acting: functions of time.
     """
@@ -104,7 +104,11 @@ def planned(model: Model, settings: MotionSettings, in_memory: bool) -> MotionPl
     system, step = system_of(model, static=False), settings.step
     refuse_frame(system, "simulate")
     rows_at = settings.duration / _PARTS if step is None else step
-    rule = require_rule(settings.integrator, rows_at) if is_scheme(settings.integrator) else ()
+    rule: tuple[float, ...] = ()
+    if is_scheme(settings.integrator):
+        rule = require_rule(settings.integrator, rows_at)
+    elif is_collocation(settings.integrator):
+        rule = (rows_at, settings.integrator.stages, settings.integrator.removed)
     require_memory(model.size if in_memory else 0, settings.duration, rows_at, settings.save_every)
     announce_compilation()
     times = rows_at * np.arange(int(np.ceil(settings.duration / rows_at - 1e-9)) + 1)

@@ -9,6 +9,7 @@ from beamfem.errors import TimeStepWarning, warn
 from beamfem.results.solution import Solution
 from beamfem.solve.start.functions_of_time import FunctionOfTime
 
+_OF_SCHEME = 5  # numbers of a rule, see `Scheme`
 _PERIODS = 2.0  # fewest in the second half of a motion that define a frequency
 _NEAR = 0.25  # of a natural frequency, within which a driven motion is near resonance
 _DETUNED = 0.1  # of a period; a response that is out of phase by less over the whole motion has hardly changed
@@ -19,7 +20,7 @@ _OF_PERIOD = 20  # fewest of these in a period; fewer can fall on the same phase
 def lengthened_period(solution: Solution) -> tuple[float, float]:
     """Return the frequency [Hz] of a motion, and by which ratio its steps lengthen the period there; nan if unknown."""
     rule = solution.statistics.rule
-    frequency = _main_frequency(solution) if rule else np.nan
+    frequency = _main_frequency(solution) if len(rule) == _OF_SCHEME else np.nan
     return frequency, period_error(rule, frequency) if frequency > 0.0 else np.nan
 
 

@@ -289,18 +289,16 @@ def _blocks(beams: Sequence[Beam]) -> tuple[tuple[Element, ...], list[int]]:
     Beams of one block have the same element, section law and damping of the mass.
     """
     blocks: dict[tuple[Element, Hashable, float], int] = {}
-    numbers = [blocks.setdefault(_block_key(beam), len(blocks)) for beam in beams]
+    laws = (None if beam.law is None else (by_value(beam.law.section), by_value(beam.law.material)) for beam in beams)
+    keys = ((beam.element, law, beam.mass_damping) for beam, law in zip(beams, laws, strict=True))
+    numbers = [blocks.setdefault(key, len(blocks)) for key in keys]
     return tuple(element for element, _, _ in blocks), numbers
-
-
-def _block_key(beam: Beam) -> tuple[Element, Hashable, float]:
-    law = beam.law
-    return beam.element, None if law is None else (by_value(law.section), by_value(law.material)), beam.mass_damping
 
 
 def _joined(model: "Model", grids: Sequence[Grid]) -> tuple[np.ndarray, np.ndarray]:
     """Return pairs (grid, node, grid, node) (n, 4) of nodes with a common rotation, and with a common position."""
-    corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]
+    cornered = [(i, grid.node) for i, grid in enumerate(grids) if grid.beam.curve.corners]
+    corners = [(i, a, i, a + 1) for i, node in cornered for a in node[:-1, -1][node[:-1, -1] != node[1:, 0]].tolist()]
     if not corners and not model.shared_joints:
         return _NO_PAIRS, _NO_PAIRS
     rigid, hinged = (_pairs(model, grids, keeps_angle) for keeps_angle in (True, False))
@@ -331,13 +329,6 @@ def _history(grid: Grid, first: int) -> np.ndarray:
         return NO_HISTORY
     shape = grid.elements, grid.beam.element.law_points, len(law.start)
     return np.arange(first, first + prod(shape), dtype=np.int64).reshape(shape)
-
-
-def _corners(grid: Grid) -> Sequence[int]:
-    """Return the first of the two nodes at each corner."""
-    if not grid.beam.curve.corners:
-        return ()
-    return grid.node[:-1, -1][grid.node[:-1, -1] != grid.node[1:, 0]].tolist()
 
 
 Pairs = Sequence[tuple[int, ...]]

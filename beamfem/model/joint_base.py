@@ -26,6 +26,5 @@ class Joint:
 
     def require_valid(self) -> None:
         """Raise InputError for invalid members of a user-defined joint."""
-        require_point_of(self, "a")
-        require_point_of(self, "b")
+        Joint.__post_init__(self)
         flag(f"keeps_angle of {type(self).__name__}", self.keeps_angle)

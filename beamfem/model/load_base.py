@@ -198,8 +198,7 @@ class PointLoad(Load):
 
     def require_valid(self) -> None:
         super().require_valid()
-        require_point_of(self)
-        flag(f"follower of {type(self).__name__}", self.follower)
+        PointLoad.__post_init__(self)
         what = f"value of {type(self).__name__}"
         value = called(what, lambda: self.value)
         if callable(value):
@@ -363,9 +362,8 @@ class LineLoad(AlongBeam, Load):
 
     def require_valid(self) -> None:
         super().require_valid()
+        LineLoad.__post_init__(self)
         kind = type(self).__name__
-        require_beam(kind, getattr(self, "beam", None))
-        check_along(self)
         one_of(f"axes of {kind}", self.axes, get_args(Axes))
         forces = forces_of(self, ends_and_middle(self.beam))
         if flag(f"uniform of {kind}", self.uniform) and np.any(forces != forces[:1]):

@@ -256,28 +256,24 @@ class Model:
         beam = place.beam if isinstance(place, Point) else place
         if beam is not None and id(beam) not in self._numbers:
             where = f" at {place}" if isinstance(place, Point) else ""
-            remedy = ", or ".join(filter(None, ("add it to beams", resembles_beam(self.beams, beam))))
-            raise UnknownPointError(f"{kind}{where} is on a beam that is not in this model; {remedy}")
+            raise self._unknown(f"{kind}{where} is on a beam that", beam, "add it to beams")
 
     def _require_touches(self) -> None:
         """Raise InputError for the first joint whose points do not coincide."""
         joints = self.shared_joints
         if not joints:
             return
-        a, b = (reference_positions([getattr(joint, name) for joint in joints]) for name in "ab")
-        gaps = np.linalg.norm(a - b, axis=1).tolist()
+        ends = (reference_positions([getattr(joint, name) for joint in joints]) for name in "ab")
+        gaps = np.linalg.norm(np.subtract(*ends), axis=1).tolist()
         for joint, gap in zip(joints, gaps, strict=True):
-            self._require_touch(joint, gap)
-
-    def _require_touch(self, joint: Joint, gap: float) -> None:
-        kind = type(joint).__name__
-        if joint.a.beam is joint.b.beam and joint.a.fraction == joint.b.fraction:
-            raise InputError(f"{kind} joins the point {joint.a} with itself")
-        if gap > GAP * max(joint.a.beam.curve.length, joint.b.beam.curve.length):
-            raise InputError(
-                f"{kind} joins {joint.a} and {joint.b}, which are {gap:g} {self.unit('m')} apart; a joint needs points "
-                f"that coincide, to {GAP:g} of the longer beam{touching(joint.a.beam, joint.b.beam)}"
-            )
+            kind, a, b = type(joint).__name__, joint.a, joint.b
+            if a.beam is b.beam and a.fraction == b.fraction:
+                raise InputError(f"{kind} joins the point {a} with itself")
+            if gap > GAP * max(a.beam.curve.length, b.beam.curve.length):
+                raise InputError(
+                    f"{kind} joins {a} and {b}, which are {gap:g} {self.unit('m')} apart; a joint needs points that "
+                    f"coincide, to {GAP:g} of the longer beam{touching(a.beam, b.beam)}"
+                )
 
     @cached_property
     def _units(self) -> Units:
@@ -365,11 +361,12 @@ class Model:
         if not isinstance(beam, Beam):
             raise InputError(f"a beam is asked for, one of the model's beams, got {shown(beam)}")
         if id(beam) not in self._numbers:
-            raise self._unknown(f"the beam {beam!r} is not in this model", beam)
+            raise self._unknown(f"the beam {beam!r}", beam)
         return self._numbers[id(beam)]
 
-    def _unknown(self, message: str, beam: Beam) -> UnknownPointError:
-        return UnknownPointError("; ".join(filter(None, (message, resembles_beam(self.beams, beam)))))
+    def _unknown(self, what: str, beam: Beam, *remedy: str) -> UnknownPointError:
+        remedies = ", or ".join(filter(None, (*remedy, resembles_beam(self.beams, beam))))
+        return UnknownPointError("; ".join(filter(None, (f"{what} is not in this model", remedies))))
 
     def mesh_of(self, point: Point) -> "BeamMesh":
         """Return the mesh that a point lies on, which is that of its beam.
@@ -379,7 +376,7 @@ class Model:
         if not isinstance(point, Point):
             raise InputError(f"a point is asked for, such as beam.end or beam.at(0.5), got {shown(point)}")
         if id(point.beam) not in self._numbers:
-            raise self._unknown(f"the point {point} is on a beam that is not in this model", point.beam)
+            raise self._unknown(f"the point {point} is on a beam that", point.beam)
         return self.meshes[self._numbers[id(point.beam)]]
 
     @cached_property

@@ -129,8 +129,8 @@ class LineSupport(Support):
         return np.asarray(0.5 * np.einsum("sqc,c,q->s", moved**2, np.array(self.stiffness), weight))
 
     def require_valid(self) -> None:
+        LineSupport.__post_init__(self)
         kind = type(self).__name__
-        require_beam(kind, getattr(self, "beam", None))
         stiffness = squared(vector)(f"stiffness of {kind}", getattr(self, "stiffness", None))
         if min(stiffness) < 0.0 or max(stiffness) == 0.0:
             raise InputError(f"the stiffness of a {kind} must not be negative, and somewhere positive, got {stiffness}")

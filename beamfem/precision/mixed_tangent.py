@@ -18,7 +18,7 @@ from beamfem.cached_properties import cached_property
 from beamfem.equations.system import System
 from beamfem.linalg.lapack import LinAlgError, superlu
 from beamfem.linalg.negative_eigenvalues import negative_eigenvalues
-from beamfem.linalg.tangent import Rotated, Stresses, Tangent, rotation_to_normals
+from beamfem.linalg.tangent import UNROTATED, Rotated, Stresses, Tangent, rotation_to_normals
 
 _FLEXIBILITY = 1e-10  # of the stiffest part, beside derivatives of strains of one
 _REFINEMENTS = 2  # make each equation accurate relative to its own terms, however large others are (Skeel 1980)
@@ -173,7 +173,6 @@ def mixed(
     factor: weight of the elastic part; loads (n,), zeros: residual and tangent without the elastic part; plain: the
     complete tangent.
     """
-    none = np.empty(0, dtype=np.int64), np.empty((0, 2))
     tables, imposing = system.strain_rates, system.imposing(time)
     rates, strain, flexible_at, positive = zip(*(table.at(p, imposing) for table in tables), strict=True)
     weight = np.concatenate([table.weight for table in tables])
@@ -186,5 +185,15 @@ def mixed(
     inverse = np.concatenate(flexible_at) / factor
     flexible = coo_array((inverse, (above, below)), shape=(len(weight),) * 2)
     places = tuple((table.shape, table.resists) for table in tables)
-    fields = zeros.sparse(none), slopes, flexible, weight, loads, np.concatenate(strain), places, sum(positive), plain
+    fields = (
+        zeros.sparse(UNROTATED),
+        slopes,
+        flexible,
+        weight,
+        loads,
+        np.concatenate(strain),
+        places,
+        sum(positive),
+        plain,
+    )
     return MixedTangent(*fields, system.scale[system.free_dofs])

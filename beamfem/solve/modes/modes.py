@@ -10,12 +10,11 @@ import numpy as np
 from beamfem.cached_properties import cached_property
 from beamfem.equations.equations import residual
 from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
-from beamfem.equations.system import Proven, system_of
+from beamfem.equations.system import system_of
 from beamfem.errors import InputError
 from beamfem.linalg.eigenpairs import Pairs, digits_for, general_pairs, nothing_known
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
-from beamfem.precision.roundoff import LOSES
 from beamfem.results.locking import stiffness_locking
 from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import may_lock, warn_of
@@ -385,16 +384,10 @@ def _general(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:
     """Return complex omega^2 (m,) and vectors (unknown, m) for an unsymmetric tangent; see `lowest_pairs`."""
     if count == 0:
         return nothing_known(pencil.size)
-    shift = pencil.shift(rigid.shape[1])
-    tangent = pencil.shifted(shift)
-    lost = pencil.lost(shift, tangent.factorised(pencil.system.rotated))
-    if lost > LOSES:
-        pencil.system.proven.add(Proven.LOSES_DIGITS)
-        shift = pencil.shift(rigid.shape[1])
+    shift, factors, lost = pencil.begin(rigid.shape[1])
     if lost > WRONG:
-        tangent = pencil.exact(shift)
+        factors = pencil.exact(shift).factorised(pencil.system.rotated)
     known = np.full(rigid.shape[1], -1.0 / shift), rigid
-    factors = tangent.factorised(pencil.system.rotated)
     reciprocal, vectors = general_pairs(pencil.mass, factors, count + _SPARE, known)
     finite = np.abs(reciprocal) > np.finfo(float).eps * np.abs(reciprocal).max()
     vectors = vectors[:, finite]

@@ -103,14 +103,16 @@ class Pencil:
         """Return how many eigenvalues of a symmetric pencil are below a value (Sylvester's law of inertia)."""
         return self.shifted(value).factorised(self.system.rotated).negative_pivots
 
-    def below_exactly(self, value: float) -> int:
-        """Return how many eigenvalues of a symmetric pencil are below a value, however close some are to it.
-
-        With contributions, only the plain tangent is available, as in `lost`.
-        """
-        if self.system.connectors.items:
-            return self.below(value)
-        return self.exact(value).factorised(self.system.rotated).negative_pivots
+    def begin(self, rigid: int) -> tuple[float, Factorised, float]:
+        """Return a shift below all eigenvalues, see `shift`, the factors of K - shift M there, and what is `lost`."""
+        shift = self.shift(rigid)
+        factors = self.shifted(shift).factorised(self.system.rotated)
+        lost = self.lost(shift, factors)
+        if lost > LOSES:
+            self.system.proven.add(Proven.LOSES_DIGITS)
+            shift = self.shift(rigid)
+            factors = self.shifted(shift).factorised(self.system.rotated)
+        return shift, factors, lost
 
     def lost(self, shift: float, factors: Factorised) -> float:
         """Return the relative error of a solution with the plain K - shift M, 0 if it is negligible.
@@ -150,18 +152,12 @@ class Pencil:
             near = self.below(size) - (self.below(-size) if self.symmetric else 0)
             low, high = (low, middle) if near > rigid else (middle, high)
         shift = -float(np.exp(high))
-        while self.symmetric and not self.clear_of(shift):
+        # Near an eigenvalue round-off decides whether a shift is below it, and its factors lose the other eigenvalues.
+        # This happens because the stiffness is odd in the load about a critical point, so that eigenvalues on one side
+        # of it coincide with a shift for the other side.
+        while self.symmetric and self.below(_AWAY * shift) > 0:
             shift *= 4.0
         return shift
-
-    def clear_of(self, shift: float) -> bool:
-        """Return whether a negative shift is below all eigenvalues of a symmetric pencil, and away from them.
-
-        Near an eigenvalue round-off decides whether a shift is below it, and its factors lose the other eigenvalues.
-        This happens because the stiffness is odd in the load about a critical point, so that eigenvalues on one side of
-        it coincide with a shift for the other side.
-        """
-        return self.below(_AWAY * shift) == 0
 
 
 _CLUSTER = 1e-9  # eigenvalues with a smaller relative distance cannot be counted separately
@@ -204,7 +200,9 @@ def _below(pencil: Pencil, squares: np.ndarray, cut: float, rigid: int) -> int:
     The round-off of the plain tangent moves its eigenvalues, so that those near the cut would be counted at random.
     """
     near = np.abs(squares - cut).min() <= LOSES * abs(cut)
-    return (pencil.below_exactly(cut) if near else pencil.below(cut)) - (rigid if cut > 0.0 else 0)
+    # with connectors, only the plain tangent is available
+    tangent = pencil.exact(cut) if near and not pencil.system.connectors.items else pencil.shifted(cut)
+    return tangent.factorised(pencil.system.rotated).negative_pivots - (rigid if cut > 0.0 else 0)
 
 
 _SPARE = 4  # eigenvalues found beyond those asked for, so that a gap can be seen
@@ -223,15 +221,8 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:
     n, available = pencil.mass.shape[0], pencil.size - rigid.shape[1]
     if count == 0:
         return nothing_known(n)
-    start = pencil.shift(rigid.shape[1])
-    factors = pencil.shifted(start).factorised(pencil.system.rotated)
-    lost = pencil.lost(start, factors)
-    if lost > LOSES:
-        pencil.system.proven.add(Proven.LOSES_DIGITS)
-        start = pencil.shift(rigid.shape[1])
-        factors = pencil.shifted(start).factorised(pencil.system.rotated)
-    wanted = min(count + _SPARE, available)
-    known = rigid
+    start, factors, lost = pencil.begin(rigid.shape[1])
+    wanted, known = min(count + _SPARE, available), rigid
     correction = np.zeros_like(pencil.p)
     correction[pencil.system.free_dofs] = -factors.solve(pencil.unbalanced)
     pairs, missing = nothing_known(n), wanted

@@ -78,24 +78,17 @@ def _sure(system: System, p: np.ndarray, load_factor: float) -> bool:
         unbalanced = np.abs(system.along_free(residual_at_rest(system, p, load_factor)))
         if np.all(unbalanced <= row_floors(system, p)[system.free_dofs]):
             return True
-    if digits_of(system, p, load_factor) >= 1.0:
-        return True
-    if remainder(system, p, load_factor).digits >= 1.0:
+    if digits_of(system, p, load_factor) >= 1.0 or remainder(system, p, load_factor).digits >= 1.0:
         return True
     # where a structure was unloaded, no force is left to compare with, but the movement that is missing may be nothing
     moved = float(np.max(np.abs(p - system.reference) / system.scale, initial=0.0))
-    return _missing(system, p, load_factor) <= max(_SAME * moved, _LAST_DIGIT)
-
-
-def _missing(system: System, p: np.ndarray, load_factor: float) -> float:
-    """Return the size of the correction, relative to the model, that balances a state (n,); inf if none does."""
     free = system.free_dofs
     unbalanced, tangent = linearise_at_rest(system, p, load_factor)
     try:
         step = tangent.factorised(system.rotated).solve(-unbalanced[free])
     except LinAlgError:
-        return np.inf
-    return float(np.max(np.abs(step) / system.scale[free], initial=0.0))
+        return False
+    return float(np.max(np.abs(step) / system.scale[free], initial=0.0)) <= max(_SAME * moved, _LAST_DIGIT)
 
 
 _STATE = 3 * 8  # bytes of a coordinate: p, p', p''

@@ -51,13 +51,14 @@ def rest_state(
     for _ in range(_STEPS):
         if time < shortest:
             break
-        moved, used = _step(system, p, load_factor, time)
-        iterations += used
-        size = np.inf if moved is None else _size(system, moved - p)
-        if moved is None or size > _LARGEST_MOVE:
+        step = _EulerStep(system, p, load_factor, time)
+        stepped = iterate(step, _ITERATIONS)
+        iterations += stepped.iterations
+        size = _size(system, step.state - p)
+        if not stepped.ended.good or size > _LARGEST_MOVE:
             time *= 0.5
             continue
-        p = moved
+        p = step.state
         if _size(system, p - limit[:-1]) > farthest:
             break
         time *= 2.0
@@ -84,13 +85,6 @@ def same_point(system: System, one: np.ndarray, other: np.ndarray) -> bool:
     changes = [np.abs(a - b) for a, b in zip(*nodes, strict=True)]
     positions = max(float(change[:, :2].max()) for change in changes) / system.extent
     return max(positions, *(float(change[:, 2:].max()) for change in changes)) < _SAME_PLACE
-
-
-def _step(system: System, p: np.ndarray, load_factor: float, time: float) -> tuple[np.ndarray | None, int]:
-    """Return the state after an implicit Euler step, None if Newton's method fails; and the iterations."""
-    step = _EulerStep(system, p, load_factor, time)
-    stepped = iterate(step, _ITERATIONS)
-    return step.state if stepped.ended.good else None, stepped.iterations
 
 
 class _EulerStep(SingleCorrections):
@@ -159,13 +153,12 @@ def leave(system: System, done: StaticRecord, at: BifurcatesError, end: float, n
     if not result.ended.good:
         raise LimitPointError(f"{at}, and no state of rest was found beyond it", load_factor, done.solution())
     done.add(float(start[-1]), result.state, 0, result.ended, result.digits)
-    moved = _farthest(system, result.state - start[:-1])
-    done.left.append(f"{at}, which it leaves for the stable state in which {moved}")
-
-
-def _farthest(system: System, change: np.ndarray) -> str:
-    """Return the node that a change (n,) moves farthest, by its place in the reference, and its displacement."""
+    change = result.state - start[:-1]
     nodes = np.concatenate([block.dof[:, :2] for block in system.blocks])
     x, y = nodes[np.argmax(np.hypot(*change[nodes].T))]
     place, moved = (f"({a[x]:.4g}, {a[y]:.4g})" for a in (system.reference, change))
-    return f"the node at {place} {system.model.unit('m')} is displaced by a further {moved} {system.model.unit('m')}"
+    unit = system.model.unit("m")
+    done.left.append(
+        f"{at}, which it leaves for the stable state in which the node at {place} {unit} is displaced by a further "
+        f"{moved} {unit}"
+    )

@@ -129,14 +129,10 @@ def solve_static(
         return _rows_at(through, load_factors)
 
     if accuracy is None and not system_of(model, static=True).model.automatic:
-        return _judged(solve(model))
+        return warned_of_coarse_mesh(warned(solve(model)))
     wanted = positive("accuracy", DEFAULT if accuracy is None else accuracy)
-    return _judged(refined_until(model, wanted, lambda model: static_attempt(solve(model), quantity)))
-
-
-def _judged(solution: Solution) -> Solution:
-    """Return a solution that has just been found, after warnings of what is wrong with it."""
-    return warned_of_coarse_mesh(warned(solution))
+    refined = refined_until(model, wanted, lambda model: static_attempt(solve(model), quantity))
+    return warned_of_coarse_mesh(warned(refined))
 
 
 def _ascending(at: Sequence[float] | np.ndarray) -> list[float]:
@@ -303,18 +299,14 @@ def nothing_acts(system: System) -> bool:
         # a load below the round-off of stiff rows may still bend the beam
         moved = system.moved and system.prescribed_changes(0.0).any()
         acts = not system.proportional and system.loads_at(0.0).any
-        if moved or acts or not _free_of_force(system):
+        if moved or acts:
             return False
+        if system.connectors.items or any(block.law is not None for block in system.blocks):  # may have forces there
+            p = system.reference
+            if np.any(np.abs(residual_at_rest(system, p, 0.0)) > row_floors(system, p)):
+                return False
         system.proven.add(Proven.NOTHING_ACTS_AT_ZERO)
     return True
-
-
-def _free_of_force(system: System) -> bool:
-    """Return whether user-defined section laws and connectors have no stiffness in the reference."""
-    if not system.connectors.items and all(block.law is None for block in system.blocks):
-        return True
-    p = system.reference
-    return bool(np.all(np.abs(residual_at_rest(system, p, 0.0)) <= row_floors(system, p)))
 
 
 def _grown(system: System, newton: Newton, failed: NewtonResult) -> NewtonResult:

@@ -16,7 +16,7 @@ from scipy.linalg import LinAlgError
 from beamfem.cached_properties import cached_property
 from beamfem.equations.equations import linearise_at_rest, residual_at_rest
 from beamfem.solve.continuation.continuation import Continuation, PathPoint
-from beamfem.solve.continuation.critical_points import Segment, SegmentLostError, interpolation_weights
+from beamfem.solve.continuation.critical_points import DISTANCE, Segment, SegmentLostError, interpolation_weights
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
 
 
@@ -57,7 +57,6 @@ _RESOLVED = 1e-2  # of the distance of samples: closer bifurcations may be one
 _ONE = 1e-7  # of the distance of samples: closer bifurcations are one, whatever the counts say
 _WIDTH = 1e-3  # of the distance of samples: step of differences of interpolated values
 _ALONG = 1e-3  # of a tangent: the part that may lie outside the span of the modes
-_AROUND = 5e-3  # of a segment: samples around a turning point
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,16 +198,13 @@ def turning_point(segment: Segment, x: float) -> Crossing:
 
     There the path is tangential to the mode. Raises SegmentLostError.
     """
-    line, fractions = segment.line, segment.beside(x, x, _AROUND, 0.0, 1.0)
-    weights = interpolation_weights(fractions, x)
-    points = [segment.at(at) for at in fractions.tolist()]
+    line = segment.line
+    fractions, _, points = segment.around(x)
     _require_straight(segment, fractions - x, points)
-    tangent = weights @ [point.tangent for point in points]
+    y, tangent = segment.interpolated(x)
     tangent /= line.length(tangent)
-    mode = np.append(tangent[:-1], 0.0)
-    largest = mode[np.argmax(np.abs(mode) / line.scale)]
-    mode /= np.copysign(line.length(mode), largest)
-    y = segment.balanced(weights @ [point.y for point in points], [mode])
+    (mode,) = _orthonormal(line, [np.append(tangent[:-1], 0.0)])
+    y = segment.balanced(y, [mode])
     # a limit point near a bifurcation: a second mode is as soft, and as unreliable
     with suppress(LinAlgError):
         y = segment.balanced(y, list(line.softest_modes(line.solve(y, None)[2], 2)))
@@ -220,7 +216,7 @@ def _require_straight(segment: Segment, fractions: np.ndarray, points: list[Path
 
     Unbalanced forces move the points as well.
     """
-    line, scaled = segment.line, fractions / _AROUND
+    line, scaled = segment.line, fractions / DISTANCE
     basis = np.stack([np.ones_like(scaled), scaled, scaled**2, 1.0 / scaled], axis=1)
     bend = np.linalg.lstsq(basis, np.array([point.y for point in points]))[0][-1]
     moved = max(line.length(line.solve(point.y, None)[0]) for point in points)
@@ -233,9 +229,7 @@ def without_limit(segment: Segment, x: float, found: list[Crossing]) -> list[Cro
 
     There the path is tangential to the mode. Raises SegmentLostError.
     """
-    line = segment.line
-    fractions = segment.beside(x, x, _AROUND, 0.0, 1.0)
-    along = interpolation_weights(fractions, x) @ [segment.at(at).tangent for at in fractions.tolist()]
+    line, along = segment.line, segment.interpolated(x)[1]
     along[-1] = 0.0
     nearest = sorted(found, key=lambda crossing: abs(crossing.fraction - x))
     for count in range(1, len(nearest) + 1):
@@ -253,7 +247,6 @@ _SHARPEST = 1.0  # [rad] per segment: turn of the tangent beside a limit point; 
 _REAL = 1e-6  # of an eigenvalue: imaginary part that is round-off
 _WINDOW = 0.1  # of a segment: around a limit point that coincides with a bifurcation
 _JUMP = 1e-3  # of a segment: points further apart than this at nearly equal fractions lie on two paths
-DISTANCE = 5e-3  # of the searched part of a segment: least distance of samples from a bifurcation
 _TOGETHER = 4.0  # of the distance: bifurcations closer than this are located together
 _SHARPNESS = 1e-5  # of a segment: shorter parts are not divided further
 _CLEAR = 0.02  # of a segment: in shorter parts, condensed stiffness and pivot counts must agree

@@ -2,6 +2,7 @@
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -11,7 +12,7 @@ from beamfem.equations.equations import linearise_at_rest, load_change, predicte
 from beamfem.equations.imposed_forces import imposed_forces
 from beamfem.equations.system import System
 from beamfem.errors import ConvergenceError, InputError
-from beamfem.linalg.tangent import Factorised
+from beamfem.linalg.tangent import Factorised, Stresses
 from beamfem.precision.roundoff import loses_digits
 from beamfem.solve.newton.newton import Balance, Equilibrium, Newton, SingleCorrections, Termination, balance_of
 from beamfem.solve.start.functions_of_time import FunctionOfTime, functions_of_time
@@ -24,8 +25,6 @@ _STEEPER = 2.0  # ratio of the effect of loads per load factor further on to tha
 _GROWS_WELL = 0.3  # fraction of the load factor in the unit tangent
 _INVERSE_ITERATIONS = 30
 _STILL = 1e-7  # of a mode: change per iteration below which it has converged
-
-Stresses = tuple[np.ndarray, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,8 +44,7 @@ class PathPoint:
         return self.factors.negative_pivots
 
 
-@dataclass(frozen=True, eq=False)
-class Corrected:
+class Corrected(NamedTuple):
     """The last y (n + 1,) of an iteration, how many iterations it took and why it ended.
 
     negative_pivots: fewest and most of the tangents during the iteration, if they were counted.
@@ -55,7 +53,7 @@ class Corrected:
     y: np.ndarray
     iterations: int
     ended: Termination
-    negative_pivots: tuple[int, int] = (0, 0)
+    negative_pivots: tuple[int, int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,7 +168,7 @@ class Continuation:
 
     def softest(self, factors: Factorised) -> np.ndarray:
         """Return the unit change of y (n + 1,) with the smallest stiffness; its largest coordinate is positive."""
-        mode = self.softest_modes(factors, 1)[0]
+        (mode,) = self.softest_modes(factors, 1)
         return np.asarray(mode * np.sign(mode[np.argmax(np.abs(mode) / self.scale)]))
 
     def softest_modes(self, factors: Factorised, count: int) -> np.ndarray:
@@ -228,10 +226,9 @@ class Continuation:
 
 
 class _InPlane(SingleCorrections, Equilibrium):
-    """The equilibrium in the plane through `start` (n + 1,) normal to `normal` (n + 1,), with unknown load factor.
+    """The equilibrium in a plane, with unknown load factor, see `Continuation.correct`.
 
-    stresses: for the first geometric tangent; farthest: length of the correction beyond which the iteration is given
-    up; counts: fewest and most negative pivots so far.
+    counts: fewest and most negative pivots so far.
     """
 
     def __init__(

@@ -14,7 +14,7 @@ from beamfem.solve.newton.newton import balance_of
 
 _SHARPNESS = 1e-12  # of a segment: accuracy of the fractions of critical points
 _LEVEL = 1e-4  # largest slope of the load factor accepted at a limit point
-_DISTANCE = 5e-3  # of a part of a segment: least distance of samples from a crossing path
+DISTANCE = 5e-3  # of a part of a segment: least distance of samples from a crossing path
 _NEARLY = 0.3  # of the smaller slope of the load factor at the ends: with less in between there may be two limit points
 _TRIALS = 12
 _BALANCINGS = 4
@@ -76,9 +76,13 @@ class Segment:
 
     def interpolated(self, x: float) -> tuple[np.ndarray, np.ndarray]:
         """Return y (n + 1,) and the tangent (n + 1,) at a fraction from those beside it. Raises SegmentLostError."""
-        fractions = self.beside(x, x, _DISTANCE, 0.0, 1.0)
-        weights, points = interpolation_weights(fractions, x), [self.at(at) for at in fractions.tolist()]
+        _, weights, points = self.around(x)
         return weights @ [point.y for point in points], weights @ [point.tangent for point in points]
+
+    def around(self, x: float) -> tuple[np.ndarray, np.ndarray, list[PathPoint]]:
+        """Return fractions (s,) beside another one, the weights by which values there give its own, and the points."""
+        fractions = self.beside(x, x, DISTANCE, 0.0, 1.0)
+        return fractions, interpolation_weights(fractions, x), [self.at(at) for at in fractions.tolist()]
 
     def balanced(self, y: np.ndarray, modes: Sequence[np.ndarray]) -> np.ndarray:
         """Return an interpolated y (n + 1,), better balanced in directions orthogonal to its critical modes (k, n + 1).
@@ -97,7 +101,7 @@ class Segment:
                 step, _, _ = line.solve(y, None)
                 for mode in modes:
                     step -= line.dot(mode, step) * mode
-                if line.length(step) > _DISTANCE * line.length(self.chord):
+                if line.length(step) > DISTANCE * line.length(self.chord):
                     break
                 y = y + step
         except LinAlgError:
@@ -115,8 +119,7 @@ class Segment:
 
         No equilibrium can be solved for there; it is interpolated from the points beside it. Raises SegmentLostError.
         """
-        x = self._fraction(load_factor)
-        points = np.array([self.at(at).y for at in self.beside(x, x, _DISTANCE, 0.0, 1.0).tolist()])
+        points = np.array([point.y for point in self.around(self._fraction(load_factor))[2]])
         y = self.balanced(interpolation_weights(points[:, -1], load_factor) @ points, modes)
         y[-1] = load_factor
         return PathPoint(y, self.before.tangent, self.before.factors)
@@ -130,17 +133,13 @@ class Segment:
 
     def _stresses(self, x: float) -> tuple[np.ndarray, ...] | None:
         """Return the stress resultants from a cubic whose slopes at the ends are those along the path."""
-        zeros = np.zeros(len(self.chord))
-        now = [self.line.stresses(point.y, zeros) for point in (self.before, self.after)]
-        ahead = [
-            self.line.stresses(p.y, slope) for p, slope in zip((self.before, self.after), self.slopes, strict=True)
-        ]
-        if now[0] is None or now[1] is None or ahead[0] is None or ahead[1] is None:
+        ends, zeros = (self.before, self.after), np.zeros(len(self.chord))
+        now = [self.line.stresses(point.y, zeros) for point in ends]
+        ahead = [self.line.stresses(point.y, slope) for point, slope in zip(ends, self.slopes, strict=True)]
+        known = [stresses for stresses in (*now, *ahead) if stresses is not None]
+        if len(known) < 4:
             return None
-        return tuple(
-            _cubic(x, a, b, a_ahead - a, b_ahead - b)
-            for a, b, a_ahead, b_ahead in zip(now[0], now[1], ahead[0], ahead[1], strict=True)
-        )
+        return tuple(_cubic(x, a, b, c - a, d - b) for a, b, c, d in zip(*known, strict=True))
 
     def limit_points(self) -> list[float]:
         """Return the fractions x where the load factor has an extremum, in order. Raises SegmentLostError.
@@ -218,11 +217,11 @@ class Segment:
         samples = np.array([start, end])
         x = _zero([self.at(at).tangent[-1] for at in samples], samples)
         for _ in range(_TRIALS):
-            samples = self.beside(x, x, _DISTANCE * (end - start), start, end)
+            samples = self.beside(x, x, DISTANCE * (end - start), start, end)
             before, x = x, _zero([self.at(at).tangent[-1] for at in samples], samples)
             if not start <= x <= end:
                 break
-            if abs(x - before) < 0.1 * _DISTANCE * (end - start):
+            if abs(x - before) < 0.1 * DISTANCE * (end - start):
                 return x, samples
         raise SegmentLostError("the load factor has an extremum that was not located")
 

@@ -109,6 +109,11 @@ class Newton:
             )
 
 
+def largest_change(system: System, change: np.ndarray) -> float:
+    """Return the largest scaled component of a change (n,) of the coordinates: lengths of the model, radians."""
+    return float(np.max(np.abs(change) / system.scale, initial=0.0))
+
+
 def require_newton(newton: Newton | None, default: Newton) -> Newton:
     """Return the given Newton, or the default for None. Raises InputError for anything else."""
     if newton is None:
@@ -214,7 +219,7 @@ def _settled(system: System, p: np.ndarray, correction: Correction) -> bool:
     """Return whether the next correction, at the present rate, is small relative to the movement or below round-off."""
     size, before = correction.size, correction.before
     following = size * min(size / before, 1.0) if correction.number > 1 else size
-    moved = float((np.abs(p - system.reference) / system.scale).max(initial=0.0))
+    moved = largest_change(system, p - system.reference)
     lasting = max(_SURE * moved, _EPS * float((np.abs(p) / system.scale).max(initial=1.0)))
     return correction.stagnates or following <= lasting
 
@@ -441,7 +446,7 @@ class PivotedProblem(SingleCorrections, Equilibrium):
         self.state = p + step
         if self.taken == 0:
             self.linear = self.state
-        return float(np.max(np.abs(step) / system.scale, initial=0.0)), factors.negative_pivots
+        return largest_change(system, step), factors.negative_pivots
 
     def _with_active_set(self, unbalanced: np.ndarray, tangent: Tangent) -> _Solved:
         """Return what `_solved` does with the set of one-sided conditions that the solution itself shows.
@@ -456,7 +461,7 @@ class PivotedProblem(SingleCorrections, Equilibrium):
                 for _ in range(_MOST_SETS):
                     left = released(system, p, unbalanced, gradients, inactive)
                     solved = self._solved(left, without(system, tangent, inactive))
-                    held = bool(np.max(np.abs(solved.step) / system.scale) <= LARGEST)
+                    held = largest_change(system, solved.step) <= LARGEST
                     before, inactive = inactive, inactive_after(system, p, solved.step, unbalanced, gradients, inactive)
                     if not held or np.array_equal(before, inactive):
                         break

@@ -21,9 +21,9 @@ from beamfem.results.solution_checks import advice, may_lock, warn_of
 from beamfem.results.status import Finding, Statistics, Status
 from beamfem.solve.accuracy.adapted_mesh import Shares, prepared, refined_until, require_unlocked
 from beamfem.solve.accuracy.error_estimate import enriched, enriched_state
-from beamfem.solve.continuation.bifurcations import DISTANCE, Crossing, bifurcations, condensed
+from beamfem.solve.continuation.bifurcations import Crossing, bifurcations, condensed
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
-from beamfem.solve.continuation.critical_points import Segment, SegmentLostError, interpolation_weights
+from beamfem.solve.continuation.critical_points import DISTANCE, Segment, SegmentLostError, interpolation_weights
 from beamfem.solve.continuation.steps import Refused, Step, longest_accepted, longest_step, take_step
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.newton.newton import Newton, Termination

@@ -14,7 +14,7 @@ from beamfem.precision.roundoff import ENOUGH, digits_of, largest_force
 from beamfem.progress import progress
 from beamfem.results.solution_checks import advice, may_turn_back, turned_back
 from beamfem.solve.continuation.steps import leaves_arc
-from beamfem.solve.newton.newton import Newton, NewtonResult, Termination, solve_equilibrium
+from beamfem.solve.newton.newton import Newton, NewtonResult, Termination, largest_change, solve_equilibrium
 from beamfem.solve.start.mechanisms import free_when_open
 from beamfem.solve.statics.load_path import (
     BifurcatesError,
@@ -105,7 +105,7 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
         if result.linear != done.negative_pivots:
             return True
     if done.reached > 0.0:
-        moved = _moved(system, result.state, done.state)
+        moved = largest_change(system, result.state - done.state)
         if result.first > _OVERSHOOT * moved + newton.tolerance:
             return True
     if result.iterations < _SLOW:
@@ -129,13 +129,9 @@ def is_short(system: System, done: StaticRecord, target: float, state: np.ndarra
     if len(done.rows) < 2:
         return False
     (before, last, _), (at, now, _) = done.rows[-2:]
-    expected = _moved(system, now, last) * (target - at) / (at - before) if at > before else 0.0
-    moved = expected if state is None else _moved(system, state, now)
-    return moved <= min(_SHORT * _moved(system, now, system.reference), _OVERSHOOT * expected)
-
-
-def _moved(system: System, p: np.ndarray, before: np.ndarray) -> float:
-    return float(np.max(np.abs(p - before) / system.scale))
+    expected = largest_change(system, now - last) * (target - at) / (at - before) if at > before else 0.0
+    moved = expected if state is None else largest_change(system, state - now)
+    return moved <= min(_SHORT * largest_change(system, now - system.reference), _OVERSHOOT * expected)
 
 
 def _constant_forces(system: System, load_factor: float) -> bool:
@@ -345,7 +341,7 @@ def _merges(follower: PathFollower, done: StaticRecord, point: np.ndarray, beyon
     below = [(state, count) for at, state, count in done.rows if at <= 2.0 * load_factor - target]
     if not below or below[-1][1] != 0 or target <= load_factor:
         return False
-    farthest = float(np.max(np.abs(below[-1][0] - point[:-1]) / follower.system.scale))
+    farthest = largest_change(follower.system, below[-1][0] - point[:-1])
     if farthest == 0.0:  # at rest until the load jumps: no movement before to compare with
         return False
     result = rest_state(follower.system, np.append(point[:-1], target), beyond, follower.newton, farthest)

@@ -13,6 +13,7 @@ from beamfem.solve.newton.newton import (
     SingleCorrections,
     Termination,
     iterate,
+    largest_change,
     solve_equilibrium,
 )
 from beamfem.solve.statics.load_path import LOCATED, BifurcatesError
@@ -40,7 +41,7 @@ def rest_state(
     load_factor, free = float(limit[-1]), system.free_dofs
     aside = np.zeros(len(limit) - 1)
     aside[free] = (beyond - limit)[:-1][free]
-    aside *= min(1.0, min(_LARGEST_MOVE, 0.5 * farthest) / _size(system, aside))
+    aside *= min(1.0, min(_LARGEST_MOVE, 0.5 * farthest) / largest_change(system, aside))
     p = limit[:-1] + aside
     p[system.prescribed_dofs] = system.prescribed_values(load_factor)
     mass = _mass(system, p, load_factor)
@@ -54,12 +55,12 @@ def rest_state(
         step = _EulerStep(system, p, load_factor, time)
         stepped = iterate(step, _ITERATIONS)
         iterations += stepped.iterations
-        size = _size(system, step.state - p)
+        size = largest_change(system, step.state - p)
         if not stepped.ended.good or size > _LARGEST_MOVE:
             time *= 0.5
             continue
         p = step.state
-        if _size(system, p - limit[:-1]) > farthest:
+        if largest_change(system, p - limit[:-1]) > farthest:
             break
         time *= 2.0
         waits += 1
@@ -67,8 +68,8 @@ def rest_state(
             waits, wait = 0, 2 * wait + 1  # Newton's method costs several steps: if it fails, the next attempt waits
             result = solve_equilibrium(system, p, load_factor, newton, keep=0)
             iterations += result.iterations
-            near = _size(system, result.state - p) < _LARGEST_MOVE
-            near &= _size(system, result.state - limit[:-1]) <= farthest
+            near = largest_change(system, result.state - p) < _LARGEST_MOVE
+            near &= largest_change(system, result.state - limit[:-1]) <= farthest
             if result.ended.good and result.negative_pivots == 0 and near:
                 return NewtonResult(result.state, iterations, result.ended)
     return NewtonResult(p, iterations, Termination.EXHAUSTED)
@@ -109,7 +110,7 @@ class _EulerStep(SingleCorrections):
         if correction.diverges:
             return Termination.DIVERGED
         unstable = self.system.symmetric and correction.negative_pivots > 0
-        moved = _size(self.system, self.state - self.before)
+        moved = largest_change(self.system, self.state - self.before)
         small = correction.size <= _CLOSE + (1e-3 * moved if correction.number > 1 else 0.0)
         if unstable and (small or correction.number == 1):
             return Termination.LOST
@@ -119,10 +120,6 @@ class _EulerStep(SingleCorrections):
 def _mass(system: System, p: np.ndarray, load_factor: float) -> np.ndarray:
     zeros = np.zeros(len(p))
     return linearise(system, p, zeros, zeros, load_factor, INERTIA)[1].sparse(UNROTATED)
-
-
-def _size(system: System, change: np.ndarray) -> float:
-    return float(np.max(np.abs(change) / system.scale))
 
 
 BESIDE = 1e-4  # of the load factor of a critical point, which is located to about 1e-8
@@ -147,7 +144,7 @@ def leave(system: System, done: StaticRecord, at: BifurcatesError, end: float, n
         done.rows[-1] = load_factor, done.state, 0
     start = np.append(at.y[:-1], min((1.0 + BESIDE) * load_factor, end))
     way = _RATIO ** np.arange(len(at.modes)) @ at.modes
-    way *= _ASIDE / float(np.max(np.abs(way[:-1]) / system.scale))
+    way *= _ASIDE / largest_change(system, way[:-1])
     result = rest_state(system, start, start + way, newton)
     done.iterations += result.iterations
     if not result.ended.good:

@@ -24,7 +24,14 @@ from beamfem.solve.accuracy.adapted_mesh import DEFAULT, refined_until, static_a
 from beamfem.solve.accuracy.coarse_mesh import warned_of_coarse_mesh
 from beamfem.solve.accuracy.error_estimate import Quantity
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
-from beamfem.solve.newton.newton import Newton, NewtonResult, Termination, require_newton, solve_equilibrium
+from beamfem.solve.newton.newton import (
+    Newton,
+    NewtonResult,
+    Termination,
+    largest_change,
+    require_newton,
+    solve_equilibrium,
+)
 from beamfem.solve.start.functions_of_time import SAME as NEAR
 from beamfem.solve.start.functions_of_time import (
     functions_of_time,
@@ -287,7 +294,7 @@ def first_equilibrium(system: System, newton: Newton) -> NewtonResult:
     if at_rest:
         return NewtonResult(system.reference, 0, Termination.CONVERGED)
     result = solve_equilibrium(system, system.reference, 0.0, newton, keep=0)
-    moved = float(np.max(np.abs(result.state - system.reference) / system.scale, initial=0.0))
+    moved = largest_change(system, result.state - system.reference)
     if result.ended is Termination.NO_DIGITS and moved <= np.finfo(float).eps:  # as by the tail of a pulse
         return NewtonResult(system.reference, result.iterations, Termination.CONVERGED)
     return result if result.ended.good else _grown(system, newton, result)

@@ -52,14 +52,13 @@ def rest_state(
     for _ in range(_STEPS):
         if time < shortest:
             break
-        step = _EulerStep(system, p, load_factor, time)
-        stepped = iterate(step, _ITERATIONS)
-        iterations += stepped.iterations
-        size = largest_change(system, step.state - p)
-        if not stepped.ended.good or size > _LARGEST_MOVE:
+        moved, used = _step(system, p, load_factor, time)
+        iterations += used
+        size = np.inf if moved is None else largest_change(system, moved - p)
+        if moved is None or size > _LARGEST_MOVE:
             time *= 0.5
             continue
-        p = step.state
+        p = moved
         if largest_change(system, p - limit[:-1]) > farthest:
             break
         time *= 2.0
@@ -86,6 +85,13 @@ def same_point(system: System, one: np.ndarray, other: np.ndarray) -> bool:
     changes = [np.abs(a - b) for a, b in zip(*nodes, strict=True)]
     positions = max(float(change[:, :2].max()) for change in changes) / system.extent
     return max(positions, *(float(change[:, 2:].max()) for change in changes)) < _SAME_PLACE
+
+
+def _step(system: System, p: np.ndarray, load_factor: float, time: float) -> tuple[np.ndarray | None, int]:
+    """Return the state after an implicit Euler step, None if Newton's method fails; and the iterations."""
+    step = _EulerStep(system, p, load_factor, time)
+    stepped = iterate(step, _ITERATIONS)
+    return step.state if stepped.ended.good else None, stepped.iterations
 
 
 class _EulerStep(SingleCorrections):

@@ -191,3 +191,41 @@ def test_a_prescribed_motion_within_a_step_is_named():
     ):
         solution = bf.simulate(model, 0.01, 1e-3)
     assert "varies within steps" in solution.statistics.ended
+
+
+def test_a_pendulum_on_a_trolley_of_constant_speed_swings_as_on_a_fixed_pin():
+    """In a frame that moves with it, Newton's laws are the same."""
+    rod = bf.Beam(bf.Line((0, 0), (0.5, 0)), 2, bf.CRBF(3), bf.Rectangle(0.02, 0.02), STEEL)
+    weight, speed = bf.Gravity((0, -9.81)), np.array([3.0, -0.5])
+    trolley = bf.Prescribed(rod.start, vx=lambda time: speed[0], vy=speed[1])
+    riding, held = bf.Model([rod], [trolley], [weight]), bf.Model([rod], [bf.Pin(rod.start)], [weight])
+    motion = bf.simulate(riding, 0.5, 1e-3, velocity=bf.RigidVelocity(tuple(speed)))
+    still = bf.simulate(held, 0.5, 1e-3)
+    moved = motion.position(rod.end) - np.outer(motion.time, speed)
+    assert moved == pytest.approx(still.position(rod.end), abs=1e-7)
+    assert motion.velocity(rod.start) == pytest.approx(np.tile(speed, (len(motion), 1)), abs=1e-9)
+
+
+def test_a_prescribed_angular_velocity_is_that_of_a_motor():
+    """It turns by its integral, and starts with its value."""
+    arm = bf.Beam(bf.Line((0, 0), (0.5, 0)), 2, bf.CRBF(3), bf.Rectangle(0.02, 0.02), STEEL)
+
+    def speed(time):
+        return 2.0 + np.sin(5.0 * time)
+
+    driven = bf.Model([arm], [bf.Pin(arm.start), bf.Prescribed(arm.start, angular=speed)])
+    motors = bf.Model([arm], [bf.Pin(arm.start)], [bf.Motor(arm.start, speed=speed)])
+    one, other = (bf.simulate(model, 0.3, 1e-3, velocity=bf.RigidVelocity(angular=2.0)) for model in (driven, motors))
+    assert one.rotation(arm.start) == pytest.approx(2.0 * one.time + (1 - np.cos(5.0 * one.time)) / 5.0, abs=1e-12)
+    assert one.p == pytest.approx(other.p, abs=1e-12)
+    assert np.hypot(*one.velocity(arm.end)[0]) == pytest.approx(1.0, rel=1e-9)
+    static = bf.solve_static(driven.with_(supports=[bf.Clamp(arm.end), bf.Prescribed(arm.start, vy=-1e-4)]), steps=2)
+    assert static.displacement(arm.start)[:, 1] == pytest.approx([0.0, -5e-5, -1e-4], abs=1e-12)
+
+
+def test_a_displacement_and_its_rate_are_not_both_prescribed():
+    arm = bf.Beam(bf.Line((0, 0), (0.5, 0)), 2, bf.CRBF(3), bf.Rectangle(0.02, 0.02), STEEL)
+    with pytest.raises(bf.InputError, match="takes uy or vy, not both"):
+        bf.Prescribed(arm.start, uy=0.0, vy=1.0)
+    with pytest.raises(bf.InputError, match="at least one of ux, uy, rotation, vx, vy and angular"):
+        bf.Prescribed(arm.start)

@@ -16,6 +16,7 @@ from beamfem.results.batched_beams import LikeBeams, equal_beams
 from beamfem.results.beam_stress import stress_at
 from beamfem.results.energies import Energy
 from beamfem.results.solution import Solution
+from beamfem.validation import flag
 
 if TYPE_CHECKING:
     from beamfem.solve.modes.modes import Modes
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 
 _PIECES = 4  # of an element between neighbouring points
+_ALONG = ("rotation", "normal", "shear", "moment", "axial_strain", "shear_angle")
 _STRESSES = {
     "lower": "normal stress at the lower face",
     "upper": "normal stress at the upper face",
@@ -33,7 +35,7 @@ Variable = tuple[tuple[str, ...], np.ndarray, dict[str, str]]
 Variables = dict[str, Variable]
 
 
-def arrays(solution: Solution, beam: Beam | None) -> tuple[Variables, Variables]:
+def arrays(solution: Solution, beam: Beam | None, errors: bool = False) -> tuple[Variables, Variables]:
     """Return data and coordinates by name: dimensions, values, and attributes with `units` and `long_name`.
 
     The first dimension is `time` or `load_factor`. Data along the beam, or all beams in succession (time, station): x,
@@ -41,15 +43,18 @@ def arrays(solution: Solution, beam: Beam | None) -> tuple[Variables, Variables]
     strain xx of the axis), shear_angle [rad]; stress_lower, stress_upper, stress_shear, stress_von_mises [Pa] where
     sections have them, see `BeamStress`; of the model (time,): kinetic, strain, potential energy [J]. Coordinates: time
     [s] or load_factor, number of the beam (with the `names` of all as an attribute, where there are any), arc_length
-    [m], x0, y0 [m] of the reference (station,). Adjacent elements each have a station at their common end, where
-    section forces may jump.
+    [m], x0, y0 [m] of the reference (station,). errors: whether there is error_share [-] of the elements along beams.
+    Adjacent elements each have a station at their common end, where section forces may jump.
     """
     energy = solution.energy()
     groups = groups_of(solution.model, beam, len(solution))
-    return side_by_side([_of_group(solution, group, energy) for group in groups])
+    names = _ALONG + ("error_share",) * flag("errors", errors)
+    return side_by_side([_of_group(solution, group, energy, names) for group in groups])
 
 
-def _of_group(solution: Solution, group: LikeBeams, energy: Energy) -> tuple[Variables, Variables]:
+def _of_group(
+    solution: Solution, group: LikeBeams, energy: Energy, names: tuple[str, ...]
+) -> tuple[Variables, Variables]:
     """Return the `arrays` of like beams."""
     points, about = group.points, partial(named, solution.model)
     along_beam = stations(solution.model, group)
@@ -67,7 +72,7 @@ def _of_group(solution: Solution, group: LikeBeams, energy: Energy) -> tuple[Var
             rate = points.velocities(solution.p, solution.v)[..., axis]
             data[f"v{name}"] = along, rate, about(f"velocity {name}", "m/s")
     forces = section_forces(points, solution, rows)
-    for name in ("rotation", "normal", "shear", "moment", "axial_strain", "shear_angle"):
+    for name in names:
         quantity = QUANTITIES[name]
         values = forces[name] if name in forces else quantity.values(points, solution, rows)
         data[name] = along, values, about(quantity.label, quantity.unit)
@@ -101,9 +106,9 @@ def stations(model: Model, group: LikeBeams) -> Variables:
     return {name: (("station",), *variable) for name, variable in coordinates.items()}
 
 
-def to_xarray(solution: Solution, beam: Beam | None = None) -> Any:
+def to_xarray(solution: Solution, beam: Beam | None = None, errors: bool = False) -> Any:
     """Return an xarray.Dataset of the `arrays` of a beam, or of all beams in succession, see `Solution.to_xarray`."""
-    data, coordinates = arrays(solution, beam)
+    data, coordinates = arrays(solution, beam, errors)
     # files hold texts and numbers
     words = {"status": solution.status.name, "warnings": "\n".join(solution.statistics.warnings)}
     return as_dataset(data, coordinates, asdict(solution.statistics) | words, single=beam is not None)
@@ -121,13 +126,13 @@ def as_dataset(data: Variables, coordinates: Variables, attributes: dict[str, An
     return dataset.swap_dims(station="arc_length")
 
 
-def to_pandas(solution: Solution, beam: Beam | None = None, forces: bool = False) -> Any:
+def to_pandas(solution: Solution, beam: Beam | None = None, forces: bool = False, errors: bool = False) -> Any:
     """Return a pandas.DataFrame of the `arrays`, with a row for each time and station, see `Solution.to_pandas`."""
     with needed_for("to_pandas"):
         import pandas
     if forces:
         return pandas.DataFrame(_forces(solution)).set_index([_over(solution), "point"]).sort_index()
-    data, coordinates = arrays(solution, beam)
+    data, coordinates = arrays(solution, beam, errors)
     over, stations = _over(solution), len(coordinates["beam"][1])
     places = {name: coordinates[name][1] for name in ("beam", "arc_length", "x0", "y0")}
     places["arc_length"] = told_apart(places["arc_length"])

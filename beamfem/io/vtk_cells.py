@@ -13,6 +13,7 @@ from beamfem.mesh.reference import reference_axis
 from beamfem.model.beam import Beam, names
 from beamfem.model.model import Model
 from beamfem.results import postprocess
+from beamfem.results.axis_fields import QUANTITIES
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import LikeBeams, equal_beams
 from beamfem.results.full_turns import rotation
@@ -32,6 +33,7 @@ from beamfem.value_keys import by_value
 
 _LINES_PER_ELEMENT = 12
 _ACROSS = 2  # intervals of a layer, whose stress is a parabola at most
+_ERROR = "error_share"
 _FORCES = ("normal_force", "shear_force", "bending_moment")
 
 
@@ -71,8 +73,11 @@ class Samples:
             return beam.section.layers[self.layer].material
         return beam.material
 
-    def arrays(self, solution: Solution, rows: slice = slice(None)) -> dict[str, np.ndarray]:
-        """Return numbers (steps, points), vectors (..., 3) and tensors (..., 6) of some rows of a solution."""
+    def arrays(self, solution: Solution, rows: slice = slice(None), with_errors: bool = False) -> dict[str, np.ndarray]:
+        """Return numbers (steps, points), vectors (..., 3) and tensors (..., 6) of some rows of a solution.
+
+        with_errors: whether the shares of elements in the error, which take a solve each, are among them.
+        """
         now = self.points.now(p := solution.p[rows])
         position = self._at_heights(now.r, now.d)
         result = {
@@ -94,6 +99,8 @@ class Samples:
         result["second_piola_kirchhoff_stress"] = second_piola_kirchhoff(cauchy, now, self.axis, self.y)
         for number, name in enumerate(_FORCES):
             result[name] = self._at_all_heights(forces[:, number])
+        if with_errors:
+            result[_ERROR] = self._at_all_heights(QUANTITIES[_ERROR].values(self.points, solution, rows))
         return {name: self.by_cell(values) for name, values in result.items()}
 
     @cached_property
@@ -279,7 +286,7 @@ class Cells:
     def names(self, solution: Solution) -> list[str]:
         """Return the fields that there are."""
         parts = [part.arrays(solution, slice(1)) for part in self.samples]
-        return [name for name in self._known(parts) if name != "points"]
+        return [*(name for name in self._known(parts) if name != "points"), *([_ERROR] if solution.static else [])]
 
     def arrays(self, solution: Solution, rows: slice) -> dict[str, np.ndarray]:
         """Return the fields at all points, (steps, points) and (steps, points, 3 or 6), of some rows of a solution.
@@ -287,7 +294,8 @@ class Cells:
         A stress that is known nowhere is left out, and so are what `content` does not name and, unless it names them,
         the stress tensors of bodies.
         """
-        parts = [part.arrays(solution, rows) for part in self.samples]
+        asked = _ERROR in (self.content.fields or ())
+        parts = [part.arrays(solution, rows, asked) for part in self.samples]
         chosen = self.content.chosen(self._known(parts))
         if self.whole and self.content.fields is None:
             chosen = [name for name in chosen if name not in _TENSORS]

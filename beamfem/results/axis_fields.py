@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.linalg import norm
 
+from beamfem.errors import ConvergenceError
 from beamfem.model.beam import Beam
 from beamfem.results import postprocess
 from beamfem.results.axis_points import AxisPoints
@@ -80,6 +81,17 @@ def _outer(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> 
     return np.where(np.abs(stress["upper"]) >= np.abs(stress["lower"]), stress["upper"], stress["lower"])
 
 
+def _error_share(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
+    result = []
+    for row in np.arange(len(solution))[rows].tolist():
+        try:
+            shares = [solution.error_shares(mesh.beam, row) for mesh in points.mesh.parts]
+        except ConvergenceError:
+            shares = [np.full(points.mesh.elements, np.nan)]
+        result.append(np.concatenate(shares)[points.element])
+    return np.array(result)
+
+
 _VON_MISES = _of_stress("von Mises stress", "von_mises", over_height=True)
 _NO_STRENGTH = "give a material its strength, Material(..., strength=)"
 QUANTITIES = {
@@ -113,6 +125,9 @@ QUANTITIES = {
     ),
     "shear_angle": Quantity(
         "shear angle", "rad", lambda points, solution, rows: postprocess.shear_angle(points.now(solution.p[rows]))
+    ),
+    "error_share": Quantity(
+        "share of an element in the error", "-", _error_share, "there is no equilibrium nearby on finer elements"
     ),
 }
 

@@ -289,6 +289,20 @@ class Solution:
 
         return error(self, quantity, row)
 
+    def error_shares(self, beam: Beam, row: int = -1) -> np.ndarray:
+        """Return the share (ne,) [-] of each element of a beam in the discretisation error of a row, see `error`.
+
+        The shares of all beams sum to 1, or are 0 where nothing is strained. Refine elements with large ones. As
+        pictures: `plot(colour="error_share")`; see also `to_vtk`, `to_pandas` and `to_xarray`. Raises what `error`
+        does.
+
+        >>> int(solution.error_shares(beam).argmax())  # the element at the clamp
+        0
+        """
+        from beamfem.solve.accuracy.error_estimate import beam_shares
+
+        return beam_shares(self, beam, row)
+
     def position(self, point: Point) -> np.ndarray:
         """Return the position (x, y) of a point (steps, 2) [m]."""
         return postprocess.position(self.model.mesh_of(point), self.p, point.fraction)
@@ -546,13 +560,13 @@ class Solution:
 
         path: file to write (PNG, SVG, PDF); folders are created. colour: by default the time or load factor; or a field
         along the beams, whose extreme value is marked: "moment" [N m], "normal", "shear" [N], "rotation" [rad],
-        "displacement" [m], "speed" [m/s], "axial_strain" [-] (Green strain xx of the axis), "shear_angle" [rad]; of the
-        stress [Pa] "stress" or "von_mises" (von Mises stress over the height), of each section "upper", "lower"
-        (faces), "outer" (the larger of both), "tension", "compression", "shear_stress" (extremes); or "utilisation" [-]
-        of the strength, over the height. shapes: number of steps, one of them the last; by default the last alone, of
-        motions and paths 9. undeformed, supports, loads: whether to draw the reference axes dashed, and symbols, each
-        load on the shape at which it is largest. Raises InputError for an unknown option or value, MissingPackageError
-        without matplotlib.
+        "displacement" [m], "speed" [m/s], "axial_strain" [-] (Green strain xx of the axis), "shear_angle" [rad],
+        "error_share" [-], see `error_shares`; of the stress [Pa] "stress" or "von_mises" (von Mises stress over the
+        height), of each section "upper", "lower" (faces), "outer" (the larger of both), "tension", "compression",
+        "shear_stress" (extremes); or "utilisation" [-] of the strength, over the height. shapes: number of steps, one
+        of them the last; by default the last alone, of motions and paths 9. undeformed, supports, loads: whether to
+        draw the reference axes dashed, and symbols, each load on the shape at which it is largest. Raises InputError
+        for an unknown option or value, MissingPackageError without matplotlib.
 
         Examples
         --------
@@ -688,10 +702,11 @@ class Solution:
         beside it. .vtkhdf (the default suffix): all steps in one file, for ParaView 5.12 or newer; .pvd: a collection
         of .vtu files, one per step, in the folder <stem>. geometry: "reference" writes the reference positions of the
         points, to be warped by `displacement`. fields: names of those to write, by default all but the stress tensors
-        of bodies: VTK draws curved cells with at most 18 numbers at a point and drops what is more. single: numbers of
-        four bytes, half the size, seven digits. Names and units of the fields are listed in docs/paraview.md. Raises
-        InputError for another suffix and for unknown fields, MissingPackageError without VTK, and for .vtkhdf without
-        h5py. Warns with `UnknownStressWarning` if the shape of a section, and so its stress, is not known.
+        of bodies and `error_shares`: VTK draws curved cells with at most 18 numbers at a point and drops what is more.
+        single: numbers of four bytes, half the size, seven digits. Names and units of the fields are listed in
+        docs/paraview.md. Raises InputError for another suffix and for unknown fields, MissingPackageError without VTK,
+        and for .vtkhdf without h5py. Warns with `UnknownStressWarning` if the shape of a section, and so its stress, is
+        not known.
 
         Examples
         --------
@@ -701,13 +716,13 @@ class Solution:
 
         write_vtk(self, path, geometry=geometry, fields=fields, single=single)
 
-    def to_xarray(self, beam: Beam | None = None) -> Any:
+    def to_xarray(self, beam: Beam | None = None, *, errors: bool = False) -> Any:
         """Return an xarray.Dataset of results along a beam, or along all beams, over the steps.
 
         Positions, rotations, section forces, stresses if sections have them, and energies; the statistics are its
         attributes. Of one beam the arc length is a dimension: at an end that two elements share, the station before it
-        stands one last digit lower, so that both sides are kept. Raises InputError for a beam of another model,
-        MissingPackageError without xarray.
+        stands one last digit lower, so that both sides are kept. errors: with `error_shares` of each row, which take a
+        solve each. Raises InputError for a beam of another model, MissingPackageError without xarray.
 
         Examples
         --------
@@ -717,14 +732,15 @@ class Solution:
         """
         from beamfem.io.table import to_xarray
 
-        return to_xarray(self, beam)
+        return to_xarray(self, beam, errors)
 
-    def to_pandas(self, beam: Beam | None = None, *, forces: bool = False) -> Any:
+    def to_pandas(self, beam: Beam | None = None, *, forces: bool = False, errors: bool = False) -> Any:
         """Return a pandas.DataFrame of results along a beam, or along all beams, with a row for each step and station.
 
         Its index is time [s] or load_factor, number of the beam and arc_length [m]. Both sides of an end that two
         elements share have a row: the arc length of the one before it, like the load factor of the row before a jump,
-        is smaller by one last digit, so that no row of the index is there twice.
+        is smaller by one last digit, so that no row of the index is there twice. errors: with `error_shares` of each
+        row, which take a solve each.
 
         With `forces`, there is a row for each step and point at which a support, connector or joint acts, with role and
         kind of the part, position x, y [m], and what it exerts on the beam there, fx, fy [N] and moment [N m]. Raises
@@ -740,7 +756,7 @@ class Solution:
         """
         from beamfem.io.table import to_pandas
 
-        return to_pandas(self, beam, forces)
+        return to_pandas(self, beam, forces, errors)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write model and states to one HDF5 file with checksums, which `load` reads; folders are created.

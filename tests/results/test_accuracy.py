@@ -294,3 +294,31 @@ def test_the_effectivity_is_that_of_the_order(element, elements, expected):
     solution, exact = bf.solve_static(model), bf.solve_static(fine).displacement(fine_beam.end)[-1, 1]
     true = exact - solution.displacement(beam.end)[-1, 1]
     assert solution.error(beam.end)[1] / true == pytest.approx(expected, rel=0.01)
+
+
+def test_shares_of_the_error_are_drawn_and_written(tmp_path):
+    """Of two equal beams, like to the writers, only the bent one has an error; most of it is near its clamp."""
+    pyvista = pytest.importorskip("pyvista")
+    beams = [bf.Beam(bf.Line((0, y), (1, y)), 4, bf.CRBF(2), SECTION, STEEL) for y in (0, 1)]
+    clamps, load = [bf.Clamp(beam.start) for beam in beams], bf.PointForce(beams[1].end, (0.0, 5.0 * EI))
+    solution = bf.solve_static(bf.Model(beams, clamps, [load]))
+    still, own = (solution.error_shares(beam) for beam in beams)
+    assert still.max() < 1e-12
+    assert own.sum() == pytest.approx(1.0)
+    assert own.argmax() == 0
+    expected = np.concatenate([still, own])
+    table = solution.to_pandas(errors=True).loc[1.0]["error_share"].to_numpy()
+    assert table.reshape(8, -1) == pytest.approx(np.tile(expected[:, None], 5))
+    assert np.isnan(table).sum() == 0
+    solution.to_vtk(tmp_path / "arms.pvd", fields=["error_share"])
+    body = pyvista.get_reader(tmp_path / "arms.pvd")
+    body.set_active_time_point(len(solution) - 1)
+    shown = body.read()[0].point_data_to_cell_data()["error_share"]
+    assert shown == pytest.approx(expected)
+    figure = solution.plot(colour="error_share")
+    assert any("share of an element in the error" in axes.get_ylabel() for axes in figure.axes)
+    motion = bf.simulate(solution.model, 1e-3, 1e-4)
+    with pytest.raises(bf.InputError, match="errors are estimated for static solutions only"):
+        motion.error_shares(beams[1])
+    with pytest.raises(bf.InputError, match="fields has 'error_share', which is not there"):
+        motion.to_vtk(tmp_path / "moving.pvd", fields=["error_share"])

@@ -216,15 +216,12 @@ Quantity = Callable[[Solution], Any] | Point | None
 
 def error(solution: Solution, quantity: Quantity, row: int) -> Any:
     """Return the estimated change of a quantity with an infinitely fine mesh, see `Solution.error`."""
-    if not solution.static:
-        raise InputError("errors are estimated for static solutions only; this one is a motion")
     if not (quantity is None or isinstance(quantity, Point) or callable(quantity)):
         raise InputError(
             "quantity is a function of a solution, such as lambda s: s.rotation(beam.end)[-1], or a point, got "
             f"{shown(quantity)}"
         )
-    number = number_below("row", row, len(solution), -len(solution)) % len(solution)
-    finer = solution.computed(_Enriched).row(number)
+    number, finer = _enriched_row(solution, row)
     if quantity is None:
         return largest_displacement_error(solution[number], finer)
     evaluate = (lambda s: s.displacement(quantity)[-1]) if isinstance(quantity, Point) else quantity
@@ -237,6 +234,31 @@ def error(solution: Solution, quantity: Quantity, row: int) -> Any:
             f"and {shown(after)}"
         ) from None
     return float(change) if change.ndim == 0 else change
+
+
+def beam_shares(solution: Solution, beam: Beam, row: int) -> np.ndarray:
+    """Return the share of each element of a beam in the error of a row, see `Solution.error_shares`."""
+    of_beam = solution.model.number_of(beam)
+    number, finer = _enriched_row(solution, row)
+    known = solution.computed(_SharesByRow)
+    if number not in known:
+        known[number] = error_shares(solution[number], finer)
+    return known[number][of_beam]
+
+
+def _enriched_row(solution: Solution, row: int) -> tuple[int, Solution]:
+    """Return the number of a row from 0, and its equilibrium on the enriched space."""
+    if not solution.static:
+        raise InputError("errors are estimated for static solutions only; this one is a motion")
+    number = number_below("row", row, len(solution), -len(solution)) % len(solution)
+    return number, solution.computed(_Enriched).row(number)
+
+
+class _SharesByRow(dict[int, list[np.ndarray]]):
+    """Shares of the elements of each beam in the errors of rows of a solution, each found once."""
+
+    def __init__(self, solution: Solution) -> None:
+        super().__init__()
 
 
 class _Enriched:

@@ -172,8 +172,9 @@ class Model:
     def meshed(self, like: Any) -> "Model":
         """Return the model with the elements of a result, such as one that is refined to an accuracy.
 
-        like: a state or solution of this model, whose beams it has with other elements; the new model takes the points
-        and beams of both. Raises InputError for a result of another model.
+        like: a state or solution of this model, whose beams it has with other elements; or "auto" for beams whose
+        elements are chosen to an accuracy, which may be fewer than now. The new model takes the points and beams of
+        both. Raises InputError for a result of another model.
 
         >>> finer = model.meshed(bf.solve_static(model, accuracy=1e-6))
         """

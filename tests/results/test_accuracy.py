@@ -81,6 +81,17 @@ def test_the_finer_model_can_be_used_on():
     assert bf.solve_static(crooked).displacement(crooked.beams[0].end)[-1, 1] > 0.0
 
 
+def test_elements_of_ones_own_stay_and_fewer_are_found_if_asked_for():
+    beam, model = model_of(bf.CRBF(1), 200, bent)
+    own = bf.solve_static(model, accuracy=1e-3)
+    assert own.model.size == model.size
+    few = bf.solve_static(model.meshed("auto"), accuracy=1e-3)
+    assert few.model.size < model.size / 10
+    assert few.displacement(beam.end)[-1] == pytest.approx(own.displacement(beam.end)[-1], abs=2e-3)
+    with pytest.raises(bf.InputError, match='meshed takes a state or a solution of the model, or "auto"'):
+        model.meshed("fine")
+
+
 def test_elements_that_lock_and_bad_accuracies_are_refused():
     _, model = model_of(bf.ANCF(), 4, bent)
     with pytest.raises(bf.InputError, match="an accuracy cannot be had with these elements: elements lock"):

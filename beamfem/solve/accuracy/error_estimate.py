@@ -75,10 +75,12 @@ def remeshed(model: Model, beams: Sequence[Beam]) -> EnrichedModel:
     return result
 
 
-def meshed(model: Model, like: State | Solution) -> Model:
-    """Return a model with the elements of a result, see `Model.meshed`."""
+def meshed(model: Model, like: State | Solution | str) -> Model:
+    """Return a model with the elements of a result, or with elements to be chosen, see `Model.meshed`."""
+    if isinstance(like, str) and like == "auto":
+        return remeshed(model, [replace(beam, elements="auto") for beam in model.beams])
     if not isinstance(like, State | Solution):
-        raise InputError(f"meshed takes a state or a solution of the model, got {shown(like)}")
+        raise InputError(f'meshed takes a state or a solution of the model, or "auto", got {shown(like)}')
     own, others = model.beams, like.model.beams
     if len(own) != len(others) or any(a.curve is not b.curve for a, b in zip(own, others, strict=True)):
         raise InputError("meshed takes a result of this model, whose beams are on the same curves")

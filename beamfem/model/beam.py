@@ -83,7 +83,7 @@ Tapered = Callable[[float], CrossSection]
 _SAMPLES = 32
 _ENDS = 1e-9  # of the length: tolerance of the ends of a mesh
 _ELEMENT = CRBF(order=4)
-_FIRST_ELEMENTS, _MOST_FIRST = 2, 256  # of a beam whose mesh is refined to an accuracy
+_FIRST_ELEMENTS, _MOST_FIRST = 1, 256  # of a beam whose mesh is refined to an accuracy
 _LARGEST_TURN = 1.01 * np.pi  # of the axis within one of them: sections overlap where it turns further
 
 

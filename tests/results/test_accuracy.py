@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
+from beamfem.solve.accuracy.adapted_mesh import refined
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 SECTION = bf.Rectangle(0.02, 0.01)
@@ -333,3 +334,40 @@ def test_shares_of_the_error_are_drawn_and_written(tmp_path):
         motion.error_shares(beams[1])
     with pytest.raises(bf.InputError, match="fields has 'error_share', which is not there"):
         motion.to_vtk(tmp_path / "moving.pvd", fields=["error_share"])
+
+
+def test_frequencies_and_critical_loads_refine_only_where_shapes_bend():
+    """A slender mast on a thick post, which hardly moves."""
+
+    def column(**mesh):
+        post = bf.Beam(bf.Line((0, 0), (0, 1)), section=bf.Rectangle(0.02, 0.1), material=STEEL, **mesh)
+        mast = bf.Beam(bf.Line((0, 1), (0, 2)), section=bf.Rectangle(0.02, 0.002), material=STEEL, **mesh)
+        load = bf.PointForce(mast.end, (0.0, -1.0))
+        return bf.Model([post, mast], [bf.Clamp(post.start)], [load], [bf.Rigid(post.end, mast.start)])
+
+    fine = column(elements=12, element=bf.CRBF(8))
+    modes, buckling = bf.solve_modes(column(), 3, accuracy=1e-8), bf.solve_buckling(column(), 2, accuracy=1e-8)
+    assert modes.frequencies == pytest.approx(bf.solve_modes(fine, 3).frequencies, rel=1e-8)
+    assert buckling.load_factors == pytest.approx(bf.solve_buckling(fine, 2).load_factors, rel=1e-8)
+    for result in (modes, buckling):
+        post, mast = (mesh.nodes for mesh in result.model.meshes)
+        assert post < 0.8 * mast
+
+
+def test_there_are_no_more_elements_than_shares_ask_for():
+    """Two and five elements, beside a force, of which 1.3 times as many are enough, become three and seven."""
+    _, model = model_of(bf.CRBF(8), 6, bent)
+    even = [np.full(7, 1.0 / 7.0)]
+    assert model.meshes[0].elements == 7
+    finer = refined(model, even, 1.3**16, [np.array([0.3])])
+    ends = finer.meshes[0].vertices
+    assert len(ends) - 1 == 10
+    assert np.abs(ends - 0.3).min() < 1e-12
+    assert refined(model, None, 1.3**16, [np.array([0.3])]).meshes[0].elements == 14
+
+
+def test_elements_of_ones_own_end_where_they_did():
+    _, model = model_of(bf.CRBF(8), (0.0, 0.13, 1.0), bent)
+    solution = bf.solve_static(model, accuracy=1e-9)
+    assert solution.model.meshes[0].elements > 3
+    assert np.abs(solution.model.meshes[0].vertices - 0.13).min() < 1e-12

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
@@ -10,7 +11,9 @@ from beamfem.element.coordinates import Rotation
 from beamfem.element.fields import HIGHEST_ORDER, Lagrange
 from beamfem.equations.system import system_of
 from beamfem.errors import ConvergenceError, InputError, LimitPointError, LockingWarning
+from beamfem.mesh.beam_grid import distances
 from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.model_meshes import required_nodes
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 from beamfem.results.locking import locking
@@ -38,6 +41,7 @@ _FALLS = 0.5  # what a mesh is to leave of the error of the one before; the shar
 _MOST_STALLED = 3  # meshes divided evenly whose error is not the smallest so far: it is round-off
 # meshes that may have no solution, or end at limit points, before a finer one does not
 _MOST_LOST, _MOST_LIMITED = 2, 5
+_SAME = 1e-9  # of the length of a beam: tolerance between places
 _SAME_LOAD = 1e-2  # relative difference of limit points that two meshes agree on
 
 _Result = TypeVar("_Result")
@@ -73,6 +77,7 @@ def refined_until(
     ConvergenceError if none of them is fine enough, whose `solution` is the result with the smallest error, or that of
     a solve that fails on finer meshes, too.
     """
+    fixed = [_fixed(*each) for each in zip(model.meshes, required_nodes(model), strict=True)]
     # a result lists its elements, and has beams with numbers of them to be saved
     model = remeshed(model, [_listed(mesh) for mesh in model.meshes])
     iterations = elements = stalled = number = 0
@@ -106,8 +111,7 @@ def refined_until(
         before = error
         if error < smallest:
             smallest, best = error, result
-        even = [np.full(mesh.elements, 1.0 / elements) for mesh in model.meshes]
-        model = refined(model, even if evenly or shares is None else shares, _SAFETY * error / accuracy)
+        model = refined(model, None if evenly else shares, _SAFETY * error / accuracy, fixed)
     falls = ", and falls no further" if stalled else ""
     raise ConvergenceError(
         f"the estimated error is at best {smallest:.2g} on {number} meshes{falls}; for an accuracy of {accuracy:g} it "
@@ -120,6 +124,13 @@ def _agree(lost: list[ConvergenceError]) -> bool:
     """Return whether the last two meshes without a solution end at the same limit point."""
     loads = [reason.load_factor for reason in lost[-2:] if isinstance(reason, LimitPointError)]
     return len(loads) == 2 and abs(loads[1] - loads[0]) <= _SAME_LOAD * abs(loads[1])
+
+
+def _fixed(mesh: BeamMesh, parts: list[tuple[float, str]]) -> np.ndarray:
+    """Return the arc lengths [m] at which elements end on every mesh: all ends of the user's own elements."""
+    if mesh.beam.elements != "auto":
+        return mesh.vertices
+    return np.array([*(fraction * mesh.vertices[-1] for fraction, _ in parts), *mesh.beam.curve.corners])
 
 
 def _listed(mesh: BeamMesh) -> Beam:
@@ -167,17 +178,19 @@ def _relative_error(solution: Solution, quantity: Quantity) -> float:
     return float(change / size) if size > 0.0 else float(change)
 
 
-def refined(model: Model, shares: list[np.ndarray], excess: float) -> Model:
+def refined(model: Model, shares: Shares, excess: float, fixed: list[np.ndarray]) -> Model:
     """Return a model with elements of higher order, or else shorter ones, so that they share an error evenly.
 
-    shares (ne,): of the elements of each beam in the error, see `error_shares`; excess: how many times too large it is.
+    shares (ne,): of the elements of each beam in the error, see `error_shares`, None to divide all
+    alike; excess: how many times too large it is; fixed: arc lengths [m] of each beam at which elements stay to end.
     """
-    elements = sum(len(share) for share in shares)
-    wanted = [share * elements * excess for share in shares]
-    return remeshed(model, [_refined(*each) for each in zip(model.meshes, wanted, strict=True)])
+    elements = sum(mesh.elements for mesh in model.meshes)
+    even = [np.full(mesh.elements, 1.0 / elements) for mesh in model.meshes]
+    wanted = [share * elements * excess for share in shares or even]
+    return remeshed(model, [_refined(*each, shares is None) for each in zip(model.meshes, wanted, fixed, strict=True)])
 
 
-def _refined(mesh: BeamMesh, wanted: np.ndarray) -> Beam:
+def _refined(mesh: BeamMesh, wanted: np.ndarray, fixed: np.ndarray, evenly: bool) -> Beam:
     """Return a beam whose elements have at most their part of an error; wanted (ne,): by how much it is to fall."""
     beam, field = mesh.beam, mesh.beam.element.field
     if not (wanted > 1.0).any():
@@ -185,11 +198,18 @@ def _refined(mesh: BeamMesh, wanted: np.ndarray) -> Beam:
     rotates = isinstance(beam.element.coordinates, Rotation) and beam.element.integration == "reduced"
     raisable = type(field) is Lagrange and rotates
     rate = 2 * field.degree if raisable else 2
-    parts = np.clip(np.ceil(np.minimum(wanted, 1e300) ** (1.0 / rate)), 1, _MOST_PARTS).astype(int)
-    if raisable and (field.degree < _RAISED or (field.degree + _STEP <= HIGHEST_ORDER and np.median(parts) > 1)):
+    parts = np.clip(np.minimum(wanted, 1e300) ** (1.0 / rate), 1.0, _MOST_PARTS)
+    if raisable and (field.degree < _RAISED or (field.degree + _STEP <= HIGHEST_ORDER and np.median(parts) > 1.0)):
         order = field.degree + _STEP
         return replace(beam, element=of_order(beam.element, order if field.degree >= _RAISED else min(order, _RAISED)))
-    within = [np.arange(count) / count for count in parts.tolist()]
-    element = np.repeat(np.arange(mesh.elements), parts)
-    ends = mesh.arc_length(element, np.concatenate(within)) / mesh.vertices[-1]
-    return replace(beam, elements=(*ends.tolist(), 1.0))
+    if evenly:
+        parts = np.ceil(parts)
+    # whole numbers of elements between fixed ends: if 1.2 times as many do, halves of all would be far too many
+    length = mesh.vertices[-1]
+    inner = 1 + np.flatnonzero(distances(mesh.vertices[1:-1], fixed) < _SAME * length)
+    ends = [0.0]
+    for first, last in pairwise([0, *inner.tolist(), mesh.elements]):
+        along = np.append(0.0, np.cumsum(parts[first:last]))
+        wanted_ends = np.linspace(0.0, along[-1], int(np.ceil(along[-1] - _SAME)) + 1)
+        ends += (np.interp(wanted_ends[1:], along, mesh.vertices[first : last + 1]) / length).tolist()
+    return replace(beam, elements=(*ends[:-1], 1.0))

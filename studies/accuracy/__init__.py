@@ -1,0 +1,1 @@
+"""Estimated against true errors, and meshes refined to an accuracy against the best uniform ones."""

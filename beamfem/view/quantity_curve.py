@@ -13,7 +13,7 @@ from beamfem.results.axis_points import AxisPoints
 from beamfem.results.path import Path, PathState
 from beamfem.results.quantities import AT_POINT, UNITS, value_of
 from beamfem.results.solution import Solution
-from beamfem.solve.linear.linear_outputs import QUANTITIES as LINEAR
+from beamfem.solve.linear.linear_model import QUANTITIES as LINEAR
 from beamfem.validation import items, one_of, require_known, shown
 from beamfem.view.frames import axis_of_rows
 from beamfem.view.labels import place, write_labels

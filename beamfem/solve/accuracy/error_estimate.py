@@ -12,10 +12,8 @@ from beamfem.cached_properties import cached_property
 from beamfem.element.element import Element
 from beamfem.element.fields import Lagrange
 from beamfem.equations.equations import predicted_stresses
-from beamfem.equations.model_coordinates import coordinate_columns
 from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
-from beamfem.kernels.block import ROTATED_GRADIENTS
 from beamfem.linalg.tangent import Stresses
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import reference_axis, reference_position
@@ -28,6 +26,7 @@ from beamfem.results.postprocess import position
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
 from beamfem.solve.newton.newton import Newton, NewtonResult, PivotedProblem, PrescribedStep
+from beamfem.solve.start.start_state import same_connectors, set_coordinates
 from beamfem.validation import number_below, shown
 
 # halved elements of order k have an error of about 2^-2k of the others, for the same cost as those of order k + 1
@@ -114,16 +113,9 @@ def carried_coordinates(state: State, target: Model) -> np.ndarray:
     source, system = state.model, system_of(target, static=True)
     p = system.reference.copy()
     for old, new in zip(source.meshes, target.meshes, strict=True):
-        values = _values_at_nodes(old, new, state)
-        for label, nodes, dofs in coordinate_columns(new):
-            # a rotated vector belongs to the first of the joined nodes
-            mask = new.kinematics.node_kind[nodes] != ROTATED_GRADIENTS if label.startswith("r_y") else slice(None)
-            p[dofs[mask]] = values[label][nodes[mask]]
-    found_items = {id(item.item): item for item in system_of(source, static=True).connectors.items}
-    for item in system.connectors.items:
-        if id(item.item) in found_items:
-            same = found_items[id(item.item)]
-            p[item.own] = state.p[same.own]
+        set_coordinates(new, _values_at_nodes(old, new, state), p)
+    for item, same in same_connectors(source, system).items():
+        p[item.own] = state.p[same.own]
     return p
 
 

@@ -166,11 +166,6 @@ class Continuation:
         tangent = along / self.length(along)
         return PathPoint(y, tangent if self.dot(tangent, like) >= 0.0 else -tangent, factors)
 
-    def softest(self, factors: Factorised) -> np.ndarray:
-        """Return the unit change of y (n + 1,) with the smallest stiffness; its largest coordinate is positive."""
-        (mode,) = self.softest_modes(factors, 1)
-        return np.asarray(mode * np.sign(mode[np.argmax(np.abs(mode) / self.scale)]))
-
     def softest_modes(self, factors: Factorised, count: int) -> np.ndarray:
         """Return orthonormal changes of y (count, n + 1) that span the modes with the smallest stiffness."""
         free = self.system.free_dofs
@@ -190,8 +185,7 @@ class Continuation:
 
     def softness(self, factors: Factorised, mode: np.ndarray) -> float:
         """Return mode . K^-1 mode, which has a pole with change of sign where K is singular along the mode."""
-        free = self.system.free_dofs
-        right = (self.weights * mode)[free]
+        right = (self.weights * mode)[self.system.free_dofs]
         return float(right @ factors.solve(right))
 
     def solve(self, y: np.ndarray, stresses: Stresses | None) -> tuple[np.ndarray, np.ndarray, Factorised]:
@@ -281,7 +275,7 @@ def begin(
     loses_digits(system, p, load_factor)
     _, tangent = linearise_at_rest(system, p, load_factor)
     factors = tangent.factorised(system.rotated)
-    mode = plain.softest(factors)
+    (mode,) = plain.softest_modes(factors, 1)
     stiffness = 1.0 / abs(plain.softness(factors, mode)) / float(np.max(np.abs(mode) / plain.scale)) ** 2
     per_load, flat = _reach(plain, p, load_factor, stiffness, 1e-6), False
     if system.varying or any(callable(item.value) for item in system.prescribed) or per_load == 0.0:

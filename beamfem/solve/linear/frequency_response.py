@@ -14,8 +14,7 @@ from beamfem.linalg.lapack import superlu
 from beamfem.model.load_base import Load
 from beamfem.model.model import Model
 from beamfem.results.solution import Solution, State
-from beamfem.solve.linear.linear_model import LinearModel
-from beamfem.solve.linear.linear_outputs import Quantity
+from beamfem.solve.linear.linear_model import LinearModel, Quantity
 from beamfem.solve.linear.linearise import linearise
 from beamfem.validation import items, not_negative
 

@@ -2,27 +2,32 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.linalg import LinAlgError
 from scipy.sparse import csc_array, csr_array, dia_array
 
+from beamfem.element.fields import cross, dot
 from beamfem.equations.system import system_of
 from beamfem.errors import InputError
 from beamfem.linalg.eigenpairs import digits_for, orthonormal
 from beamfem.linalg.lapack import superlu
+from beamfem.model.beam import Point
 from beamfem.model.load_base import Load
 from beamfem.model.model import Model
+from beamfem.results.nodal import axis_at, rate_at
 from beamfem.results.solution import State
-from beamfem.solve.linear.linear_outputs import Quantity, output_row
 from beamfem.solve.linear.quadratic_modes import slowest_rates
 from beamfem.solve.modes.mode_stiffness import upright
 from beamfem.solve.modes.modes import Modes
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.modes.rigid_modes import sort_rigid
 from beamfem.validation import count as whole_number
-from beamfem.validation import items
+from beamfem.validation import items, require_known, shown
 
+Quantity = tuple[str, Point]
+QUANTITIES = {"ux": ("displacement ux", "m"), "uy": ("displacement uy", "m"), "rotation": ("rotation", "rad")}
 _REAL = 1e-9  # of shapes: imaginary parts below this fraction are round-off
 
 
@@ -203,3 +208,29 @@ class LinearModel:
         rows = np.eye(m) if outputs is None else [self.output(own) for own in items("outputs", outputs)]
         c = np.hstack([np.reshape(rows, (-1, m)), np.zeros((len(rows), m))])
         return a, b, c, np.zeros((len(rows), len(self.loads)))
+
+
+def output_row(model: Model, p: np.ndarray, quantity: Any) -> csr_array:
+    """Return the derivative (1, n) of a quantity such as ("uy", beam.end) by the coordinates in a state p (n,).
+
+    Raises InputError for anything else, UnknownPointError for a point of another model.
+    """
+    if not (isinstance(quantity, tuple) and len(quantity) == 2 and isinstance(quantity[1], Point)):
+        raise InputError(f'a quantity is a pair of a name and a point, such as ("uy", beam.end), got {shown(quantity)}')
+    name, point = quantity
+    require_known(f"{shown(name)} is no quantity of a linear model", name, QUANTITIES)
+    mesh = model.mesh_of(point)
+    element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
+    dofs = np.unique(mesh.kinematics.dof[mesh.node[element[0]]])
+    dofs = dofs[dofs >= 0]
+    rates = np.zeros((len(dofs), len(p)))
+    rates[np.arange(len(dofs)), dofs] = 1.0
+    rate = rate_at(mesh, np.broadcast_to(p, rates.shape), rates, element, xi)
+    if name == "rotation":
+        now = axis_at(mesh, p[None], element, xi)
+        by_slope = mesh.beam.element.forces.turns_with == "r_x"
+        direction, turning = (now.r_s, rate.r_s) if by_slope else (now.d, rate.d)
+        values = (cross(direction, turning) / dot(direction, direction))[:, 0]
+    else:
+        values = rate.r[:, 0, "xy".index(name[1])]
+    return csr_array((values, (np.zeros(len(dofs), dtype=np.int64), dofs)), shape=(1, len(p)))

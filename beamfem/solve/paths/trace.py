@@ -83,11 +83,6 @@ class PathRecord:
                 state = vars(self.state(crossing.y))
                 self.bifurcations.append(Bifurcation(**state, mode=crossing.mode[:-1], tangent=crossing.tangent))
 
-    def returns_to(self, line: Continuation, start: Bifurcation) -> bool:
-        """Return whether one of the bifurcations found is that from which the branch starts."""
-        changes = [np.append(found.p - start.p, found.at - start.at) for found in self.bifurcations]
-        return any(line.length(change) < _SAME_POINT for change in changes)
-
     def state(self, y: np.ndarray, stability: bool | None = False) -> PathState:
         """Return the state of y (n + 1,), coordinates and load factor; stability: whether it is stable, if known."""
         zeros = np.zeros(self.model.size)
@@ -192,7 +187,9 @@ def leave(
                 equilibria = [corrected.y]
             else:
                 reason = "the equilibrium beside it is far away"
-                equilibria = [y for y in others if _same_way(line, y - start, moved)]
+                way_there = moved / line.length(moved)
+                ways = [(y - start) / line.length(y - start) for y in others]
+                equilibria = [y for y, own in zip(others, ways, strict=True) if line.length(own - way_there) < _ALIKE]
                 others.append(corrected.y)
             try:
                 if equilibria:
@@ -204,12 +201,6 @@ def leave(
                 reason = "the tangent is singular"
         distance *= 0.5
     return reason
-
-
-def _same_way(line: Continuation, one: np.ndarray, other: np.ndarray) -> bool:
-    """Return whether two changes of y (n + 1,) have the same direction."""
-    difference = one / line.length(one) - other / line.length(other)
-    return line.length(difference) < _ALIKE
 
 
 def _other_way(line: Continuation, start: np.ndarray, bifurcation: Bifurcation) -> np.ndarray:
@@ -366,7 +357,8 @@ def _traced(
             point = taken.segment.after if landing is None else landing
             record.add(point.y, point.negative_pivots == 0)
             record.add_critical(line, taken, point)
-            if start is not None and record.returns_to(line, start):
+            found = [np.append(other.p, other.at) for other in record.bifurcations if start is not None]
+            if any(line.length(y - record.rows[0][0]) < _SAME_POINT for y in found):
                 record.end("the branch is closed: it has come back to the bifurcation from which it starts")
                 break
             if point.load_factor == kink and not landed:
@@ -418,7 +410,11 @@ def _piece(
     size = min(size, longest_step(line, point))
     ahead = point.load_factor + _AHEAD * size * float(point.tangent[-1])
     kink = next(iter(kinks_between(line.functions_of_time, point.load_factor, ahead)), None)
-    jump = None if kink is None else _jump_near(line, kink, point.load_factor, ahead)
+    jump = None
+    if kink is not None:
+        low, high = sorted((point.load_factor, ahead))
+        jumps = (jump for jump in jumps_between(line.functions_of_time, low, high) if jump.before > low)
+        jump = next((jump for jump in jumps if abs(jump.before - kink) <= SAME * (high - low)), None)
     if jump is not None:
         kink = jump.before if ahead > point.load_factor else jump.after
     elif kink is not None and end is not None and abs(kink - end) <= SAME * abs(ahead - point.load_factor):
@@ -429,13 +425,6 @@ def _piece(
     elif kink is not None:
         low = kink
     return replace(line, piece=(low, high)), kink, jump
-
-
-def _jump_near(line: Continuation, kink: float, begin: float, end: float) -> Jump | None:
-    """Return the jump of a function at a kink that was found between two load factors, if there is one."""
-    low, high = sorted((begin, end))
-    near = (jump for jump in jumps_between(line.functions_of_time, low, high) if jump.before > low)
-    return next((jump for jump in near if abs(jump.before - kink) <= SAME * (high - low)), None)
 
 
 def _require_no_jump_at_start(line: Continuation, direction: int, record: PathRecord) -> None:

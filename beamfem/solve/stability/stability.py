@@ -56,7 +56,9 @@ def stable_start(system: System, about: State | Solution | None) -> tuple[np.nda
         p = equilibrium.state
     # imposed strains, as of heat, may load a beam between its supports without moving it
     imposed = any(block.imposed is not None for block in system.blocks)
-    grows = (_moves(system, load_change(system, p, load_factor, load_factor + width)) for width in _WIDTHS)
+    changes = (load_change(system, p, load_factor, load_factor + width) for width in _WIDTHS)
+    parts = ((system.along_free(each) * system.scale[system.free_dofs], each * system.scale) for each in changes)
+    grows = (np.any(np.abs(acting) > _ROUND_OFF * np.abs(whole).max()) for acting, whole in parts)
     if not imposed and not any(grows):
         raise InputError(
             "no load grows with the load factor, or supports take it up, so none can buckle the model",
@@ -71,9 +73,3 @@ def stable_start(system: System, about: State | Solution | None) -> tuple[np.nda
             f"in {unstable} direction(s)"
         )
     return p, load_factor
-
-
-def _moves(system: System, change: np.ndarray) -> bool:
-    """Return whether forces (n,) that grow with the load factor are more than supports take up, and round-off."""
-    acting = np.abs(system.along_free(change)) * system.scale[system.free_dofs]
-    return bool(np.any(acting > _ROUND_OFF * np.max(np.abs(change) * system.scale)))

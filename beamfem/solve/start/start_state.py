@@ -1,9 +1,12 @@
 """The state that a solve starts from, also of another model that has the same beams and meshes."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from beamfem.element.coordinates import across
 from beamfem.element.fields import cross, dot
+from beamfem.equations.connectors import Connector
 from beamfem.equations.model_coordinates import coordinate_columns
 from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError, warn
@@ -38,20 +41,31 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
     p, v = system.reference.copy(), np.zeros(target.size)
     for old, new in _matched(source, target, name):
         values, rates = _by_label(old, state)
-        for label, nodes, dofs in coordinate_columns(new):
-            # a rotated vector belongs to the first of the joined nodes
-            mask = new.kinematics.node_kind[nodes] != ROTATED_GRADIENTS if label.startswith("r_y") else slice(None)
-            p[dofs[mask]], v[dofs[mask]] = values[label][nodes[mask]], rates[label][nodes[mask]]
+        set_coordinates(new, values, p)
+        set_coordinates(new, rates, v)
         if _keeps_history(old, new):
             p[new.history] = state.p[old.history]
-    source_items = {id(item.item): item for item in system_of(source, system.static).connectors.items}
+    known = same_connectors(source, system)
     for item in system.connectors.items:
-        if id(item.item) in source_items:
-            found = source_items[id(item.item)]
-            p[item.memory], p[item.own] = state.p[found.memory], state.p[found.own]
+        if item in known:
+            p[item.memory], p[item.own] = state.p[known[item].memory], state.p[known[item].own]
         else:
             p[item.values] = item.values_in(p)
     return p, v
+
+
+def set_coordinates(mesh: BeamMesh, values: Mapping[str, np.ndarray], p: np.ndarray) -> None:
+    """Set the coordinates of a mesh in p (n,); values: of every coordinate that a node could have (nodes,), by name."""
+    for label, nodes, dofs in coordinate_columns(mesh):
+        # a rotated vector belongs to the first of the joined nodes
+        mask = mesh.kinematics.node_kind[nodes] != ROTATED_GRADIENTS if label.startswith("r_y") else slice(None)
+        p[dofs[mask]] = values[label][nodes[mask]]
+
+
+def same_connectors(source: Model, system: System) -> dict[Connector, Connector]:
+    """Return the connectors of a system that are in another model, too, each with the one there."""
+    known = {id(item.item): item for item in system_of(source, system.static).connectors.items}
+    return {item: known[id(item.item)] for item in system.connectors.items if id(item.item) in known}
 
 
 def warn_of_lost_history(state: State, system: System, name: str) -> None:

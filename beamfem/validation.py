@@ -255,6 +255,15 @@ def _argument(value: Any) -> str:
     return f"array {value.shape}" if isinstance(value, np.ndarray) and value.size > _ENTRIES else shown(value)
 
 
+def takes(function: Any, count: int) -> bool:
+    """Return whether a function can be called with a number of arguments, False if it does not say so."""
+    try:
+        inspect.signature(function).bind(*count * [0.0])
+    except (TypeError, ValueError):
+        return False
+    return True
+
+
 def function_of_one(name: str, function: Any, argument: str) -> None:
     """Raise InputError if `function` cannot be called with one argument, the `argument`."""
     if not callable(function):

@@ -25,7 +25,7 @@ from beamfem.public_names import public_dataclasses
 from beamfem.section import ElasticFibreSection, RememberingFibreSection, ShapedSection, StiffnessSection
 from beamfem.section.outline import RectangleOutline, TubeOutline
 from beamfem.section.protocol import CrossSection
-from beamfem.validation import function_value
+from beamfem.validation import function_value, takes
 
 
 class NotImportedError(InputError):
@@ -218,11 +218,13 @@ class _Writer:
             return [self.write(item) for item in value]
         if value is None or isinstance(value, bool | int | float | str):
             return value
-        if callable(value):
+        if callable(value) and not (is_dataclass(value) and takes(value, 3)):
             return {"function": self.number(value)}
         return self.own_members(value)
 
     def number(self, function: Callable[[float], float]) -> int:
+        if takes(function, 3):
+            raise InputError("a function of time, angle and speed cannot be saved; make it a dataclass with __call__")
         if id(function) not in self.functions:
             self.functions[id(function)] = len(self.values), function  # kept, so that no other gets its identity
             self.values.append([function_value("saved function", function, at) for at in self.at])

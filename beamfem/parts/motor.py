@@ -2,11 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, ClassVar
+
+import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
+from beamfem.model.contribution import At
 from beamfem.model.load_base import Amplitude, CompositeLoad
 from beamfem.model.load_shapes import Moment
 from beamfem.model.part_units import UNIT
@@ -17,8 +20,8 @@ from beamfem.parts.at_points import PartAtPoints
 from beamfem.parts.hinge import Hinge
 from beamfem.parts.point_moment import PointMoment
 from beamfem.parts.prescribed import Prescribed
-from beamfem.physics.connections import MOTOR, Connection
-from beamfem.validation import convert, finite, function_of_one, shown, squared
+from beamfem.physics.connections import MOTOR, Connection, Number
+from beamfem.validation import called, convert, finite, function_of_one, shown, squared, takes
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +52,46 @@ class Drive(PartAtPoints):
         return ()
 
 
+@dataclass(frozen=True, eq=False)
+class Controller:
+    """The torque of a motor as a function of its state, on the last of its points and against the first of two."""
+
+    points: tuple[Point, ...]
+    torque: Callable[[float, float, float], float]
+
+    unknowns: ClassVar[int] = 0
+    conservative: ClassVar[bool] = False
+
+    def force(self, at: At) -> np.ndarray:
+        """Return the moments that resist."""
+        signs = np.array([-1.0, 1.0])[-len(self.points) :]
+        forces = np.zeros_like(at.q)
+        forces[:, 2] = -signs * self._torque(at.time, np.array([signs @ at.q[:, 2], signs @ at.v[:, 2]]))
+        return forces.ravel()
+
+    def energy(self, at: At) -> tuple[float, float]:
+        """Return no energies."""
+        return 0.0, 0.0
+
+    def _torque(self, time: float, state: np.ndarray) -> Number:
+        """Return the torque; its derivatives are differences, so that the function may be any of real numbers."""
+        real, moved = state.real, state.imag
+
+        def torque(*at: float) -> float:
+            return finite("torque of Motor", called("torque of Motor", self.torque, time, *at))
+
+        result: Number = torque(*real.tolist())
+        for number in np.flatnonzero(moved):
+            step = np.zeros(2)
+            step[number] = _WIDTH * max(1.0, abs(real[number]))
+            slope = (torque(*(real + step).tolist()) - torque(*(real - step).tolist())) / (2.0 * step[number])
+            result += 1j * slope * moved[number]
+        return result
+
+
+_WIDTH = 1e-6  # of the differences, rad and rad/s
+
+
 @dataclass(frozen=True)
 class Motor(CompositeLoad):
     """A motor that turns the section at a point against the ground, or both sides of a hinge against each other.
@@ -69,7 +112,7 @@ class Motor(CompositeLoad):
     speed : float or callable, [rad/s], optional
         Angular velocity; the angle is 0 at the beginning.
     torque : float or callable, [N m], optional
-        Torque, counter-clockwise.
+        Torque, counter-clockwise; also a function of time, angle and speed, such as that of a controller.
 
     Raises
     ------
@@ -88,7 +131,7 @@ class Motor(CompositeLoad):
     at: Point | Hinge
     angle: Value | None = field(default=None, metadata={UNIT: "rad"})
     speed: Value | None = field(default=None, metadata={UNIT: "rad/s"})
-    torque: Value | None = field(default=None, metadata={UNIT: "N m"})
+    torque: Value | Callable[[float, float, float], float] | None = field(default=None, metadata={UNIT: "N m"})
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -98,9 +141,15 @@ class Motor(CompositeLoad):
         if len(given) != 1:
             raise InputError(f"Motor needs one of angle, speed and torque, got {' and '.join(given) or 'none'}")
         if callable(value := getattr(self, given[0])):
-            function_of_one(f"{given[0]} of Motor", value, "time")
+            if not self.controlled:
+                function_of_one(f"{given[0]} of Motor", value, "time")
         else:
             convert(self, squared(finite), given[0])
+
+    @property
+    def controlled(self) -> bool:
+        """Whether its torque is a function of its state."""
+        return callable(self.torque) and takes(self.torque, 3)
 
     @property
     def joint(self) -> Hinge | None:
@@ -119,13 +168,16 @@ class Motor(CompositeLoad):
 
     @property
     def amplitude(self) -> Amplitude:  # type: ignore[override]
-        """A torque that is a function."""
-        return self.torque if callable(self.torque) else None
+        """A torque that is a function of time."""
+        return self.torque if callable(self.torque) and not self.controlled else None  # type: ignore[return-value]
 
     @property
     def conservative(self) -> bool:
-        """Whether its torque is constant; one that changes does work, the torque times the change of the angle."""
-        return not callable(self.torque)
+        """Whether its torque is constant; one that changes does work, the torque times the change of the angle.
+
+        The work of one that is a function of the state is that of its `Controller`.
+        """
+        return self.amplitude is None
 
     @cached_property
     def parts(self) -> tuple[Any, ...]:
@@ -134,6 +186,8 @@ class Motor(CompositeLoad):
             if isinstance(self.at, Hinge):
                 return (Drive(self.at.a, self.at.b, self._turned),)
             return (Prescribed(self.at, rotation=self._turned),)
+        if self.controlled:
+            return (Controller(self.points, self.torque),)  # type: ignore[arg-type]
         size = 1.0 if callable(self.torque) else self.torque
         pairs = zip(self.points, (-size, size)[-len(self.points) :], strict=True)
         return tuple(PointMoment(point, moment, self.amplitude) for point, moment in pairs)
@@ -141,7 +195,7 @@ class Motor(CompositeLoad):
     @property
     def layout(self) -> Any:
         """Points of a torque, of whose size no table depends; see `Load.layout`."""
-        return self if self.torque is None else tuple(part.layout for part in self.parts)
+        return self if self.torque is None or self.controlled else tuple(part.layout for part in self.parts)
 
     @property
     def _turned(self) -> Value:
@@ -150,9 +204,11 @@ class Motor(CompositeLoad):
 
     def changed(self, change: Callable[[Value], Value]) -> "Motor":
         """Return the motor with another angle or torque, what `change` returns for its own."""
+        if self.controlled:
+            return self
         if self.torque is None:
             return replace(self, angle=change(self._turned), speed=None)
-        return replace(self, torque=change(self.torque))
+        return replace(self, torque=change(self.torque))  # type: ignore[arg-type]
 
     def shapes(self, weight: float, placed: Placed) -> tuple[Moment, ...]:
         """Return the torque to draw, or the sense of the angle, see `Load.shapes`."""

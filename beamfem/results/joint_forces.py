@@ -57,7 +57,7 @@ def _of_motor(solution: Solution, motor: Motor) -> np.ndarray:
     if isinstance(last, PointLoad):
         return _of_load(solution, last)
     if not isinstance(last, PointSupport):
-        return connector_force(solution, last)[:, 1]
+        return connector_force(solution, last)[:, -1]
     return reaction_of(solution, [last]) * (0.0, 0.0, 1.0)
 
 

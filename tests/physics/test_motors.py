@@ -1,5 +1,7 @@
 """Motors against rigid-body equations, supports that move, and the torques that they need."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 from rigid_rods import AREA, DENSITY, DEPTH, double_pendulum
@@ -217,3 +219,58 @@ def test_invalid_motors():
         model.with_loads([bf.Motor(other.start, torque=1.0)])
     with pytest.raises(bf.InputError, match="prescribes 1 when the motion begins"):
         bf.simulate(model.with_loads([bf.Motor(model.joints[0], angle=1.0)]), 0.1, 1e-3)
+
+
+@dataclass(frozen=True)
+class Regulator:
+    """A proportional-derivative controller."""
+
+    stiffness: float
+    damping: float
+    target: float = 0.0
+
+    def __call__(self, time, angle, speed):
+        return -self.stiffness * (angle - self.target) - self.damping * speed
+
+
+def test_a_controlled_rod_is_a_damped_oscillator(tmp_path):
+    """J a'' + d a' + k (a - target) = 0, from rest."""
+    rod = line((0, 0), (0.5, 0))
+    inertia = DENSITY * AREA * 0.5 * (0.5**2 / 3 + DEPTH**2 / 12)
+    stiffness, damping, target = 400.0 * inertia, 8.0 * inertia, 0.3
+    motor = bf.Motor(rod.start, torque=Regulator(stiffness, damping, target))
+    model = bf.Model([rod], [bf.Pin(rod.start)], [motor])
+    motion = bf.simulate(model, 0.5, 1e-4, save_every=100)
+    fast = np.sqrt(400.0 - 16.0)
+    wave = np.cos(fast * motion.time) + 4.0 / fast * np.sin(fast * motion.time)
+    exact = target * (1.0 - np.exp(-4.0 * motion.time) * wave)
+    assert motion.rotation(rod.start) == pytest.approx(exact, abs=1e-5 * target)
+    torque = -stiffness * (motion.rotation(rod.start) - target) - damping * motion.v[:, 2]
+    assert motion.joint_force(motor)[:, 2] == pytest.approx(torque, abs=1e-9 * stiffness)
+    poles = bf.linearise(model, about=bf.solve_static(model)).modes(1)
+    assert poles.frequencies[0] * 2 * np.pi == pytest.approx(fast, rel=1e-5)
+    assert poles.damping_ratios[0] == pytest.approx(0.2, rel=1e-5)
+    motion.save(tmp_path / "a.h5")
+    loaded = bf.load(tmp_path / "a.h5")
+    assert loaded.model.loads[0].torque == motor.torque
+    model.plot(tmp_path / "a.png")
+    blind = model.with_loads([bf.Motor(rod.start, torque=lambda time, angle, speed: -angle)])
+    with pytest.raises(bf.InputError, match="cannot be saved; make it a dataclass"):
+        bf.simulate(blind, 0.01, 1e-3).save(tmp_path / "b.h5")
+
+
+def test_a_controlled_hinge_is_a_torsion_spring_and_its_work_is_counted():
+    """In statics, where it may be no smooth function of complex numbers, and in motion."""
+    one, two = line((0, 0), (0.3, 0)), line((0.3, 0), (0.6, 0))
+    hinge, pull = bf.Hinge(one.end, two.start), bf.PointForce(two.end, (0.0, -4.0))
+    motor = bf.Motor(hinge, torque=lambda time, angle, speed: -5.0 * max(angle, -10.0) - 0.02 * speed)
+    spring = bf.TorsionSpring(one.end, two.start, stiffness=5.0, damping=0.02)
+    driven = bf.Model([one, two], [bf.Clamp(one.start)], [pull, motor], [hinge])
+    sprung = bf.Model([one, two], [bf.Clamp(one.start)], [pull], [hinge], connectors=[spring])
+    bent, same = bf.solve_static(driven), bf.solve_static(sprung)
+    assert bent.p == pytest.approx(same.p[:, : bent.p.shape[1]], abs=1e-9)
+    assert bent.joint_force(motor)[-1] == pytest.approx(same.joint_force(spring)[-1], rel=1e-6)
+    one_motion, other = (bf.simulate(model, 0.2, 5e-4) for model in (driven, sprung))
+    assert one_motion.position(two.end) == pytest.approx(other.position(two.end), abs=1e-8)
+    energy = one_motion.energy()
+    assert energy.error == pytest.approx(np.zeros(len(energy.error)), abs=1e-4 * np.abs(energy.work).max())

@@ -1,6 +1,6 @@
 """Discretisation error of a static result, estimated by the equilibrium on an enriched space; shares of elements."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import chain
 from typing import Any, cast
@@ -119,14 +119,16 @@ def carried_coordinates(state: State, target: Model) -> np.ndarray:
     return p
 
 
-def carried_stresses(state: State, target: Model) -> Stresses:
+def carried_stresses(state: State, target: Model, step: np.ndarray | None = None) -> Stresses:
     """Return the stress resultants (ne, nq, ns) of each block of a model: polynomials through those of a state.
+
+    step (n,): a linearised change of the state that they are taken after.
 
     The carried coordinates alone strain the finer elements between the points where the old ones had no strain, which
     would spoil the first tangent.
     """
     source = state.model
-    acting = predicted_stresses(system_of(source, static=True), state.p, np.zeros(len(state.p)), state.at)
+    acting = _stresses_after(state, np.zeros(len(state.p)) if step is None else step)
     system = system_of(target, static=True)
     zeros = np.zeros(target.size)
     result = tuple(np.zeros_like(each) for each in predicted_stresses(system, system.reference, zeros, state.at))
@@ -349,18 +351,57 @@ def error_shares(state: State, finer: Solution) -> list[np.ndarray]:
     finer: the equilibrium on the enriched space. The error is measured by the complementary energy of the stress
     resultants in which the two differ, 1/2 int dS C^-1 dS ds, with the diagonal of the section stiffness C.
     """
-    system = system_of(finer.model, static=True)
-    now = predicted_stresses(system, finer.p[0], np.zeros(finer.model.size), state.at)
-    energies = []
-    for block, before, after in zip(system.blocks, carried_stresses(state, finer.model), now, strict=True):
+    now = _stresses_after(finer[0], np.zeros(finer.model.size))
+    changes = [after - before for after, before in zip(now, carried_stresses(state, finer.model), strict=True)]
+    return _shares(state.model, finer.model, _energies(finer.model, changes))
+
+
+def mode_shares(modes: Iterable[tuple[State, np.ndarray, State, np.ndarray]]) -> list[np.ndarray]:
+    """Return the share (ne,) [-] of each element of each beam in the relative errors of eigenvalues; their sum is 1.
+
+    modes: state and shape (n,) of each, and both on the enriched space. An eigenvalue is off by twice the energy of the
+    difference of the shapes, if both have a modal mass of 1; shapes are compared by their stress resultants.
+    """
+    total: list[np.ndarray] = []
+    for state, shape, finer, finer_shape in modes:
+        rest, finer_rest = np.zeros_like(shape), np.zeros_like(finer_shape)
+        pairs = [
+            (carried_stresses(state, finer.model, shape), carried_stresses(state, finer.model, rest)),
+            (_stresses_after(finer, finer_shape), _stresses_after(finer, finer_rest)),
+        ]
+        before, after = ([moved - still for moved, still in zip(*pair, strict=True)] for pair in pairs)
+        # a mode has no sign
+        both = [
+            _energies(finer.model, [sign * a - b for a, b in zip(before, after, strict=True)]) for sign in (1.0, -1.0)
+        ]
+        least = min(both, key=lambda energies: sum(float(each.sum()) for each in energies))
+        size = sum(float(each.sum()) for each in _energies(finer.model, after))
+        if size > 0.0:
+            parts = [each / size for each in least]
+            total = parts if not total else [a + b for a, b in zip(total, parts, strict=True)]
+            known = state.model, finer.model
+    return _shares(*known, total) if total else []
+
+
+def _stresses_after(state: State, step: np.ndarray) -> Stresses:
+    return predicted_stresses(system_of(state.model, static=True), state.p, step, state.at)
+
+
+def _energies(model: Model, stresses: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """Return twice the complementary energy (ne,) of stress resultants in the elements of each block."""
+    result = []
+    for block, values in zip(system_of(model, static=True).blocks, stresses, strict=True):
         stiffness = np.einsum("cqii->cqi", block.stiffness)
         flexibility = np.divide(1.0, stiffness, out=np.zeros_like(stiffness), where=stiffness > 0.0)
-        change = (after - before) ** 2 * flexibility[block.kind]
-        energies.append((change.sum(axis=-1) * block.weight[block.kind]).sum(axis=-1))
+        result.append(((values**2 * flexibility[block.kind]).sum(axis=-1) * block.weight[block.kind]).sum(axis=-1))
+    return result
+
+
+def _shares(model: Model, finer: Model, energies: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """Return the shares of the elements of each beam in energies of the elements of the blocks of a finer model."""
     shares = []
-    for old, new in zip(state.model.meshes, finer.model.meshes, strict=True):
-        own = energies[new.block][new.first_element : new.first_element + new.elements]
+    for old, new in zip(model.meshes, finer.meshes, strict=True):
         parent = places(old, new, np.array([0.5]))[0][:, 0]
-        shares.append(np.bincount(parent, own, minlength=old.elements))
+        shares.append(np.bincount(parent, energies[new.block][_elements(new)], minlength=old.elements))
     total = sum(float(share.sum()) for share in shares)
     return [share / total if total > 0.0 else share for share in shares]

@@ -20,7 +20,7 @@ from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import may_lock, warn_of
 from beamfem.results.status import Finding, Statistics, Status, counted
 from beamfem.solve.accuracy.adapted_mesh import Shares, prepared, refined_until, require_unlocked
-from beamfem.solve.accuracy.error_estimate import enriched, enriched_state
+from beamfem.solve.accuracy.error_estimate import enriched, enriched_state, mode_shares
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.modes.pencil import WRONG, Pencil, lowest_pairs
 from beamfem.solve.modes.rigid_modes import unresisted
@@ -346,9 +346,12 @@ def _attempt(model: Model, count: int) -> tuple[Modes | None, float, Shares]:
         return None, np.inf, None
     modes, findings = _modes(model, count, None)
     require_unlocked(findings)
-    finer = _modes(enriched(model), count, None)[0].frequencies
-    elastic = finer > 0.0
-    return modes, float(np.max(np.abs(modes.frequencies - finer)[elastic] / finer[elastic], initial=0.0)), None
+    finer = _modes(enriched(model), count, None)[0]
+    elastic = finer.frequencies > 0.0
+    change = np.abs(modes.frequencies / np.where(elastic, finer.frequencies, 1.0) - 1.0)[elastic]
+    shapes = zip(np.real(modes.modes[elastic]), np.real(finer.modes[elastic]), strict=True)
+    shares = mode_shares((modes.state, before, finer.state, after) for before, after in shapes)
+    return modes, float(np.max(change, initial=0.0)), shares or None
 
 
 def _modes(model: Model, count: int, about: State | Solution | None) -> tuple[Modes, Sequence[Finding]]:

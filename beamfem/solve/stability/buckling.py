@@ -1,6 +1,6 @@
 """Buckling: load factors at which the tangent of a loaded structure becomes singular."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -20,7 +20,7 @@ from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import advice, may_lock, warn_of
 from beamfem.results.status import Finding, Statistics, Status
 from beamfem.solve.accuracy.adapted_mesh import Shares, prepared, refined_until, require_unlocked
-from beamfem.solve.accuracy.error_estimate import enriched, enriched_state
+from beamfem.solve.accuracy.error_estimate import enriched, enriched_state, mode_shares
 from beamfem.solve.continuation.bifurcations import Crossing, bifurcations, condensed
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import DISTANCE, Segment, SegmentLostError, interpolation_weights
@@ -272,11 +272,18 @@ def _attempt(model: Model, count: int) -> tuple[_Judged | None, float, Shares]:
         return None, np.inf, None
     buckling, findings = _buckling(model, count, None)
     require_unlocked(findings)
-    finer = _buckling(enriched(model), count, None)[0].load_factors
+    finer = _buckling(enriched(model), count, None)[0]
     if len(finer) != len(buckling):
         return None, np.inf, None
-    error = float(np.max(np.abs(buckling.load_factors - finer) / np.abs(finer), initial=0.0))
-    return (buckling, findings), error, None
+    change = np.abs(buckling.load_factors - finer.load_factors) / np.abs(finer.load_factors)
+    shapes = zip(_shapes(buckling), _shapes(finer), strict=True)
+    return (buckling, findings), float(np.max(change, initial=0.0)), mode_shares((*a, *b) for a, b in shapes) or None
+
+
+def _shapes(buckling: Buckling) -> Iterator[tuple[State, np.ndarray]]:
+    """Yield state and shape of each critical point."""
+    for p, at, shape in zip(buckling.states, buckling.load_factors.tolist(), buckling.modes, strict=True):
+        yield State(p, np.zeros_like(p), np.zeros_like(p), at, buckling.model), shape
 
 
 def _buckling(model: Model, count: int, about: State | Solution | None) -> _Judged:

@@ -22,7 +22,7 @@ Contents; see help(bf.Beam), for example, for details.
     Model             Model Beam Point Material Rayleigh KelvinVoigt graded RotatingFrame
     Axes              Line Arc Polyline Chain BSpline Parametric Curve
                       elliptic_arc spline_through_hermite without_removable_knots
-    Sections          Rectangle Circle Tube Section Layered Layer SectionLaw
+    Sections          Rectangle Circle Tube Polygon Profile Section Layered Layer SectionLaw
                       Fibres ElasticPlastic RambergOsgood Maxwell
     Elements          ANCF CRBF ANCFCRBF BilinearANCF BilinearCRBF ShearRigid Element
     Element parts     Cubic Lagrange Gradients Rotation ShearFree

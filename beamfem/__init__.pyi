@@ -131,6 +131,8 @@ from .section import Fibres as Fibres
 from .section import Layer as Layer
 from .section import Layered as Layered
 from .section import Maxwell as Maxwell
+from .section import Polygon as Polygon
+from .section import Profile as Profile
 from .section import RambergOsgood as RambergOsgood
 from .section import Rectangle as Rectangle
 from .section import RememberingLaw as RememberingLaw

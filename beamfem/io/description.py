@@ -23,7 +23,7 @@ from beamfem.model.sampled_functions import Sampled, SampledAlong, SampledSectio
 from beamfem.model.time_functions import Interpolated
 from beamfem.public_names import public_dataclasses
 from beamfem.section import ElasticFibreSection, RememberingFibreSection, ShapedSection, StiffnessSection
-from beamfem.section.outline import RectangleOutline, TubeOutline
+from beamfem.section.outline import RectangleOutline, StripOutline, TubeOutline
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import function_value, takes
 
@@ -94,6 +94,7 @@ _FURTHER = (  # public ones of other folders, and those whose objects public fun
     ElasticFibreSection,
     RememberingFibreSection,
     RectangleOutline,
+    StripOutline,
     TubeOutline,
     SampledAlong,
     SampledSection,

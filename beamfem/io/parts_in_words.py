@@ -45,6 +45,8 @@ def section_in_words(section: Any, unit: Unit) -> str:
     """Return a section with its sizes and units; of the user's own class its text."""
     metre = unit("m")
     match section:
+        case ShapedSection(name=str(name)) if name:
+            return name
         case ShapedSection(outline=RectangleOutline() as shape):
             return f"rectangle {shape.breadth:g} x {shape.high - shape.low:g} {metre}"
         case ShapedSection(outline=TubeOutline() as shape):

@@ -5,4 +5,6 @@ from beamfem.section.fibres import ElasticFibreSection, Fibres, RememberingFibre
 from beamfem.section.law import RememberingLaw, SectionLaw
 from beamfem.section.layered import Layer, Layered
 from beamfem.section.moments import Section, StiffnessSection
+from beamfem.section.polygon import Polygon
+from beamfem.section.profiles import Profile
 from beamfem.section.section_shapes import Circle, Rectangle, ShapedSection, Tube

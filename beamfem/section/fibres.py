@@ -10,7 +10,7 @@ from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.quadrature import gauss_between
 from beamfem.section.fibre_laws import FibreLaw, FibreLawWithHistory
-from beamfem.section.outline import RectangleOutline, TubeOutline
+from beamfem.section.outline import RectangleOutline, StripOutline, TubeOutline
 from beamfem.section.protocol import Inertia, Rigidity
 from beamfem.section.section_shapes import ShapedSection
 from beamfem.validation import fulfils, number_below, shown
@@ -136,7 +136,7 @@ def Fibres(
 
     Parameters
     ----------
-    shape : Rectangle, Circle or Tube
+    shape : Rectangle, Circle, Tube, Polygon or Profile
         Shape of the section.
     law : ElasticPlastic, RambergOsgood, Maxwell, or one of your own
         The law of all fibres, see `FibreLaw` and `FibreLawWithHistory`.
@@ -160,7 +160,7 @@ def Fibres(
     >>> bar = bf.Fibres(bf.Rectangle(0.01, 0.01), mild, points=40)
     """
     if not isinstance(shape, ShapedSection) or shape.outline is None:
-        raise InputError(f"shape of Fibres must be a Rectangle, Circle or Tube, got {shown(shape)}")
+        raise InputError(f"shape of Fibres must be a Rectangle, Circle, Tube, Polygon or Profile, got {shown(shape)}")
     number = number_below("points of Fibres", points, _MOST + 1, 2)
     if fulfils(law, FibreLawWithHistory):
         return RememberingFibreSection(shape, cast(FibreLawWithHistory, law), number)
@@ -169,8 +169,17 @@ def Fibres(
     raise InputError(f"law of Fibres must be a law such as ElasticPlastic(...), got {shown(law)}")
 
 
-def _fibres_of(outline: RectangleOutline | TubeOutline, points: int) -> tuple[np.ndarray, np.ndarray]:
+def _fibres_of(
+    outline: RectangleOutline | TubeOutline | tuple[StripOutline, ...], points: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Return heights [m] and positive areas [m^2] of the fibres of an outline."""
+    if isinstance(outline, tuple):
+        share = points / (outline[-1].high - outline[0].low)
+        counts = [max(2, round(share * (strip.high - strip.low))) for strip in outline]
+        rules = [gauss_between(strip.low, strip.high, count) for strip, count in zip(outline, counts, strict=True)]
+        heights, weights = (np.concatenate(values) for values in zip(*rules, strict=True))
+        widths = [strip.width(at) for strip, (at, _) in zip(outline, rules, strict=True)]
+        return heights, weights * np.concatenate(widths)
     if isinstance(outline, RectangleOutline):
         return outline.quadrature(points)
     if outline.inner == 0.0:  # Gauss's rule for the weight sqrt(R^2 - y^2), of Chebyshev's second kind

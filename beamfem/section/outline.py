@@ -63,6 +63,42 @@ class TubeOutline:
 
 
 @dataclass(frozen=True)
+class StripOutline:
+    """A strip from low to high [m] between lines and arcs, of the width a + b y + sum of c sqrt(r^2 - (y - m)^2) [m].
+
+    line: a and b; arcs: c, m and r of each.
+    """
+
+    low: float
+    high: float
+    line: tuple[float, float]
+    arcs: tuple[tuple[float, float, float], ...] = ()
+    known: ClassVar[bool] = True
+
+    def width(self, y: np.ndarray) -> np.ndarray:
+        width = self.line[0] + self.line[1] * y
+        return np.asarray(width + sum(c * _half_chord(r, y - m) for c, m, r in self.arcs))
+
+    def below(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        offset, slope = self.line
+        powers = [(y**n - self.low**n) / n for n in (1, 2, 3)]
+        area, first = (offset * powers[n] + slope * powers[n + 1] for n in (0, 1))
+        for c, m, r in self.arcs:
+            segment, moment = (a - b for a, b in zip(_segment(r, y - m), _segment(r, self.low - m), strict=True))
+            area, first = area + 0.5 * c * segment, first + 0.5 * c * (m * segment + moment)
+        return area, first
+
+    def quadrature(self, points: int) -> tuple[np.ndarray, np.ndarray]:
+        if not self.arcs:
+            heights, weights = gauss_between(self.low, self.high, points)
+            return heights, weights * self.width(heights)
+        angle, weights = gauss_between(0.0, np.pi, points)  # of a circle: arcs may end upright at the faces
+        half = 0.5 * (self.high - self.low)
+        heights = self.low + half * (1.0 - np.cos(angle))
+        return heights, weights * half * np.sin(angle) * self.width(heights)
+
+
+@dataclass(frozen=True)
 class MomentsOutline:
     """A part of which only the integrals of 1, y, ..., y^4 [m^2 ... m^6] are known.
 
@@ -104,14 +140,14 @@ class Part:
     """A part of a section: its Young's modulus [Pa] and its outline."""
 
     modulus: float
-    outline: RectangleOutline | TubeOutline | MomentsOutline
+    outline: RectangleOutline | TubeOutline | StripOutline | MomentsOutline
 
 
-def _half_chord(radius: float, y: np.ndarray) -> np.ndarray:
+def _half_chord(radius: float, y: np.ndarray | float) -> np.ndarray:
     return np.sqrt(np.maximum((radius - y) * (radius + y), 0.0))
 
 
-def _segment(radius: float, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _segment(radius: float, y: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
     """Return the area and first moment of the part of a disc below y."""
     at = np.clip(y, -radius, radius)
     chord = _half_chord(radius, at)

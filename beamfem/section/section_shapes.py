@@ -8,21 +8,32 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.section.moments import Section, required
-from beamfem.section.outline import Part, RectangleOutline, TubeOutline
+from beamfem.section.outline import Part, RectangleOutline, StripOutline, TubeOutline
 from beamfem.validation import positive
 
 
 @dataclass(frozen=True)
 class ShapedSection(Section):
-    """A section of known shape: a rectangle, a circle or a tube; see `Rectangle`, `Circle` and `Tube`."""
+    """A section of known shape, see `Rectangle`, `Circle`, `Tube`, `Polygon` and `Profile`.
 
-    outline: RectangleOutline | TubeOutline | None = None
+    outline: its shape, or strips of it from the bottom up; third_moment: integral of y^3 dA [m^5].
+    """
+
+    outline: RectangleOutline | TubeOutline | tuple[StripOutline, ...] | None = None
+    third_moment: float = 0.0
+    name: str = ""
+
+    def moments(self, material: Material | None) -> list[tuple[Material, np.ndarray]]:
+        """Return the material with (A, 0, I, I3, I4), see `CrossSection.moments`. Raises InputError without one."""
+        moments = [self.area, 0.0, self.second_moment, self.third_moment, self.fourth_moment]
+        return [(required(material), np.array(moments))]
 
     def parts(self, material: Material | None) -> tuple[Part, ...]:
-        """Return the section as one part with its outline. Raises InputError without a material."""
+        """Return the section as a part for each outline. Raises InputError without a material."""
         if self.outline is None:
             return super().parts(material)
-        return (Part(required(material).youngs_modulus, self.outline),)
+        outlines = self.outline if isinstance(self.outline, tuple) else (self.outline,)
+        return tuple(Part(required(material).youngs_modulus, outline) for outline in outlines)
 
 
 def Rectangle(width: float, height: float, shear_factor: float = 5 / 6) -> Section:

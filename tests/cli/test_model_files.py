@@ -299,6 +299,36 @@ def test_sections_of_fibres_are_those_of_python(keys, law, tmp_path):
     assert beam.section == bf.Fibres(bf.Tube(0.02, 0.002), law, 12)
 
 
+@pytest.mark.parametrize(
+    ("keys", "section"),
+    [
+        ('{ kind = "profile", name = "UPN 200", weak = true }', bf.Profile("UPN 200", weak=True)),
+        ('{ kind = "polygon", corners = [[0, 0], [1, 0, 0.1], [0, 1]] }', bf.Polygon([(0, 0), (1, 0, 0.1), (0, 1)])),
+    ],
+)
+def test_profiles_and_polygons_in_a_model_file(tmp_path, keys, section):
+    text = f"""
+    [materials.steel]
+    youngs_modulus = 2e11
+    poisson_ratio = 0.3
+    density = 7800
+    [beams.bar]
+    curve = {{ kind = "line", start = [0, 0], end = [1, 0] }}
+    elements = 2
+    element = {{ kind = "CRBF", order = 3 }}
+    material = "steel"
+    section = {keys}
+    [[supports]]
+    kind = "clamp"
+    points = ["bar.start"]
+    [analysis]
+    kind = "static"
+    """
+    (tmp_path / "a.toml").write_text(text)
+    (beam,) = read_model_file(tmp_path / "a.toml").model.beams
+    assert beam.section == section
+
+
 def test_parts_by_name_and_in_place_are_those_of_python(tmp_path):
     text = """
     [materials.steel]

@@ -118,7 +118,7 @@ def test_saved_with_its_law(tmp_path, law):
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: bf.Fibres(bf.Section(1e-4, 1e-9), PLASTIC), "must be a Rectangle, Circle or Tube"),
+        (lambda: bf.Fibres(bf.Section(1e-4, 1e-9), PLASTIC), "must be a Rectangle, Circle, Tube"),
         (lambda: bf.Fibres(SQUARE, bf.Material(2e11, 0.3, 7800.0)), "law of Fibres must be a law"),
         (lambda: bf.Fibres(SQUARE, PLASTIC, points=1), "points of Fibres must be between 2 and"),
         (

@@ -41,7 +41,7 @@ Contents; see help(bf.Beam), for example, for details.
     Integrators       GeneralizedAlpha HHT Newmark Trapezoidal Midpoint Gauss Radau EnergyMomentum
     Results           Solution State Path PathState Bifurcation Modes Buckling Status
                       LinearModel FrequencyResponse MotionState Occurrence
-    Along beams       SectionForces BeamStress Fields FieldOnBasis field_on_basis
+    Along beams       SectionForces BeamStress envelope Envelope Fields FieldOnBasis field_on_basis
     Studies           sweep converge
     User-defined      PointLoad LineLoad BodyLoad ImposedStrain PointSupport LineSupport Joint
                       Contribution At PartAtPoints PartAlongBeam Connection Remembering RememberingLaw

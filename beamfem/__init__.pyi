@@ -111,6 +111,8 @@ from .parts.torsion_spring import TorsionSpring as TorsionSpring
 from .parts.weld import Weld as Weld
 from .physics.connections import Connection as Connection
 from .results.beam_stress import BeamStress as BeamStress
+from .results.envelope import Envelope as Envelope
+from .results.envelope import envelope as envelope
 from .results.motion_state import MotionState as MotionState
 from .results.motion_state import Occurrence as Occurrence
 from .results.path import Bifurcation as Bifurcation

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from beamfem.errors import InputError
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.beam import Beam
 from beamfem.results.axis_points import AxisPoints
@@ -139,6 +140,17 @@ def peak_stress(solution: Solution, part: Part = "von_mises") -> Peak:
         what = "nan" if unknown.all() else "left out"
         warn_of_unknown_stress(beams, np.flatnonzero(unknown).tolist(), what)
     return extreme_of_beams(sizes, measure, lambda number: beam_stress(solution, beams[number]).peak(part))[1]
+
+
+def safety_factor(solution: Solution, beam: Beam | None) -> float:
+    """Return strength over the largest von Mises stress of a beam, or of all, see `Solution.safety_factor`."""
+    peak = peak_stress(solution, "utilisation") if beam is None else beam_stress(solution, beam).peak("utilisation")
+    if not np.isfinite(peak.value):
+        raise InputError(
+            "a safety factor needs the strength of a material, Material(..., strength=), and a section with a stress, "
+            "such as Rectangle, Profile or Section(..., height=)"
+        )
+    return 1.0 / peak.value if peak.value > 0.0 else np.inf
 
 
 def _measure(part: Part) -> Measure:

@@ -459,6 +459,23 @@ class Solution:
 
         return peak_stress(self, part)
 
+    def safety_factor(self, beam: Beam | None = None) -> float:
+        """Return the strength over the largest von Mises stress of a beam, or of all beams, over the rows [-].
+
+        Beams without a strength are left out. Raises InputError if no strength or no stress is known.
+
+        Examples
+        --------
+        >>> strong = bf.Material(2.1e11, 0.3, 7850.0, strength=3.6e8)
+        >>> shelf = bf.Beam(bf.Line((0, 0), (2, 0)), 4, bf.CRBF(order=3), bf.Rectangle(0.05, 0.1), strong)
+        >>> loads = [bf.PointForce(shelf.end, (0.0, -1e4))]
+        >>> round(bf.solve_static(bf.Model([shelf], [bf.Clamp(shelf.start)], loads)).safety_factor(), 2)
+        1.5
+        """
+        from beamfem.results.beam_stress import safety_factor
+
+        return safety_factor(self, beam)
+
     @cached_property
     def _momenta(self) -> tuple[postprocess.Momenta, ...]:
         return tuple(postprocess.momenta(mesh, self.p, self.v) for mesh in self.model.meshes)

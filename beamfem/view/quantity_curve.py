@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.model.beam import Point
+from beamfem.model.beam import Beam, Point
 from beamfem.results.axis_fields import QUANTITIES, Quantity
+from beamfem.results.axis_fields import quantity as quantity_along
 from beamfem.results.axis_points import AxisPoints
+from beamfem.results.envelope import Envelope
 from beamfem.results.path import Path, PathState
 from beamfem.results.quantities import AT_POINT, UNITS, value_of
 from beamfem.results.solution import Solution
@@ -119,6 +121,23 @@ def plot_load_displacement(
     axes.margins(0.06, 0.1)
     if marked:
         write_labels(axes, marked, [f"{at:.5g}" for _, at in marked], colours, np.column_stack([curve, load]))
+    return save_figure(figure, path)
+
+
+def plot_envelope(envelope: Envelope, beam: Beam, name: str, path: str | PathLike[str] | None = None) -> Any:
+    """Draw the envelope of a quantity along a beam and return the figure. See `Envelope.plot`."""
+    curve, model = envelope.along(beam, name), next(iter(envelope.cases.values())).model
+    drawn = quantity_along(name)
+    figure, axes = new_figure()
+    axes.axhline(0.0, color="0.6", linewidth=0.8)
+    axes.fill_between(curve.arc_length, curve.smallest, curve.largest, color="0.88", label="envelope")
+    for number, (case, sides) in enumerate(curve.cases.items()):
+        for values, label in zip(sides, (case, None), strict=True):
+            axes.plot(curve.arc_length, values, color=COLOURS[number % len(COLOURS)], linewidth=1.4, label=label)
+    axes.set_xlabel(f"arc length [{model.unit('m')}]")
+    axes.set_ylabel(f"{drawn.label} [{model.unit(drawn.unit)}]")
+    axes.margins(x=0.02)
+    figure.legend(loc="outside upper center", ncols=4, frameon=False)
     return save_figure(figure, path)
 
 

@@ -32,7 +32,7 @@ Contents; see help(bf.Beam), for example, for details.
     Masses, springs   PointMass RigidBody SpringDamper TorsionSpring Bushing Cable
                       Link Slider SliderOnBeam Weld Gear Drag Stop HingeFriction HingeStop
     Loads             PointForce PointMoment DistributedLoad Pressure Gravity Actuation Temperature
-                      Motor MovingForce
+                      Pretension Motor MovingForce
     Time functions    Interpolated Piecewise
     From files        read_mesh LineMesh Frame read_dxf load
     Solvers           solve_static trace_equilibrium solve_buckling solve_modes simulate resume

@@ -98,6 +98,7 @@ from .parts.point_mass import PointMass as PointMass
 from .parts.point_moment import PointMoment as PointMoment
 from .parts.prescribed import Prescribed as Prescribed
 from .parts.pressure import Pressure as Pressure
+from .parts.pretension import Pretension as Pretension
 from .parts.rigid import Rigid as Rigid
 from .parts.rigid_body import RigidBody as RigidBody
 from .parts.roller import Roller as Roller

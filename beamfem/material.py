@@ -53,7 +53,9 @@ class Material:
         convert(self, optional(positive), "strength")
         if not -1.0 < self.poisson_ratio < 0.5:
             raise InputError(
-                f"poisson_ratio of Material must lie between -1 and 0.5 (both excluded), got {self.poisson_ratio}"
+                f"poisson_ratio of Material must lie between -1 and 0.5 (both excluded), got {self.poisson_ratio}: "
+                "else its shear modulus E / (2 (1 + nu)) or bulk modulus E / (3 (1 - 2 nu)) would not be positive and "
+                "finite; rubber has about 0.49"
             )
 
         if self.retardation_time < 0.0:

@@ -98,8 +98,8 @@ def modes_table(modes: "Modes") -> str:
     rows, unit = [], modes.model.unit
     for number, (frequency, growth) in enumerate(zip(modes.frequencies.tolist(), modes.growth.tolist(), strict=True)):
         what = f"rigid: {modes.rigid[number]}" if number < len(modes.rigid) else "grows" if growth > 0.0 else ""
-        rows.append((number, frequency, growth, what))
-    head = ("mode", f"frequency [{unit('Hz')}]", f"growth [{unit('1/s')}]", "")
+        rows.append((number, frequency, 2.0 * np.pi * frequency, growth, what))
+    head = ("mode", f"frequency [{unit('Hz')}]", f"[{unit('rad/s')}]", f"growth [{unit('1/s')}]", "")
     return f"<b>Modes</b>{as_html(head, rows)}"
 
 

@@ -92,6 +92,11 @@ class Modes:
         return self.frequencies[len(self.rigid) :]
 
     @property
+    def angular_frequencies(self) -> np.ndarray:
+        """Angular frequencies 2 pi f [rad/s], (count,)."""
+        return 2.0 * np.pi * self.frequencies
+
+    @property
     def status(self) -> Status:
         """UNSTABLE if a mode grows, otherwise COMPLETED; a solve that misses modes raises an error."""
         return Status.UNSTABLE if np.any(self.growth > 0.0) else Status.COMPLETED

@@ -34,7 +34,7 @@ Contents; see help(bf.Beam), for example, for details.
     Loads             PointForce PointMoment DistributedLoad Pressure Gravity Actuation Temperature
                       Pretension Motor MovingForce
     Time functions    Interpolated Piecewise
-    From files        read_mesh LineMesh Frame read_dxf load
+    From files        read_mesh LineMesh Frame read_abaqus_model AbaqusModel read_dxf load
     Solvers           solve_static trace_equilibrium solve_buckling solve_modes simulate resume
                       linearise frequency_response reduce
     Solver settings   Newton RigidVelocity Event

@@ -52,6 +52,8 @@ from .errors import UnitsWarning as UnitsWarning
 from .errors import UnknownPointError as UnknownPointError
 from .errors import UnknownStressWarning as UnknownStressWarning
 from .errors import UnstableWarning as UnstableWarning
+from .io.abaqus_model import AbaqusModel as AbaqusModel
+from .io.abaqus_model import read_abaqus_model as read_abaqus_model
 from .io.cad import read_dxf as read_dxf
 from .io.frame import Frame as Frame
 from .io.line_mesh import LineMesh as LineMesh

@@ -20,14 +20,14 @@ from beamfem.io.meshio_reader import MeshFile
 _STRAIGHT = re.compile(r"(T[23]D2|B[23][13]|PIPE[23]1|FRAME[23]D)")
 _QUADRATIC = re.compile(r"(T[23]D3|B[23]2|PIPE[23]2)")
 # What belongs to the mesh, or says nothing; *INCLUDE is followed where it stands.
-_OF_THE_MESH = {"NODE", "ELEMENT", "NSET", "ELSET", "HEADING", "PREPRINT", "INSTANCE", "PART", "ASSEMBLY"}
-_OF_THE_MESH |= {"END INSTANCE", "END PART", "END ASSEMBLY", "END STEP"}
+OF_THE_MESH = {"NODE", "ELEMENT", "NSET", "ELSET", "HEADING", "PREPRINT", "INSTANCE", "PART", "ASSEMBLY"}
+OF_THE_MESH |= {"END INSTANCE", "END PART", "END ASSEMBLY", "END STEP"}
 _NAMED = 8
 _GENERATORS = ("NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY", "SYSTEM")
 
 
 @dataclass(frozen=True)
-class _Section:
+class Keyword:
     """A keyword line with its parameters and data lines; `place` identifies it in messages."""
 
     keyword: str
@@ -48,7 +48,7 @@ class _Sets:
         self.names.setdefault(name.upper(), name)
         self.numbers.setdefault(name.upper(), {}).update(dict.fromkeys(numbers))
 
-    def define(self, section: _Section) -> None:
+    def define(self, section: Keyword) -> None:
         """Add the content of a *NSET or *ELSET: numbers, ranges or other sets. Raises InputError."""
         numbers: dict[range, None] = {}  # sets of sets may name the same one time and again
         for row in section.rows:
@@ -84,43 +84,65 @@ def _one(number: int) -> range:
 
 
 def read_abaqus(path: Path) -> MeshFile:
-    """Return the content of an input file. Raises InputError, with the line, for anything that cannot be read."""
+    """Return the mesh in an input file. Raises InputError, with the line, for anything that cannot be read."""
+    keywords = list(keywords_of(path))
+    content = content_of(path, keywords)
+    others: dict[str, None] = {}
+    for keyword in keywords:
+        if keyword.keyword not in OF_THE_MESH:
+            name = keyword.parameters.get("NAME") or keyword.parameters.get("ELSET", "")
+            others[f"*{keyword.keyword} {name}".rstrip()] = None
+    if others:
+        warn(
+            f"{path}: nodes, elements and sets are read, and nothing else; left out: {listed(others)}. Give section "
+            "and material to mesh.frame(...), supports and loads to Model(...), or use read_abaqus_model",
+            NotReadWarning,
+        )
+    return content
+
+
+def listed(names: Iterable[str]) -> str:
+    """Return the first names of what is left out, and the number of the others."""
+    every = list(names)
+    return f"{', '.join(every[:_NAMED])}{f' and {len(every) - _NAMED} more' if len(every) > _NAMED else ''}"
+
+
+def content_of(path: Path, keywords: Iterable[Keyword], trusses: str = "") -> MeshFile:
+    """Return the mesh of keywords. Raises InputError, with the line, for anything that cannot be read.
+
+    trusses: name of an element set of all trusses; with it, nodes and elements that supports and loads number become
+    sets that are named by their number.
+    """
     nodes: dict[int, tuple[float, ...]] = {}
     cells: dict[int, tuple[str, list[int]]] = {}
     node_sets, element_sets = _Sets("nset"), _Sets("elset")
-    others: dict[str, None] = {}
-    for section in _sections(path):
-        if section.keyword not in _OF_THE_MESH:
-            name = section.parameters.get("NAME") or section.parameters.get("ELSET", "")
-            others[f"*{section.keyword} {name}".rstrip()] = None
+    for section in keywords:
         try:
             if section.keyword == "NODE":
                 _add_nodes(section, nodes, node_sets)
             elif section.keyword == "ELEMENT":
                 _add_elements(section, cells, element_sets)
+                if trusses and section.parameters["TYPE"].upper().startswith("T"):
+                    element_sets.add(trusses, [_one(int(row[0])) for row in section.rows])
             elif section.keyword == "NSET":
                 node_sets.define(section)
             elif section.keyword == "ELSET":
                 element_sets.define(section)
+            elif trusses and section.keyword in ("BOUNDARY", "CLOAD", "DLOAD"):
+                sets = element_sets if section.keyword == "DLOAD" else node_sets
+                for number in (row[0].rpartition(".")[2] for row in section.rows):
+                    if number.isdigit():
+                        sets.add(number, [_one(int(number))])
             elif section.keyword in _GENERATORS or (section.keyword == "INSTANCE" and section.rows):
                 raise InputError(f"{section.place}: *{section.keyword} cannot be read; write out all nodes in place")
         except (ValueError, KeyError, IndexError) as error:
             if isinstance(error, InputError):
                 raise
             raise InputError(f"{section.place}: the lines below *{section.keyword} cannot be read: {error}") from error
-    content = _assembled(path, nodes, cells, node_sets, element_sets)
-    if others:
-        named, more = list(others)[:_NAMED], len(others) - _NAMED
-        warn(
-            f"{path}: nodes, elements and sets are read, and nothing else; left out: {', '.join(named)}"
-            f"{f' and {more} more' if more > 0 else ''}. Give section and material to mesh.frame(...), "
-            "supports and loads to Model(...)",
-            NotReadWarning,
-        )
-    return content
+    return _assembled(path, nodes, cells, node_sets, element_sets)
 
 
-def _add_nodes(section: _Section, nodes: dict[int, tuple[float, ...]], sets: _Sets) -> None:
+def _add_nodes(section: Keyword, nodes: dict[int, tuple[float, ...]], sets: _Sets) -> None:
     for row in section.rows:
         point = (*(float(value or 0.0) for value in row[1:4]), 0.0, 0.0, 0.0)[:3]
         if nodes.setdefault(int(row[0]), point) != point:
@@ -132,7 +154,7 @@ def _add_nodes(section: _Section, nodes: dict[int, tuple[float, ...]], sets: _Se
         sets.add(section.parameters["NSET"], [_one(int(row[0])) for row in section.rows])
 
 
-def _add_elements(section: _Section, cells: dict[int, tuple[str, list[int]]], sets: _Sets) -> None:
+def _add_elements(section: Keyword, cells: dict[int, tuple[str, list[int]]], sets: _Sets) -> None:
     kind = section.parameters["TYPE"].upper()
     size = 2 if _STRAIGHT.match(kind) else 3 if _QUADRATIC.match(kind) else None
     name = {2: "line", 3: "line3", None: kind}[size]
@@ -189,7 +211,7 @@ def _middle_last(table: np.ndarray, points: np.ndarray) -> np.ndarray:
     return np.take_along_axis(table, order, axis=1)
 
 
-def _sections(path: Path, depth: int = 0) -> Iterator[_Section]:
+def keywords_of(path: Path, depth: int = 0) -> Iterator[Keyword]:
     """Yield the keywords of a file and of those it includes."""
     if depth > 10:
         raise InputError(f"{path}: files include each other without end")
@@ -197,7 +219,7 @@ def _sections(path: Path, depth: int = 0) -> Iterator[_Section]:
         lines = readable(path).read_text(errors="replace").splitlines()
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error}") from error
-    section: _Section | None = None
+    section: Keyword | None = None
     number = 0
     while number < len(lines):
         line = lines[number].strip()
@@ -216,9 +238,9 @@ def _sections(path: Path, depth: int = 0) -> Iterator[_Section]:
         keyword, *words = line[1:].split(",")
         pairs = (word.partition("=") for word in words)
         parameters = {name.strip().upper(): value.strip().strip('"') for name, _, value in pairs}
-        section = _Section(keyword.strip().upper(), parameters, [], f"{path}, line {begun}")
+        section = Keyword(keyword.strip().upper(), parameters, [], f"{path}, line {begun}")
         if section.keyword == "INCLUDE":
-            yield from _sections(path.parent / parameters.get("INPUT", ""), depth + 1)
+            yield from keywords_of(path.parent / parameters.get("INPUT", ""), depth + 1)
             section = None
     if section is not None:
         yield section

@@ -172,12 +172,12 @@ def read_mesh(path: str | PathLike[str], *, merge: bool = False) -> LineMesh:
     source = readable(path)
     content = read_abaqus(source) if source.suffix.lower() == ".inp" else read_through_meshio(source)
     try:
-        return _line_mesh(content, merge)
+        return line_mesh(content, merge)
     except InputError as error:
         raise InputError(f"{source}: {error}") from None
 
 
-def _line_mesh(content: MeshFile, merge: bool) -> LineMesh:
+def line_mesh(content: MeshFile, merge: bool) -> LineMesh:
     _refuse_other_cells(content)
     tables, numbers = [np.empty((0, 3), dtype=np.int64)], [np.empty(0, dtype=np.int64)]
     vertices: dict[int, int] = {}

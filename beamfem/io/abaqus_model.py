@@ -1,0 +1,363 @@
+"""Planar models of beams and trusses in input files of Abaqus and CalculiX: what a `Model` is made of.
+
+Source: Abaqus keywords reference and analysis guide (beam section library, default shear coefficients, loads of beams).
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+from beamfem.atomic_write import readable
+from beamfem.element.element import CRBF, Element
+from beamfem.errors import InputError, NotReadWarning, warn
+from beamfem.io.abaqus import OF_THE_MESH, Keyword, content_of, keywords_of, listed
+from beamfem.io.frame import Frame, build_frame
+from beamfem.io.line_mesh import LineMesh, line_mesh
+from beamfem.material import Material
+from beamfem.model.beam import Point
+from beamfem.model.joint_base import Joint
+from beamfem.model.load_base import Load
+from beamfem.model.model import Model
+from beamfem.model.supports import PointSupport
+from beamfem.parts.clamp import Clamp
+from beamfem.parts.distributed_load import DistributedLoad
+from beamfem.parts.gravity import Gravity
+from beamfem.parts.hinge import Hinge
+from beamfem.parts.pin import Pin
+from beamfem.parts.point_force import PointForce
+from beamfem.parts.point_moment import PointMoment
+from beamfem.parts.prescribed import Prescribed
+from beamfem.parts.pressure import Pressure
+from beamfem.parts.rigid import Rigid
+from beamfem.reprs import brief
+from beamfem.section import Circle, Polygon, Rectangle, Section, StiffnessSection, Tube
+
+_DIRECTIONS = {1: "ux", 2: "uy", 6: "rotation"}
+_SYMMETRIES = {"ENCASTRE": range(1, 7), "PINNED": (1, 2, 3), "XSYMM": (1, 5, 6), "YSYMM": (2, 4, 6)}
+_OF_MATERIAL = {"DENSITY": ("density",), "EXPANSION": ("thermal_expansion",), "PLASTIC": ("strength",)}
+_PRINTED = {"OUTPUT", "NODE OUTPUT", "ELEMENT OUTPUT", "ENERGY OUTPUT", "NODE PRINT", "EL PRINT", "NODE FILE"}
+_PRINTED |= {"EL FILE", "END STEP", "RESTART", "FILE FORMAT", "MONITOR", "CONTROLS", "SOLVER CONTROLS"}
+_TRUSSES = "trusses of the file"
+_JOINED = "ends of trusses of the file"
+# the shear coefficients that Abaqus takes by default
+_SHAPES: dict[str, tuple[int, Callable[..., Section]]] = {
+    "RECT": (2, lambda a, b: Rectangle(a, b, 0.85)),
+    "CIRC": (1, lambda r: Circle(2.0 * r, 0.89)),
+    "PIPE": (2, lambda r, t: Tube(2.0 * r, t, 0.53)),
+    "BOX": (6, lambda a, b, *t: _box(a, b, *t)),
+    "I": (7, lambda *sizes: _i_section(*sizes)),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class AbaqusModel:
+    """A model from an input file, see `read_abaqus_model`.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    frame : Frame
+        Its beams and joints, with the sets of the file: `frame.members(elset)`, `frame.points(nset)`.
+    procedures : tuple of str
+        Procedures of the steps, such as "STATIC" or "STATIC, RIKS".
+    """
+
+    model: Model
+    frame: Frame
+    procedures: tuple[str, ...]
+
+    __repr__ = brief
+
+
+def read_abaqus_model(path: str | PathLike[str], elements: int = 1, element: Element | None = None) -> AbaqusModel:
+    """Return the planar model of an input file of Abaqus or CalculiX, in its units.
+
+    Beams (B21, B22, B23 and the like, in the plane z = 0) and trusses (T2D2, hinged bars that do not buckle);
+    *BEAM SECTION (RECT, CIRC, PIPE, BOX, I) with the shear coefficients of Abaqus, *BEAM GENERAL SECTION, *SOLID
+    SECTION; *ELASTIC, *DENSITY, *EXPANSION, the first yield stress of *PLASTIC as strength; *BOUNDARY; *CLOAD; *DLOAD
+    of types PX, PY, P2 and GRAV. Loads and displacements are those at the end of the last step. Elements that follow
+    each other become one beam, and deflections are large, whether a step has NLGEOM or not.
+
+    Parameters
+    ----------
+    path : path
+        The input file.
+    elements : int, default 1
+        Finite elements for each element of the file.
+    element : Element, optional
+        Element of the beams, by default `CRBF(order=2)`.
+
+    Returns
+    -------
+    AbaqusModel
+        The model, its frame with the sets of the file, and the procedures of its steps.
+
+    Raises
+    ------
+    FileError
+        If the system refuses to read the file; FileNotFoundError if there is none.
+    InputError
+        For a file that cannot be read, an element without section or material, a section that is not read, and for
+        anything that `read_mesh` refuses.
+
+    Warns
+    -----
+    NotReadWarning
+        Names what else the file holds, such as amplitudes, constraints and releases, and what is read in another sense.
+
+    Examples
+    --------
+    >>> file = bf.read_abaqus_model("frame.inp")  # doctest: +SKIP
+    >>> solution = bf.solve_static(file.model)  # doctest: +SKIP
+    >>> tip = file.frame.points("TIP")[0]  # doctest: +SKIP
+    """
+    source = readable(path)
+    keywords = list(keywords_of(source))
+    content = content_of(source, keywords, _TRUSSES)
+    reading = _Reading()
+    try:
+        for keyword in keywords:
+            reading.take(keyword)
+        frame = reading.frame(line_mesh(content, False), elements, CRBF(order=2) if element is None else element)
+        model = reading.model(frame)
+    except InputError as error:
+        raise InputError(f"{source}: {error}") from None
+    if reading.notes:
+        warn(f"{source}: left out, or read in another sense: {listed(reading.notes)}", NotReadWarning)
+    return AbaqusModel(model, frame, tuple(reading.procedures))
+
+
+@dataclass
+class _Reading:
+    """What keywords have said so far; names in capitals."""
+
+    materials: dict[str, dict[str, float]] = field(default_factory=dict)
+    sections: dict[str, tuple[Any, str | Material | None]] = field(default_factory=dict)
+    held: dict[tuple[str, int], float] = field(default_factory=dict)
+    forces: dict[tuple[str, int, bool], float] = field(default_factory=dict)
+    along: dict[tuple[str, str], list[float]] = field(default_factory=dict)
+    procedures: list[str] = field(default_factory=list)
+    notes: dict[str, None] = field(default_factory=dict)
+
+    def note(self, text: str) -> None:
+        self.notes[text] = None
+
+    def take(self, keyword: Keyword) -> None:
+        """Take over a keyword. Raises InputError, with its line, if it cannot be read."""
+        try:
+            self._take(keyword, keyword.parameters)
+        except InputError as error:
+            raise InputError(f"{keyword.place}: {error}") from None
+        except (ValueError, IndexError, KeyError) as error:
+            raise InputError(f"{keyword.place}: the lines below *{keyword.keyword} cannot be read: {error}") from error
+
+    def _take(self, keyword: Keyword, given: dict[str, str]) -> None:
+        kind, rows = keyword.keyword, keyword.rows
+        match kind:
+            case "MATERIAL":
+                self.materials[given["NAME"].upper()] = {}
+            case "ELASTIC" | "DENSITY" | "EXPANSION" | "PLASTIC" if self.materials:
+                names = ("youngs_modulus", "poisson_ratio") if kind == "ELASTIC" else _OF_MATERIAL[kind]
+                self.materials[next(reversed(self.materials))] |= dict(zip(names, _numbers(rows[0]), strict=False))
+                if kind == "PLASTIC":
+                    self.note("*PLASTIC (its first yield stress is the strength)")
+            case "BEAM SECTION" | "BEAM GENERAL SECTION":
+                shape = given.get("SECTION", "GENERAL").upper()
+                if kind == "BEAM SECTION":
+                    self.sections[given["ELSET"].upper()] = _shape(shape, rows), given["MATERIAL"].upper()
+                else:
+                    self.sections[given["ELSET"].upper()] = _general(shape, rows, float(given.get("DENSITY", 1.0)))
+            case "SOLID SECTION":
+                area = _numbers(rows[0])[0] if rows else 1.0
+                self.sections[given["ELSET"].upper()] = area, given["MATERIAL"].upper()
+            case "BOUNDARY" | "CLOAD" | "DLOAD":
+                self._act(kind, given, rows)
+            case "STEP":
+                if given.get("NLGEOM", "YES" if "NLGEOM" in given else "NO").upper() == "NO":
+                    self.note("*STEP without NLGEOM (deflections are large here)")
+            case "STATIC" | "BUCKLE" | "FREQUENCY" | "DYNAMIC":
+                self.procedures.append(", ".join([kind, *(name for name in given if name == "RIKS")]))
+                if len(self.procedures) == 2:
+                    self.note("steps before the last one (their loads are kept as far as it does not change them)")
+            case _ if kind not in OF_THE_MESH and kind not in _PRINTED:
+                self.note(f"*{kind}")
+
+    def _act(self, kind: str, given: dict[str, str], rows: list[list[str]]) -> None:
+        """Take over supports or loads: those of the same name and direction replace earlier ones."""
+        if given.get("OP", "MOD").upper() == "NEW":
+            earlier: dict[str, dict[Any, Any]] = {"BOUNDARY": self.held, "CLOAD": self.forces, "DLOAD": self.along}
+            earlier[kind].clear()
+        for target, what, *more in rows:
+            name, values = target.rpartition(".")[2].upper(), [float(value or 0.0) for value in more]
+            if kind == "DLOAD":
+                if what.upper() in ("PX", "PY", "P2", "GRAV"):
+                    self.along[name, what.upper()] = values
+                else:
+                    self.note(f"*DLOAD {what.upper()}")
+            elif kind == "CLOAD":
+                self.forces[name, int(what), "FOLLOWER" in given] = values[0]
+            elif what.upper() in _SYMMETRIES:
+                self.held |= {(name, direction): 0.0 for direction in _SYMMETRIES[what.upper()]}
+            else:
+                last = int(values[0]) if values and values[0] else int(what)
+                value = values[1] if len(values) > 1 else 0.0
+                self.held |= {(name, direction): value for direction in range(int(what), last + 1)}
+
+    def material(self, name: str) -> Material:
+        """Return a material. Raises InputError if the file does not define it."""
+        if not (numbers := self.materials.get(name)):
+            raise InputError(f"there is no *MATERIAL {name} with an *ELASTIC line")
+        if "density" not in numbers:
+            self.note(f"no *DENSITY of {name} (it is 1)")
+        return Material(**({"poisson_ratio": 0.0, "density": 1.0} | numbers))
+
+    def frame(self, mesh: LineMesh, elements: int, element: Element) -> Frame:
+        """Return beams along the elements; trusses are hinged, also to beams."""
+        members = {name.upper(): name for name in mesh.member_sets}
+        trusses = mesh.member_sets.get(_TRUSSES, np.empty(0, dtype=np.int64))
+        ends = {**mesh.point_sets, _JOINED: np.unique(mesh.cells[trusses, :2])}
+        sections, materials, counts = {}, {}, {}
+        for name, (section, named) in self.sections.items():
+            if name not in members:
+                raise InputError(f"there is no elset {name} with beams or trusses, which has a section")
+            own = members[name]
+            material = self.material(named) if isinstance(named, str) else named
+            if isinstance(section, float):
+                assert material is not None
+                start, end = (mesh.nodes[mesh.cells[mesh.member_sets[own], side]] for side in (0, 1))
+                section, material = _bar(section, material, float(np.linalg.norm(end - start, axis=1).max())), None
+                counts[own] = 1
+            sections[own], materials[own], counts[own] = section, material, counts.get(own, elements)
+        lines = LineMesh(mesh.nodes, mesh.cells, mesh.member_sets, ends)
+        frame = build_frame(lines, counts, element, sections, materials, "chains", _JOINED)
+        hinged = {id(frame.beams[number]) for number in frame.owner[trusses]}
+        places = tuple(tuple(sorted(at_node, key=lambda at: id(at.beam) in hinged)) for at_node in frame.places)
+        joints: list[Joint] = []
+        for first, *others in filter(None, places):
+            free = id(first.beam) in hinged
+            joints += [(Hinge if free or id(other.beam) in hinged else Rigid)(first, other) for other in others]
+        return replace(frame, places=places, joints=tuple(joints), mesh=mesh)
+
+    def model(self, frame: Frame) -> Model:
+        """Return the model with supports and loads. Raises InputError for sets and numbers that the file lacks."""
+        names = {name.upper(): name for name in frame.mesh.point_sets}
+        held: dict[int, dict[str, float]] = {}
+        for (name, direction), value in self.held.items():
+            for node in _nodes(frame, names, name) if direction in _DIRECTIONS else ():
+                held.setdefault(node, {})[_DIRECTIONS[direction]] = value
+        supports = [_support(frame.places[node][0], values) for node, values in held.items()]
+        loads: list[Load] = []
+        for (name, direction, follower), value in self.forces.items():
+            for node in _nodes(frame, names, name) if direction in _DIRECTIONS else ():
+                point = frame.places[node][0]
+                if direction == 6:
+                    loads.append(PointMoment(point, value))
+                else:
+                    vector = (value, 0.0) if direction == 1 else (0.0, value)
+                    loads.append(PointForce(point, vector, follower=follower))
+        return Model(frame.beams, supports, [*loads, *self._along_beams(frame)], joints=frame.joints)
+
+    def _along_beams(self, frame: Frame) -> Iterator[Load]:
+        names = {name.upper(): name for name in frame.mesh.member_sets}
+        for (name, kind), values in self.along.items():
+            if kind == "GRAV":
+                yield Gravity((values[0] * values[1], values[0] * values[2]))
+                if name and len(frame.members(_known(names, "elset", name))) < len(frame.beams):
+                    self.note(f"*DLOAD GRAV of {name} alone (all beams have weight)")
+                continue
+            set_name = _known(names, "elset", name)
+            for beam in frame.members(set_name):
+                if kind == "P2":
+                    cells = [
+                        cell for cell in frame.mesh.member_sets[set_name] if frame.beams[frame.owner[cell]] is beam
+                    ]
+                    ways = {_runs_along(frame, cell) for cell in cells}
+                    if len(ways) > 1:
+                        raise InputError(f"*DLOAD P2 of {name}: its elements follow each other in opposite directions")
+                    yield Pressure(beam, values[0] if ways == {True} else -values[0])
+                else:
+                    yield DistributedLoad(beam, (values[0], 0.0) if kind == "PX" else (0.0, values[0]))
+
+
+def _numbers(row: list[str]) -> list[float]:
+    return [float(value or 0.0) for value in row]
+
+
+def _known(names: dict[str, str], kind: str, name: str) -> str:
+    if name not in names:
+        raise InputError(f"there is no {kind} {name}, which has a support or load")
+    return names[name]
+
+
+def _nodes(frame: Frame, names: dict[str, str], name: str) -> list[int]:
+    """Return the nodes of a set. Raises InputError for a node at which no element ends."""
+    nodes = frame.mesh.point_sets[_known(names, "nset", name)].tolist()
+    if any(node < 0 or not frame.places[node] for node in nodes):
+        raise InputError(f"nset or node {name} has a support or load where no element ends")
+    return nodes
+
+
+def _runs_along(frame: Frame, cell: int) -> bool:
+    """Return whether an element runs in the direction of its beam."""
+    beam = frame.beams[frame.owner[cell]]
+    start, end, _ = frame.mesh.cells[cell].tolist()
+    first, last = ([at.fraction for at in frame.places[node] if at.beam is beam] for node in (start, end))
+    return min(first) < max(last)
+
+
+def _support(point: Point, values: dict[str, float]) -> PointSupport:
+    if not any(values.values()):
+        if len(values) == 3:
+            return Clamp(point)
+        if "rotation" not in values and len(values) == 2:
+            return Pin(point)
+    return Prescribed(point, **values)
+
+
+def _shape(shape: str, rows: list[list[str]]) -> Section:
+    """Return a section by its shape and sizes. Raises InputError for another shape."""
+    if shape not in _SHAPES:
+        raise InputError(f"SECTION={shape} cannot be read; {', '.join(_SHAPES)} can")
+    count, make = _SHAPES[shape]
+    sizes = _numbers(rows[0])[:count]
+    if len(rows) > 1 and len(rows[1]) >= 3:
+        x, y, z = _numbers(rows[1])[:3]
+        if abs(z) < max(abs(x), abs(y)):  # the first axis of the section is in the plane
+            if shape not in ("RECT", "CIRC", "PIPE"):
+                raise InputError(f"SECTION={shape}: its first axis must be normal to the plane")
+            sizes = sizes[::-1] if shape == "RECT" else sizes
+    return make(*sizes)
+
+
+def _general(shape: str, rows: list[list[str]], density: float) -> tuple[Any, Material | None]:
+    """Return a section whose elasticity is on its last line: E and G."""
+    modulus, shear = _numbers(rows[-1])[:2]
+    if shape == "GENERAL":
+        area, second = _numbers(rows[0])[:2]
+        inertia = density * area, density * second
+        return Section.from_stiffness(modulus * area, shear * area, modulus * second, *inertia), None
+    return _shape(shape, rows[:-1]), Material(modulus, modulus / (2.0 * shear) - 1.0, density)
+
+
+def _bar(area: float, material: Material, length: float) -> StiffnessSection:
+    """Return the section of a truss, so stiff in bending that it never buckles, as those of Abaqus do not."""
+    axial, mass = material.youngs_modulus * area, material.density * area
+    return Section.from_stiffness(axial, axial, 0.1 * axial * length**2, mass, 1e-6 * mass * length**2)
+
+
+def _box(a: float, b: float, right: float, top: float, left: float, bottom: float) -> Section:
+    outer = [(0.0, 0.0), (a, 0.0), (a, b), (0.0, b)]
+    hole = [(left, bottom), (a - right, bottom), (a - right, b - top), (left, b - top)]
+    return Polygon(outer, [hole], 0.44)
+
+
+def _i_section(axis: float, h: float, lower: float, upper: float, t1: float, t2: float, web: float) -> Section:
+    right = [(lower, 0.0), (lower, t1), (web, t1), (web, h - t2), (upper, h - t2), (upper, h)]
+    section = Polygon([(0.5 * x, y) for x, y in right] + [(-0.5 * x, y) for x, y in reversed(right)], shear_factor=0.44)
+    if abs(axis + section.bounds[0]) > 1e-3 * h:
+        raise InputError("SECTION=I: the nodes must be at the centroid of the section")
+    return section

@@ -1,0 +1,237 @@
+"""Whole models in Abaqus input files, against closed forms and the literature."""
+
+import numpy as np
+import pytest
+
+import beamfem as bf
+
+NODES = """*Heading
+A cantilever of four elements, 1 m long
+*Node, nset=All
+1, 0., 0.
+2, 0.25, 0.
+3, 0.5, 0.
+4, 0.75, 0.
+5, 1., 0.
+*Element, type=B21, elset=Arm
+1, 1, 2
+2, 2, 3
+3, 3, 4
+4, 4, 5
+*Nset, nset=Tip
+5
+"""
+SECTION = """*Beam Section, section=RECT, elset=ARM, material=steel
+0.01, 0.002
+0., 0., -1.
+*Material, name=Steel
+*Elastic
+2.1e11, 0.3
+*Density
+7850.
+*Boundary
+1, Encastre
+"""
+STEP = """*Step, nlgeom=YES
+*Static
+0.1, 1.
+*Cload
+Tip, 2, -7.
+*Output, field
+*Node Output
+U
+*End Step
+"""
+RIGIDITY = 2.1e11 * 0.01 * 0.002**3 / 12
+
+
+def read(tmp_path, text, elements=2):
+    path = tmp_path / "model.inp"
+    path.write_text(text)
+    return bf.read_abaqus_model(path, elements=elements)
+
+
+def tip(file, load=None):
+    solution = bf.solve_static(file.model if load is None else file.model.with_loads(load))
+    return solution.displacement(file.frame.points("Tip")[0])[-1]
+
+
+def test_a_cantilever_bends_as_the_elastica(tmp_path):
+    """P L^2 / EI = 5: Mattiasson's table has 0.38763 and 0.71379 of the length."""
+    file = read(tmp_path, NODES + SECTION + STEP)
+    assert len(file.frame.members("Arm")) == 1
+    assert file.procedures == ("STATIC",)
+    assert tip(file) == pytest.approx([-0.38763, -0.71379], abs=2e-4)
+    (beam,) = file.model.beams
+    assert beam.section == bf.Rectangle(0.01, 0.002, 0.85)
+    assert beam.material == bf.Material(2.1e11, 0.3, 7850.0)
+
+
+def test_lees_frame_with_a_general_section_meets_its_limit_load(tmp_path):
+    """Hinged at both ends, 120 long, loaded at 24: 18544.52709 (as from a mesh file in test_mesh.py)."""
+    nodes = [(0.0, 12.0 * n) for n in range(11)] + [(12.0 * n, 120.0) for n in range(1, 11)]
+    lines = [f"{n}, {x}, {y}" for n, (x, y) in enumerate(nodes, 1)]
+    cells = [f"{n}, {n}, {n + 1}" for n in range(1, 21)]
+    text = ["*NODE", *lines, "*ELEMENT, TYPE=B21H, ELSET=FRAME", *cells]
+    text += ["*BEAM GENERAL SECTION, ELSET=FRAME, DENSITY=1.", "6., 2., 0., 2., 1.", "", "7.2e6, 2769230.769230769"]
+    text += [
+        "*BOUNDARY",
+        "1, PINNED",
+        "21, 1, 2",
+        "*STEP, NLGEOM",
+        "*STATIC, RIKS",
+        "*CLOAD",
+        "13, 2, -1.",
+        "*END STEP",
+    ]
+    file = read(tmp_path, "\n".join(text), elements=6)
+    assert file.procedures == ("STATIC, RIKS",)
+    load = file.model.loads[0].point
+    path = bf.trace_equilibrium(file.model, until=lambda state: state.displacement(load)[1] < -55.0)
+    # k_s is 1 here and 5/6 in that test: shear changes the fourth digit
+    assert path.limit_points[0].load_factor == pytest.approx(18544.5, rel=5e-4)
+
+
+def test_trusses_are_hinged_bars_that_share_a_load_with_a_beam(tmp_path):
+    """A beam of 2 m on a king post: 48 EI / L^3 beside the stiffness of the truss, by its energy."""
+    text = """*NODE
+1, 0., 0.
+2, 1., 0.
+3, 2., 0.
+4, 1., 1.
+*NSET, NSET=Tip
+2
+*ELEMENT, TYPE=B21, ELSET=BEAM
+1, 1, 2
+2, 2, 3
+*ELEMENT, TYPE=T2D2, ELSET=BARS
+3, 1, 4
+4, 4, 2
+5, 4, 3
+*BEAM SECTION, SECTION=RECT, ELSET=BEAM, MATERIAL=STEEL
+0.02, 0.02
+*SOLID SECTION, ELSET=BARS, MATERIAL=STEEL
+1e-5
+*MATERIAL, NAME=STEEL
+*ELASTIC
+2.1e11, 0.3
+*DENSITY
+7850.
+*BOUNDARY
+1, 1, 2
+3, 2
+*STEP, NLGEOM=YES
+*STATIC
+*CLOAD
+TIP, 2, -1.
+*END STEP
+"""
+    file = read(tmp_path, text, elements=4)
+    kinds = [type(joint).__name__ for joint in file.model.joints]
+    assert sorted(kinds) == ["Hinge"] * 5 + ["Rigid"]
+    e, bar, chord, inertia = 2.1e11, 1e-5, 4e-4, 0.02**4 / 12
+    flexible = 1 / (e * bar) + 2 * 0.5 * np.sqrt(2) / (e * bar) + 2 * 0.25 / (e * chord)
+    expected = 1 / (1 / flexible + 48 * e * inertia / 8)
+    assert tip(file)[1] == pytest.approx(-expected, rel=1e-3)
+    thousand = bf.solve_static(file.model.with_loads([bf.PointForce(file.frame.points("Tip")[0], (0.0, -1000.0))]))
+    assert thousand.stable.all()  # trusses do not buckle
+
+
+@pytest.mark.parametrize(
+    ("lines", "expected"),
+    [
+        ("*DLOAD\nArm, PY, -0.01", (0.0, -0.01 / (8 * RIGIDITY))),
+        ("*DLOAD\nARM, P2, 0.01", (0.0, 0.01 / (8 * RIGIDITY))),
+        ("*DLOAD\nArm, PX, 100.", (100 / (2 * 2.1e11 * 2e-5), 0.0)),
+        ("*DLOAD\n, GRAV, 0.01, 0., -1., 0.", (0.0, -7850 * 2e-5 * 0.01 / (8 * RIGIDITY))),
+        ("*CLOAD\n5, 6, 0.001", (0.0, 0.001 / (2 * RIGIDITY))),
+        ("*CLOAD\nPart-1-1.5, 1, 50.", (50 / (2.1e11 * 2e-5), 0.0)),
+        ("*CLOAD\n5, 2, 9.\n*CLOAD\nTip, 2, 0.001\n5, 2, 0.", (0.0, 0.001 / (3 * RIGIDITY))),
+        ("*CLOAD\n5, 2, 9.\n*CLOAD, OP=NEW\n5, 2, 0.001", (0.0, 0.001 / (3 * RIGIDITY))),
+        ("*BOUNDARY\n5, 2, 2, 1e-4", (0.0, 1e-4)),
+        ("*DLOAD\n4, PY, -0.01", (0.0, -0.01 * (1 / 8 - (0.75**3 / 6 - 0.75**4 / 24)) / RIGIDITY)),
+    ],
+)
+def test_loads_and_displacements(tmp_path, lines, expected):
+    file = read(tmp_path, NODES + SECTION + f"*STEP, NLGEOM=YES\n*STATIC\n{lines}\n*END STEP\n")
+    assert tip(file) == pytest.approx(expected, rel=2e-4, abs=6e-7)  # shortening of the second order
+
+
+@pytest.mark.parametrize(
+    ("shape", "sizes", "area", "second"),
+    [
+        ("RECT", "0.02, 0.03", 6e-4, 0.02 * 0.03**3 / 12),
+        ("CIRC", "0.01", np.pi * 1e-4, np.pi * 1e-8 / 4),
+        ("PIPE", "0.02, 0.002", np.pi * (0.02**2 - 0.018**2), np.pi * (0.02**4 - 0.018**4) / 4),
+        (
+            "BOX",
+            "0.05, 0.1, 4e-3, 4e-3, 4e-3, 4e-3",
+            0.05 * 0.1 - 0.042 * 0.092,
+            (0.05 * 0.1**3 - 0.042 * 0.092**3) / 12,
+        ),
+        ("I", "0.1, 0.2, 0.1, 0.1, 0.01, 0.01, 0.006", 2e-3 + 0.18 * 0.006, (0.1 * 0.2**3 - 0.094 * 0.18**3) / 12),
+    ],
+)
+def test_sections(tmp_path, shape, sizes, area, second):
+    text = NODES + SECTION.replace("section=RECT", f"section={shape}").replace("0.01, 0.002", sizes) + STEP
+    (beam,) = read(tmp_path, text).model.beams
+    assert beam.section.area == pytest.approx(area, rel=1e-12)
+    assert beam.section.second_moment == pytest.approx(second, rel=1e-12)
+
+
+def test_a_section_turned_by_its_first_axis_and_one_with_its_own_elasticity(tmp_path):
+    (beam,) = read(tmp_path, NODES + SECTION.replace("0., 0., -1.", "0., 1., 0.") + STEP).model.beams
+    assert beam.section == bf.Rectangle(0.002, 0.01, 0.85)
+    general = "*BEAM GENERAL SECTION, SECTION=CIRC, ELSET=Arm, DENSITY=7850.\n0.01\n0., 0., -1.\n2.6e11, 1e11\n"
+    (beam,) = read(tmp_path, NODES + general + "*BOUNDARY\n1, ENCASTRE\n").model.beams
+    assert beam.section == bf.Circle(0.02, 0.89)
+    assert beam.material.poisson_ratio == pytest.approx(0.3)
+
+
+def test_supports_in_directions_of_the_plane_only(tmp_path):
+    held = SECTION.partition("*Boundary")[0] + "*Boundary\n1, PINNED\n5, 2, 4\n3, XSYMM\n2, 6\n"
+    kinds = read(tmp_path, NODES + held).model.supports
+    assert [type(support).__name__ for support in kinds] == ["Pin", "Prescribed", "Prescribed", "Prescribed"]
+    assert [list(support.prescribed()) for support in kinds] == [["ux", "uy"], ["uy"], ["ux", "rotation"], ["rotation"]]
+
+
+def test_what_is_left_out_is_named(tmp_path):
+    more = "*Amplitude, name=Ramp\n0., 0., 1., 1.\n*MPC\nPIN, 1, 2\n*Plastic\n2.35e8, 0.\n"
+    text = NODES + SECTION.replace("*Density\n7850.\n", "") + more + STEP.replace(", nlgeom=YES", "")
+    text = text.replace("*Cload", "*Dload\nArm, P1, 3.\n*Cload") + STEP
+    with pytest.warns(bf.NotReadWarning) as caught:
+        file = read(tmp_path, text)
+    sentence = str(caught[0].message)
+    for part in (
+        "*AMPLITUDE",
+        "*MPC",
+        "*PLASTIC (its first",
+        "without NLGEOM",
+        "*DLOAD P1",
+        "no *DENSITY of STEEL",
+        "steps",
+    ):
+        assert part in sentence
+    assert "OUTPUT" not in sentence
+    assert file.model.beams[0].material.strength == 2.35e8
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("section=RECT", "section=HEX", "line 16: SECTION=HEX cannot be read; RECT, CIRC"),
+        ("material=steel", "material=brass", r"no \*MATERIAL BRASS"),
+        ("elset=ARM, mat", "elset=LEG, mat", "no elset LEG"),
+        ("2.1e11, 0.3", "2.1e11, 0.7", "bulk modulus"),
+        ("2.1e11, 0.3", "steel", r"below \*ELASTIC cannot be read"),
+        ("Tip, 2", "Top, 2", "no nset TOP"),
+        ("Tip, 2", "77, 2", "77, which the file does not give"),
+        ("Tip, 2, -7.", "Tip", r"line \d+: the lines below \*CLOAD"),
+        ("4, 4, 5", "5, 5, 4", "opposite directions"),
+    ],
+)
+def test_what_cannot_be_read_is_refused_by_name_and_line(tmp_path, old, new, message):
+    text = NODES + SECTION + STEP
+    assert old in text
+    with pytest.raises(bf.InputError, match=message):
+        read(tmp_path, text.replace(old, new).replace("*Cload", "*Dload\nArm, P2, 1.\n*Cload"))

@@ -17,7 +17,7 @@ from beamfem.results.axis_points import AxisPoints
 from beamfem.results.extremes import extreme
 from beamfem.results.section_forces import stations
 from beamfem.results.solution import Solution
-from beamfem.tables import as_brief, as_html, as_pandas
+from beamfem.tables import as_html, as_pandas, as_text, few
 from beamfem.validation import flag, items, shown
 
 _LISTED = ("normal", "shear", "moment", "tension", "compression", "von_mises", "utilisation")
@@ -64,7 +64,8 @@ class Envelope:
     cases: dict[str, Solution]
 
     def __repr__(self) -> str:
-        return f"Envelope of {', '.join(self.cases)}\n{as_brief(*self.table(), _SHOWN)}"
+        header, rows = self.table()
+        return f"Envelope of {', '.join(self.cases)}\n{as_text(header, few(rows, _SHOWN))}"
 
     def _repr_html_(self) -> str:
         return as_html(*self.table())

@@ -173,7 +173,18 @@ print(json.dumps(said))
 def test_kinds_are_those_of_model_files():
     assert list(ACTING["supports"]) == ["clamp", "foundation", "pin", "prescribed", "roller", "spring"]
     assert list(ACTING["loads"]) == [
-        *("actuation", "distributed", "gravity", "motor", "moving-force", "force", "moment", "pressure", "pretension", "temperature"),
+        *(
+            "actuation",
+            "distributed",
+            "gravity",
+            "motor",
+            "moving-force",
+            "force",
+            "moment",
+            "pressure",
+            "pretension",
+            "temperature",
+        ),
     ]
     assert list(ACTING["joints"]) == ["hinge", "rigid"]
     assert list(ACTING["masses"]) == ["mass", "rigid-body"]

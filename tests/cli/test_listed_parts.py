@@ -189,7 +189,17 @@ def test_kinds_are_those_of_model_files():
     assert list(ACTING["joints"]) == ["hinge", "rigid"]
     assert list(ACTING["masses"]) == ["mass", "rigid-body"]
     assert set(CURVES) == {"arc", "bspline", "chain", "line", "polyline", "elliptic-arc", "hermite"}
-    assert set(SECTIONS) == {"circle", "rectangle", "tube", "moments", "stiffness", "layered", "fibres"}
+    assert set(SECTIONS) == {
+        "circle",
+        "rectangle",
+        "tube",
+        "moments",
+        "stiffness",
+        "layered",
+        "fibres",
+        "polygon",
+        "profile",
+    }
     assert set(LAWS) == {"elastic-plastic", "maxwell", "ramberg-osgood"}
     assert set(ELEMENTS) == {"ANCF", "ANCFCRBF", "CRBF", "BilinearANCF", "BilinearCRBF", "ShearRigid"}
     assert set(FORCES) == {"continuum", "elastic-line", "split-continuum", "structural"}

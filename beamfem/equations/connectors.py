@@ -122,7 +122,7 @@ class Connector:
             )
         return np.array([finite(f"{name} of {self.name}", x) for name, x in zip(names, numbers, strict=True)])
 
-    @property
+    @cached_property
     def per_point(self) -> int:
         """Number of coordinates of a point, 3 with its rotation or 2 without."""
         return len(self.dofs) // len(self.reference)
@@ -148,7 +148,9 @@ class Connector:
         result = values.reshape(*values.shape[:-1], len(self.reference), self.per_point)
         if self.per_point == 3:
             return result
-        return np.concatenate([result, np.zeros_like(result[..., :1])], axis=-1)
+        padded = np.zeros((*result.shape[:-1], 3), dtype=result.dtype)
+        padded[..., : self.per_point] = result
+        return padded
 
     def on_points(self, forces: np.ndarray, q: np.ndarray) -> np.ndarray:
         """Return forces (..., d) as forces and moments on its points (..., m, 3), in a state q."""
@@ -164,7 +166,10 @@ class Connector:
     def force(self, at: At) -> np.ndarray:
         """Return the force (d + k,). Raises InputError for an invalid result."""
         with np.errstate(all="ignore"):  # far from equilibrium a force may overflow; the iteration recovers from it
-            force = np.asarray(called(f"force of {self.name}", self.item.force, at))
+            return self._force(at)
+
+    def _force(self, at: At) -> np.ndarray:
+        force = np.asarray(called(f"force of {self.name}", self.item.force, at))
         count = self.reference.size + len(self.own)
         if force.shape != (count,) or force.dtype.kind not in "fic":
             flat = "; .ravel() makes it flat" if force.size == count and force.ndim > 1 else ""
@@ -177,16 +182,21 @@ class Connector:
 
     def _without_moments(self, force: np.ndarray) -> np.ndarray:
         """Return the force (2 m + k,) of one (3 m + k,) whose moments are zero. Raises InputError if they are not."""
-        table, conditions = np.split(force, [self.reference.size])
-        table = table.reshape(-1, 3)
-        forces, moments = table[:, :2].ravel(), table[:, 2]
+        moments = force[2 : self.reference.size : 3]
+        forces = force[self._components]
         if moments.any() and np.isfinite(forces).all():  # of forces that overflow, moments may be 0 times inf
             number = int(np.flatnonzero(moments)[0])
             raise InputError(
                 f"{self.name} has rotations = False, so its moments must be zero, but its force has the moment "
                 f"{moments[number].real:g} at points[{number}]; leave out rotations = False"
             )
-        return np.concatenate([forces, conditions])
+        return np.asarray(forces)
+
+    @cached_property
+    def _components(self) -> np.ndarray:
+        """Numbers (2 m + k,) of forces and conditions among those (3 m + k,) with moments."""
+        numbers = np.arange(self.reference.size + len(self.own))
+        return numbers[(numbers % 3 < 2) | (numbers >= self.reference.size)]
 
     def remember(self, at: At) -> np.ndarray:
         """Return the history variables (h,) after an accepted step. Raises InputError for an invalid result."""
@@ -229,13 +239,22 @@ class Connector:
             return self._compiled_tangent(self.compiled, motion, gravity, weights)
         if hasattr(self.item, "exact_tangent"):
             return np.asarray(weights[0] * self.item.exact_tangent(self.at(motion, time, gravity)))
-        alone, columns = self.alone, []
-        for number in range(len(self.dofs) + len(self.own)):
-            moved = p, v, a = self.own_motion(motion)
-            for values, weight in zip((p, v, a), weights, strict=True):
-                values[number] += 1j * COMPLEX_STEP * weight
-            columns.append(self.force(alone.at(moved, time, gravity)).imag / COMPLEX_STEP)
-        result = np.array(columns).T
+        at, places = self.at(motion, time, gravity), len(self.dofs)
+        result = np.empty((places + len(self.own),) * 2)
+        steps = [1j * COMPLEX_STEP * weight for weight in weights]
+        state, own = [values.astype(complex) for values in (at.q, at.v, at.a)], at.own.astype(complex)
+        with np.errstate(all="ignore"):  # see `force`
+            for number in range(len(result)):
+                (q, v, a), held = (values.copy() for values in state), own
+                if number < places:
+                    place = divmod(number, self.per_point)
+                    for values, step in zip((q, v, a), steps, strict=True):
+                        values[place] += step
+                else:
+                    held = own.copy()
+                    held[number - places] += steps[0]
+                result[:, number] = self._force(At(q, v, a, held, at.memory, at.reference, time, gravity)).imag
+        result /= COMPLEX_STEP
         if not np.isfinite(result).all():
             raise LinAlgError(f"force of {self.name} is not finite")
         return result

@@ -15,7 +15,6 @@ from beamfem.kernels.pointers import address_of
 from beamfem.kernels.records import aligned
 from beamfem.kernels.simd import WIDTH
 
-Stresses = Sequence[np.ndarray]
 _NONE = np.empty(0)
 _LARGEST_KEPT = 1_000_000  # floats of memory that is kept
 _MOST_KEPT = 4
@@ -83,22 +82,19 @@ class Equations:
 class Assembler:
     """Equations with a workspace: one for each solve and thread.
 
-    stresses: resultants (ne, nq, ns) of each group for the geometric part of the tangent; shared: whether `work_in`
-    provides scratch memory before each solve; numbers: size of the workspace in floats; scratch: the part of it in
-    scratch memory.
+    shared: whether `work_in` provides scratch memory before each solve; numbers: size of the workspace in floats;
+    scratch: the part of it in scratch memory.
     """
 
-    def __init__(self, equations: Equations, stresses: Stresses | None = None, shared: bool = False) -> None:
+    def __init__(self, equations: Equations, shared: bool = False) -> None:
         self.equations, self.size, self.record = equations, equations.size, equations.record.copy()
         self._imposes = any(group.imposed is not None for group in equations.groups)
         self._damped = any(group.record.damped or group.record.mass_damping for group in equations.groups)
         self._laws = tuple(group.law for group in equations.groups if group.law is not None and group.law.in_python)
         self.works = tuple(Work(group, group.record.copy()) for group in equations.groups)
         self.scratch = self.numbers = 0
-        for number, (group, own) in enumerate((work.group, work.record) for work in self.works):
-            own.fill(**aligned(own.shapes("chunks", *(("stress",) if stresses is None else ()))))
-            if stresses is not None:
-                own.stress = np.ascontiguousarray(stresses[number], dtype=float)
+        for group, own in ((work.group, work.record) for work in self.works):
+            own.fill(**aligned(own.shapes("chunks", "stress")))
             if own.mass_damping:
                 own.slowed = np.empty(self.size)
             if group.constant is not None:
@@ -129,6 +125,11 @@ class Assembler:
     def stresses(self) -> tuple[np.ndarray, ...]:
         """Resultants (ne, nq, ns) of each group for the geometric part of the tangent: given, or as last predicted."""
         return tuple(work.record.stress for work in self.works)
+
+    def take_stresses(self, stresses: Sequence[np.ndarray]) -> None:
+        """Set `stresses`."""
+        for work, stress in zip(self.works, stresses, strict=True):
+            work.record.stress = np.ascontiguousarray(stress, dtype=float)
 
     def take(self, loads: LoadsAt) -> None:
         """Set the loads, unless they are already set."""

@@ -179,12 +179,15 @@ def _linearise(
 ) -> tuple[np.ndarray, Tangent]:
     """Return residual and tangent of a motion at rest, see `linearise`."""
     matrix, result = _entries(system), np.empty(len(p))
-    shared = stresses is None and equations is None
-    assembler = _acquired(system) if shared else Assembler(equations or system.equations, stresses)
+    assembler = _acquired(system) if equations is None else Assembler(equations)
+    own = assembler.stresses
+    if stresses is not None:
+        assembler.take_stresses(stresses)
     assembler.take(system.loads_at(time))
     assembler.weigh(coefficients, dt, moving)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, matrix, stresses is not None)
-    if shared:
+    if equations is None:
+        assembler.take_stresses(own)
         _return_assembler(system, assembler)
     system.called.add_forces(result, (p, v, a), time)
     return result, tangent_of(system, matrix, system.called.tangents((p, v, a), time, coefficients))
@@ -360,12 +363,15 @@ def predicted_stresses(
     time: at the end of the step, for imposed strains; equations: those of other blocks, used instead of those of the
     system; rates: in dynamics, p' (n,) and the weights of p, p' and p'' in the tangent; dt [s]: see `residual`.
     """
-    assembler = Assembler(equations or system.equations)
+    assembler = _acquired(system) if equations is None else Assembler(equations)
     assembler.impose(system.imposing(time))
-    if rates is not None:
-        assembler.weigh(rates[1], dt)
+    assembler.weigh((0.0, 0.0, 0.0) if rates is None else rates[1], dt)
     assembler.predict(_plain(p), _plain(step), None if rates is None else _plain(rates[0]))
-    return assembler.stresses
+    if equations is not None:
+        return assembler.stresses
+    stresses = tuple(stress.copy() for stress in assembler.stresses)
+    _return_assembler(system, assembler)
+    return stresses
 
 
 def load_slope(system: System, p: np.ndarray, load_factor: float, width: float = 1e-6) -> np.ndarray:

@@ -9,7 +9,7 @@ from beamfem.equations.equation_numbering import Unknowns
 from beamfem.kernels.band import band
 from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 from beamfem.kernels.motion_record import MotionRoutines, MotionSolver
-from beamfem.kernels.newton_record import NewtonRoutines, NewtonSolver
+from beamfem.kernels.newton_loop import NewtonRoutines, NewtonSolver
 
 
 def _fields(unknowns: Unknowns, rotated: tuple[np.ndarray, np.ndarray], scale: np.ndarray) -> dict[str, Any]:

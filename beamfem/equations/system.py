@@ -35,7 +35,7 @@ from beamfem.equations.strain_rates import StrainRates, strain_rates
 from beamfem.errors import InputError
 from beamfem.kernels.block import Block, Layout, Stations
 from beamfem.kernels.motion_record import MotionSolver
-from beamfem.kernels.newton_record import NewtonSolver
+from beamfem.kernels.newton_loop import NewtonSolver
 from beamfem.kernels.record import Parts
 from beamfem.model.load_base import factor
 from beamfem.model.model import Model

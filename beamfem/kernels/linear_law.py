@@ -107,3 +107,15 @@ def add_viscous(count, measures, ck, cv, weight, c, time, x):
                 for i in range(0, count, WIDTH):
                     to[i] = ck * to[i] + cv * weight[i] * time[i] * entry[i]
             pair += 1
+
+
+@routine("iiiiirr")
+def release(first, count, points, number, measures, natural, x):
+    """Subtract imposed strains (elements, points, measures) from those of a point of a batch.
+
+    number: of the point; x: rows of the point, see `point`.
+    """
+    for i in range(count):
+        strains = at(natural, ((first + i) * points + number) * measures)
+        for row in range(measures):
+            x[(STRAIN + row) * ROW + i] -= strains[row]

@@ -10,7 +10,7 @@ from llvmlite import ir
 from beamfem.kernels.compiler.bounds_checks import CHECKED, register
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import operation
-from beamfem.kernels.compiler.value_types import FLAG, REALS, SLOTS, WHOLE, WHOLES, Kind, Value
+from beamfem.kernels.compiler.value_types import FLAG, REALS, WHOLE, WHOLES, Kind, Value
 
 _memory_of: Any = (c_char * 0).from_buffer  # an array may be empty
 
@@ -51,7 +51,6 @@ def given(build: Build, pointer: Value) -> Value:
 
 reals = _pointer(REALS)
 wholes = _pointer(WHOLES)
-slots = _pointer(SLOTS)
 
 
 def address_of(values: np.ndarray) -> int:

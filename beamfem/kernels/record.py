@@ -70,7 +70,7 @@ class GroupRoutines(Record):
     add_component = calls("rate_tangent:add_component", "damping tangent")
     add_products = calls("rate_tangent:add_products", "damping tangent")
     add_rate_tangent = calls("rate_tangent:add_rate_tangent", "damping tangent")
-    release = calls("imposed_strain_pass:release", "imposed")
+    release = calls("linear_law:release", "imposed")
     add_stations = calls("station_passes:add_stations", "stations")
     station_forces = calls("station_passes:station_forces", "stations")
     place_nodes = calls("node_passes:place_nodes", "forces")

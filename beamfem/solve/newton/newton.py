@@ -27,7 +27,7 @@ from beamfem.equations.equations import (
 from beamfem.equations.system import Proven, System
 from beamfem.errors import InputError
 from beamfem.kernels import newton_loop
-from beamfem.kernels.newton_record import STALLED
+from beamfem.kernels.newton_loop import STALLED
 from beamfem.linalg.tangent import SMALLEST_PIVOT, Factorised, Stresses, Tangent
 from beamfem.precision.roundoff import ENOUGH, MOST_DIGITS, digits_of, load_size, loses_digits, remainder, row_floors
 from beamfem.validation import convert, count, flag, positive, shown

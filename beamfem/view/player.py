@@ -99,9 +99,10 @@ def loads_of(shapes: Shapes) -> list[dict[str, Any]]:
     arrows = sum(55 if isinstance(load.place, Beam) else 5 for load in solution.model.loads)
     chosen = rows if arrows * len(rows) <= _MOST else rows[-1:] if arrows <= _MOST else []
     loads = [PlacedLoads() for _ in chosen]
-    for row, placed in zip(chosen, loads, strict=True):
+    for row, here in zip(chosen, loads, strict=True):
+        placed = PlacedRow(solution, row)
         for load in solution.model.loads:
-            placed.add(PlacedRow(solution, row), load, factor(load, float(at[row]), system.static))
+            here.add(placed, load, factor(load, float(at[row]), system.static))
     sizes = [float(np.linalg.norm(vector)) for each in loads for _, vector, _ in each.forces]
     dense = max((float(np.abs(forces.vectors).max()) for each in loads for _, forces in each.lines), default=1.0)
     return [

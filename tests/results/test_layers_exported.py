@@ -178,7 +178,8 @@ def test_pictures_draw_each_layer_from_face_to_face():
     np.testing.assert_allclose(rubber[0, :, :, 1], np.stack([0.05 * s - 0.02, 0.05 * s + 0.03], axis=1), atol=1e-15)
     scene = body._Scene.__new__(body._Scene)
     scene.shapes = drawn
-    surface = pyvista.PolyData(scene._points(0), scene._surface()).triangulate()
+    faces = body._faces(drawn.points, [len(parts) for parts in scene._parts(0)])
+    surface = pyvista.PolyData(scene._points(0), faces).triangulate()
     assert surface.volume == pytest.approx(0.1 * (0.1 + 0.15) / 2, rel=1e-6)
     figure = solution.plot(shapes=1)
     fills = [artist for artist in figure.axes[0].collections if type(artist).__name__ == "PolyCollection"]

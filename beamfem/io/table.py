@@ -169,26 +169,21 @@ def told_apart(values: np.ndarray) -> np.ndarray:
 
 def side_by_side(parts: list[tuple[Variables, Variables]]) -> tuple[Variables, Variables]:
     """Return data and coordinates of groups of beams joined along their stations, in the order of the beams."""
-    data, coordinates = (_joined([part[of] for part in parts]) for of in range(2))
     if len(parts) == 1:
-        return data, coordinates
-    order = np.argsort(coordinates["beam"][1], kind="stable")
-    for variables in (data, coordinates):
-        for name, (over, values, about) in variables.items():
-            if "station" in over:
-                variables[name] = over, values[..., order], about
-    return data, coordinates
+        return parts[0]
+    order = np.argsort(np.concatenate([coordinates["beam"][1] for _, coordinates in parts]), kind="stable")
+    return _joined([data for data, _ in parts], order), _joined([coordinates for _, coordinates in parts], order)
 
 
-def _joined(parts: list[Variables]) -> Variables:
+def _joined(parts: list[Variables], order: np.ndarray) -> Variables:
     """Return the variables of groups of beams joined along their stations; nan where a group has none of a name."""
     joined = {name: variable for part in parts for name, variable in part.items()}
     counts = [next(values.shape[-1] for over, values, _ in part.values() if "station" in over) for part in parts]
     for name, (over, values, about) in joined.items():
-        if "station" in over and len(parts) > 1:
+        if "station" in over:
             missing = [np.full((*values.shape[:-1], count), np.nan) for count in counts]
             filled = [part[name][1] if name in part else empty for part, empty in zip(parts, missing, strict=True)]
-            joined[name] = over, np.concatenate(filled, axis=-1), about
+            joined[name] = over, np.concatenate(filled, axis=-1)[..., order], about
     return joined
 
 

@@ -24,24 +24,23 @@ def in_notebook() -> bool:
     return type(sys.stderr).__module__ == "ipykernel.iostream"
 
 
-@contextmanager
-def no_progress() -> Iterator[None]:
+def no_progress() -> AbstractContextManager[None]:
     """Show no bars inside: in a worker, and within work that shows one already."""
-    token = _held.set(True)
-    try:
-        yield
-    finally:
-        _held.reset(token)
+    return _true_inside(_held)
+
+
+def ends_as_a_whole() -> AbstractContextManager[None]:
+    """Let Ctrl-C end the work inside with an exception, as it is part of a larger one."""
+    return _true_inside(_part)
 
 
 @contextmanager
-def ends_as_a_whole() -> Iterator[None]:
-    """Let Ctrl-C end the work inside with an exception, as it is part of a larger one."""
-    token = _part.set(True)
+def _true_inside(variable: ContextVar[bool]) -> Iterator[None]:
+    token = variable.set(True)
     try:
         yield
     finally:
-        _part.reset(token)
+        variable.reset(token)
 
 
 def progress(label: str, total: float) -> AbstractContextManager[Callable[[float], None]]:

@@ -145,15 +145,6 @@ class Pages(io.RawIOBase):
             os.close(self._file)
         super().close()
 
-    def readable(self) -> bool:
-        return True
-
-    def writable(self) -> bool:
-        return True
-
-    def seekable(self) -> bool:
-        return True
-
     def tell(self) -> int:
         return self._at
 

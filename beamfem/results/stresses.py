@@ -52,15 +52,13 @@ def second_piola_kirchhoff(cauchy: np.ndarray, now: Axis, reference: Axis, y: np
     mixed = (ax * by + ay * bx) * xy - ay * by * xx - ax * bx * yy
     size = (ax * by - ay * bx) * (jx * ky - jy * kx)
     size = np.where(size == 0.0, np.nan, size)
-    zero = np.zeros_like(xx)
-    parts = (
-        (jx**2 * first + 2.0 * jx * kx * mixed + kx**2 * second) / size,
-        (jy**2 * first + 2.0 * jy * ky * mixed + ky**2 * second) / size,
-        zero,
-        (jx * jy * first + (jx * ky + jy * kx) * mixed + kx * ky * second) / size,
-        zero,
-        zero,
-    )
+    of_x, of_y, zero = (jx, kx), (jy, ky), np.zeros_like(xx)
+
+    def component(one: tuple[np.ndarray, ...], other: tuple[np.ndarray, ...]) -> np.ndarray:
+        (j, k), (n, m) = one, other
+        return (j * n * first + (j * m + n * k) * mixed + k * m * second) / size
+
+    parts = (component(of_x, of_x), component(of_y, of_y), zero, component(of_x, of_y), zero, zero)
     return np.stack(parts, axis=-1)
 
 

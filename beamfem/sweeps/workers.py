@@ -169,22 +169,14 @@ def _one_thread() -> None:
     threadpool_limits(limits=1)
 
 
-def _checked(value: Any) -> Any:
+def _checked(value: Any, named: bool = False) -> Any:
     """Return a number, an array of numbers, a Solution or a dict of named ones. Raises InputError."""
-    if not isinstance(value, Mapping):
-        return _single(value)
-    if not value or not all(isinstance(name, str) for name in value):
-        raise InputError(f"the function must return {_RETURNED}, got {value!r}")
-    return {name: _single(item) for name, item in value.items()}
-
-
-def _single(value: Any) -> Any:
-    if isinstance(value, Solution):
+    if isinstance(value, Mapping) and value and not named and all(isinstance(name, str) for name in value):
+        return {name: _checked(item, named=True) for name, item in value.items()}
+    if isinstance(value, Solution | bool | int):
         return value
     if isinstance(value, np.ndarray | np.generic) and value.dtype.kind in "biuf":
         return value if isinstance(value, np.ndarray) and value.ndim else value.item()
-    if isinstance(value, bool | int):
-        return value
     if isinstance(value, Real):
         return float(value)
     raise InputError(f"the function must return {_RETURNED}, got {value!r}")

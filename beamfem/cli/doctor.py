@@ -48,14 +48,8 @@ def doctor(as_json: AsJson = False) -> None:
             need = f'missing {", ".join(packages)}: pip install "beamfem[{extra}]"'
             lines.append(f"  {extra:14s} {need if packages else 'installed'}")
         cache = {"folder": folder, "writable": writes, "compiled_kernels": kernels}
-        report = {
-            "versions": versions,
-            "cache": cache,
-            "first_solve": solve,
-            "rendering": rendering,
-            "missing": missing,
-        }
-        show(report, "\n".join(lines))
+        found = {"versions": versions, "cache": cache, "first_solve": solve}
+        show({**found, "rendering": rendering, "missing": missing}, "\n".join(lines))
         if not solve["right"]:
             raise typer.Exit(FAILED)
 

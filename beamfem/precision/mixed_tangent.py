@@ -185,15 +185,6 @@ def mixed(
     inverse = np.concatenate(flexible_at) / factor
     flexible = coo_array((inverse, (above, below)), shape=(len(weight),) * 2)
     places = tuple((table.shape, table.resists) for table in tables)
-    fields = (
-        zeros.sparse(UNROTATED),
-        slopes,
-        flexible,
-        weight,
-        loads,
-        np.concatenate(strain),
-        places,
-        sum(positive),
-        plain,
-    )
+    bare, strains = zeros.sparse(UNROTATED), np.concatenate(strain)
+    fields = bare, slopes, flexible, weight, loads, strains, places, sum(positive), plain
     return MixedTangent(*fields, system.scale[system.free_dofs])

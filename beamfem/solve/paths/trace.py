@@ -330,7 +330,10 @@ def _traced(
     if not len(system.free_dofs):
         raise InputError("the supports of this model prescribe all of its coordinates, so there is no path to follow")
     _require_load(system)
-    _require_crossing(model, start)
+    if not isinstance(start, Bifurcation | None):
+        raise InputError(f"start must be a bifurcation, such as path.bifurcations[0], got a {type(start).__name__}")
+    if start is not None and start.model is not model:
+        raise InputError("start is a bifurcation of another model; trace the path of this one first")
     record = PathRecord(model)
     with kept(lambda: record.path() if record.rows else None), progress("points of the path", points) as report:
         line, point = _first(system, newton, record, direction)
@@ -386,16 +389,6 @@ def _require_load(system: System) -> None:
     raise InputError(
         "no load and no prescribed motion of this model changes with the load factor, so there is no path to follow"
     )
-
-
-def _require_crossing(model: Model, start: Bifurcation | None) -> None:
-    """Raise InputError unless `start` is a bifurcation of this model."""
-    if start is None:
-        return
-    if not isinstance(start, Bifurcation):
-        raise InputError(f"start must be a bifurcation, such as path.bifurcations[0], got a {type(start).__name__}")
-    if start.model is not model:
-        raise InputError("start is a bifurcation of another model; trace the path of this one first")
 
 
 def _piece(

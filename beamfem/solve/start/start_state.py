@@ -247,17 +247,16 @@ def resting_state(system: System, about: State | Solution | None) -> tuple[np.nd
 
 def _require_of_load_factor(system: System, about: State, p: np.ndarray) -> None:
     """Raise InputError if supports that move, or those of the state's own model, prescribe other coordinates (n,)."""
-    own, load_factor = about.model is system.model, about.at
+    own, load_factor, wrong = about.model is system.model, about.at, ""
     values = system.prescribed_values(load_factor)
     for item, value in zip(system.prescribed, values.tolist(), strict=True):
         moves = callable(item.value) or item.value != 0.0
-        if (own or moves) and abs(p[item.dof] - value) > _SAME * system.scale[item.dof]:
-            raise InputError(
-                f"about is no state of load factor {load_factor:g}, its at: a support prescribes {value:.6g} of a "
-                f"coordinate that is {p[item.dof]:.6g}. Give a state of solve_static as it is, such as solution[-1]"
-            )
-    if own and (force := left_over(system, p, load_factor)) > 0.0:
+        if not wrong and (own or moves) and abs(p[item.dof] - value) > _SAME * system.scale[item.dof]:
+            wrong = f"a support prescribes {value:.6g} of a coordinate that is {p[item.dof]:.6g}"
+    if not wrong and own and (force := left_over(system, p, load_factor)) > 0.0:
+        wrong = f"it is not in equilibrium, a force of {force:.3g} is unbalanced"
+    if wrong:
         raise InputError(
-            f"about is no state of load factor {load_factor:g}, its at: it is not in equilibrium, a force of "
-            f"{force:.3g} is unbalanced. Give a state of solve_static as it is, such as solution[-1]"
+            f"about is no state of load factor {load_factor:g}, its at: {wrong}. Give a state of solve_static as it "
+            "is, such as solution[-1]"
         )

@@ -34,22 +34,19 @@ def doctor(as_json: AsJson = False) -> None:
             rendering = str(error)
         versions: dict[str, str | None] = {"python": platform.python_version(), "system": platform.platform()}
         versions |= {name: _version(name) for name in ("beamfem", *(name for name, extra in required if not extra))}
-        kernels, writes = kept(), folder is not None and writable(folder)
-        solve = _first_solve()
+        kernels, writes, solve = kept(), folder is not None and writable(folder), _first_solve()
         where = folder or "nowhere: set BEAMFEM_CACHE_DIR to a folder that can be written to"
-        unwritten = "" if writes else ", which cannot be written to"
         wrong = f"WRONG: tip deflection {solve['deflection']:.8f} instead of {_TIP:.8f}"
         first, again = solve["seconds"]
         lines = ["versions", *(f"  {name:14s} {version}" for name, version in versions.items())]
-        lines += [f"\n{kernels} kernels in {where}{unwritten}"]
+        lines += [f"\n{kernels} kernels in {where}{'' if writes else ', which cannot be written to'}"]
         lines += [f"first solve {first:.2f} s, again {1e3 * again:.1f} ms: {'right' if solve['right'] else wrong}"]
         lines += [f"pictures of bodies: {rendering or 'work'}\n\nextras"]
         for extra, packages in missing.items():
             need = f'missing {", ".join(packages)}: pip install "beamfem[{extra}]"'
             lines.append(f"  {extra:14s} {need if packages else 'installed'}")
-        cache = {"folder": folder, "writable": writes, "compiled_kernels": kernels}
-        found = {"versions": versions, "cache": cache, "first_solve": solve}
-        show({**found, "rendering": rendering, "missing": missing}, "\n".join(lines))
+        found = {"versions": versions, "cache": {"folder": folder, "writable": writes, "compiled_kernels": kernels}}
+        show({**found, "first_solve": solve, "rendering": rendering, "missing": missing}, "\n".join(lines))
         if not solve["right"]:
             raise typer.Exit(FAILED)
 

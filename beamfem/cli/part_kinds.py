@@ -72,9 +72,8 @@ LAWS: Kinds = _by_kind(*(make for make in public_dataclasses("section") if hasat
 DAMPING: Kinds = {"rayleigh": Rayleigh, "ratios": Rayleigh.from_ratios, "kelvin-voigt": KelvinVoigt}
 FUNCTIONS: Kinds = {"table": Interpolated, "sine": sine, "smooth-ramp": smooth_ramp}
 ELEMENTS: Kinds = {preset.__name__: preset for preset in public("element.element") if not isclass(preset)}
-ACTING: dict[str, Kinds] = {
-    name: _by_kind(*parts_in(name)) for name in ("supports", "joints", "connectors", "masses", "loads")
-}
+_ACTING = ("supports", "joints", "connectors", "masses", "loads")
+ACTING: dict[str, Kinds] = {name: _by_kind(*parts_in(name)) for name in _ACTING}
 FORCES: Kinds = _by_kind(*public("element.forces"))
 
 

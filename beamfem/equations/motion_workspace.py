@@ -9,12 +9,13 @@ from beamfem.equations.rotating_vectors import runs_of
 from beamfem.equations.system import System
 from beamfem.kernels.predictor import difference_rows, padded
 from beamfem.kernels.records import aligned
+from beamfem.kernels.stage_record import Stages
 
 _KEPT = 40_000_000  # entries of the largest tangent whose workspace is kept for the next motion of the model
 
 
 class MotionWorkspace:
-    """Workspace for one motion; residual (n,): of the state reached."""
+    """Workspace for one motion; residual (n,): of the state reached; stages: of collocation, by method."""
 
     def __init__(self, system: System) -> None:
         unknowns, pairs = system.unknowns, runs_of(system.rotating)
@@ -37,7 +38,7 @@ class MotionWorkspace:
             }
         )
         room["inverse_scale"][free] = 1.0 / system.scale[free]
-        self.residual = room.pop("residual")
+        self.residual, self.stages = room.pop("residual"), dict[object, Stages]()
         if first >= 0:  # unknowns in a row are solved for where the residual is
             room["right"] = self.residual[first : first + unknown]
         own.fill(pair_run_count=len(pairs), pair_runs=pairs, **room)
@@ -51,6 +52,7 @@ class MotionWorkspace:
         self.assembler.record.forget("p", "v", "a")
         self.solver.forget("state", "bodies", "prescribed_values")
         self.solver.forget("saved", "saved_rotations", "rotated_by", "rotation_table")
+        self.stages = {rule: own for rule, own in self.stages.items() if own.matrices.size <= _KEPT}
 
 
 @contextmanager

@@ -132,7 +132,8 @@ class Coefficients:
     a (s, s): A; weights (s,): b; at_end (s,): polynomial through the stages at the end; ahead (s, s + 1): that through
     the stages, and the end of the step if it is no stage, at the stages of the next step; values: eigenvalues of A, the
     real one first and one of each complex pair; into, back (s, s): the stages as parts of its eigenvectors and the
-    inverse, see `kernels.stage_record`; error: factor and power, see there.
+    inverse, see `kernels.stage_record`; error: factor and power, see there; samples: times of the stages and of the end
+    within a step of 1; points: such times, ends included, through which motions of supports are interpolated.
     """
 
     nodes: np.ndarray
@@ -144,11 +145,8 @@ class Coefficients:
     into: np.ndarray
     back: np.ndarray
     error: tuple[float, float]
-
-    @property
-    def ends_with_a_stage(self) -> bool:
-        """Whether the last stage is the end of the step."""
-        return bool(self.nodes[-1] == 1.0)
+    samples: np.ndarray
+    points: np.ndarray
 
     def motion(self, changes: np.ndarray, step: float) -> np.ndarray:
         """Return u, u' and u'' (3, samples, m) at the stages, and at the end, of values (points, m) in a step [s].
@@ -160,17 +158,6 @@ class Coefficients:
         at = 2.0 * self.samples - 1.0
         rates = [chebyshev.chebder(fitted, order, scl=2.0 / step) if order else fitted for order in range(3)]
         return np.array([chebyshev.chebval(at, each).T for each in rates])
-
-    @property
-    def points(self) -> np.ndarray:
-        """Times (points,) within a step of 1, ends included, through which motions of supports are interpolated."""
-        degree = 2 * len(self.nodes) + (0 if self.ends_with_a_stage else 1)
-        return 0.5 - 0.5 * np.cos(np.pi * np.arange(degree + 1) / degree)
-
-    @property
-    def samples(self) -> np.ndarray:
-        """Times of the stages, and of the end, within a step of 1."""
-        return self.nodes if self.ends_with_a_stage else np.append(self.nodes, 1.0)
 
 
 @cache
@@ -196,7 +183,9 @@ def coefficients(method: Gauss | Radau) -> Coefficients:
     integrated = own / (factorial(method.order) * factorial(method.order + 1))
     power = (method.order + 2) / (len(known) + 2)  # of p', by which errors of iterations are judged too
     error = integrated / first**power, power
+    degree = 2 * s + len(known) - s
     values = np.append(values[real].real, values[pairs])
     return Coefficients(
-        nodes, a, weights, at_end, ahead, values, np.array(into), np.ascontiguousarray(np.array(back).T), error
-    )
+        nodes, a, weights, at_end, ahead, values, np.array(into), np.ascontiguousarray(np.array(back).T), error,
+        known, 0.5 - 0.5 * np.cos(np.pi * np.arange(degree + 1) / degree),
+    )  # fmt: skip

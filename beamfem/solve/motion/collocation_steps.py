@@ -42,42 +42,27 @@ class CollocationSteps(StepsInCalls):
         statistics: MotionStatistics,
     ) -> None:
         super().__init__(system, space, statistics, step)
-        self._rule, self._time = rule, begin
-        solver, h, s = space.solver, step, len(rule.nodes)
-        a, b, stride = rule.a, rule.weights, padded(solver.size)
-        z = h * rule.values
-        real = s % 2
-        planes = [(z[0].real ** 2, z[0].real, 1.0)] * real
-        for each in z[real:]:
-            planes += [((each**2).real, each.real, 1.0), ((each**2).imag, each.imag, 0.0)]
-        own = Stages(
-            stages=s,
-            real=real,
-            samples=len(rule.samples),
-            stride=stride,
-            height=padded(solver.unknown),
-            entries=system.unknowns.entries,
-            time_step=h,
-            error_factor=rule.error[0],
-            error_power=rule.error[1],
-            kept_rate=_KEPT,
-        )
+        self._rule, self._time, h = rule, begin, step
+        found = space.stages.pop(rule, None)
+        self._stages = own = space.stages[rule] = _stages(system, space, rule) if found is None else found
+        of_p, z = h * h * rule.a @ rule.a, h * rule.values
+        parts = [((each**2).real, each.real, 1.0, (each**2).imag, each.imag, 0.0) for each in z]
+        weights = np.array(parts).reshape(-1, 3)[own.real :]  # the real eigenvalue has one plane
+        weights[: own.real] = parts[0][:3]
         own.fill(
-            routines=_routines(solver.half),
-            nodes=rule.nodes,
-            of_p=h * h * a @ a,
-            of_v=h * a,
-            to_multipliers=np.linalg.inv(h * h * a @ a),
-            at_end=np.array([h * h * b @ a, h * b, rule.at_end]),
-            ahead=rule.ahead,
-            into=rule.into,
-            back=rule.back,
-            weights=np.array(planes),
-            **aligned(own.shapes("begin", "p", "v", "a", "last", "change", "right", "planes", "matrices")),
+            time_step=h,
+            rate=0.0,
+            known=0,
+            factored=0,
+            solved=0,
+            of_p=of_p,
+            of_v=h * rule.a,
+            to_multipliers=np.linalg.inv(of_p),
+            at_end=np.array([h * h * rule.weights @ rule.a, h * rule.weights, rule.at_end]),
+            weights=weights,
         )
-        self._stages = own
         self._coupled = CoupledPlanes(system, space, own) if is_coupled(system) else None
-        solver.fill(limits=MotionLimits(), statistics=statistics)
+        space.solver.fill(limits=MotionLimits(), statistics=statistics)
         space.assembler.weigh((1.0, 1.0, 1.0), h, moving=True)
         space.assembler.require("tangent")
 
@@ -190,7 +175,27 @@ class CollocationSteps(StepsInCalls):
         return False
 
 
-def _routines(half_width: int) -> StageRoutines:
-    """Return the compiled functions for a band of a half width."""
-    own = complex_band(half_width)
-    return StageRoutines.usual(factor_complex=own.factor, solve_complex=own.solve)
+def _stages(system: System, space: MotionWorkspace, rule: Coefficients) -> Stages:
+    """Return a method with workspace, for steps of any size."""
+    solver = space.solver
+    own = Stages(
+        stages=len(rule.nodes),
+        real=len(rule.nodes) % 2,
+        samples=len(rule.samples),
+        stride=padded(solver.size),
+        height=padded(solver.unknown),
+        entries=system.unknowns.entries,
+        error_factor=rule.error[0],
+        error_power=rule.error[1],
+        kept_rate=_KEPT,
+    )
+    factors = complex_band(solver.half)
+    own.fill(
+        routines=StageRoutines.usual(factor_complex=factors.factor, solve_complex=factors.solve),
+        nodes=rule.nodes,
+        ahead=rule.ahead,
+        into=rule.into,
+        back=rule.back,
+        **aligned(own.shapes("begin", "p", "v", "a", "last", "change", "right", "planes", "matrices")),
+    )
+    return own

@@ -56,6 +56,16 @@ def test_a_tighter_tolerance_takes_shorter_steps(pendulum):
         assert motion.time[-1] == pytest.approx(0.5, rel=1e-12)
 
 
+@pytest.mark.parametrize("duration", [0.3475, 0.35, 0.3525])
+def test_the_last_step_is_as_long_as_the_time_that_it_takes(pendulum, duration):
+    """The number of equal steps that are judged together need not divide what is left."""
+    beam, model = pendulum
+    motion = bf.simulate(model, duration, tolerance=1e-4)
+    moved, mean = np.diff(motion.position(beam.end), axis=0), motion.velocity(beam.end)
+    expected = 0.5 * (mean[1:] + mean[:-1]) * np.diff(motion.time)[:, None]
+    assert np.max(np.abs(moved[-1] - expected[-1])) < 1e-3 * np.max(np.abs(moved[-1]))
+
+
 def test_steps_end_at_the_kinks_of_loads():
     """A pulse of 1 ms in a motion of 1 s: its impulse is found, and steps are short beside it."""
     steel = bf.Material(2e11, 0.3, 7800.0)

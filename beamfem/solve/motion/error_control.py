@@ -68,9 +68,9 @@ def march_to_tolerance(
                     return None
                 step = min(step or _first_step(cutter, state, tolerance), 0.25 * (end - part.times[0]))
                 steps = min(count, int(np.ceil((end - time) / step * (1.0 - 1e-9)))) if rule else 2
-                size = (end - time) / steps if time + 1.001 * steps * step >= end else step
+                last = time + 1.001 * steps * step >= end
+                size = (end - time) / steps if last else step
                 times = time + size * np.arange(steps + 1.0)
-                last = times[-1] > end - 0.5 * size
                 times[-1] = end if last else times[-1]
                 stretch = Stretch(
                     times, size, False, False, False,

@@ -69,6 +69,14 @@ def predict(system: System, solver: MotionSolver, stages: Stages, step: int, att
                 for j in range(s):
                     total_of_one += stages.to_multipliers[i * s + j] * changes[j]
                 own[i * stride] = total_of_one
+    for roller in range(solver.rollers):  # round-off along a normal is not corrected, and grows if it is extrapolated
+        x, y = solver.free_dofs[solver.roller_first[roller]], solver.free_dofs[solver.roller_first[roller] + 1]
+        c, d = solver.roller_normal[2 * roller], solver.roller_normal[2 * roller + 1]
+        for i in range(s):
+            of_stage = at(stages.a, i * stride)
+            along = c * of_stage[x] + d * of_stage[y]
+            of_stage[x] -= along * c
+            of_stage[y] -= along * d
     for k in range(0, stride, WIDTH):
         for i in range(s):
             at_p, at_v = now[k] + h * nodes[i] * now[stride + k], zeros() + now[stride + k]
@@ -117,10 +125,20 @@ def factorise(system: System, solver: MotionSolver, stages: Stages, step: int) -
     return stages.routines.factor_planes(solver, stages)
 
 
+@inlined
+def _constrain(solver, rows):
+    """Constrain the normals of inclined rollers in a matrix."""
+    if solver.rollers > 0:
+        first_of, normal = solver.roller_first, solver.roller_normal
+        solver.routines.constrain_normals(solver.unknown, solver.half, solver.rollers, rows, first_of, normal)
+
+
 @routine()
 def factor_planes(solver: MotionSolver, stages: Stages) -> float:
-    """Factorise the matrices of all planes."""
+    """Factorise the matrices of all planes, without the normals of inclined rollers."""
     small_code()
+    for plane in range(stages.stages):
+        _constrain(solver, at(stages.matrices, plane * stages.entries))
     ratio, n, half, reach, space, entries = 1.0, solver.unknown, solver.half, solver.reach, solver.step, stages.entries
     if stages.real != 0:
         ratio = solver.routines.factor(n, half, reach, stages.matrices, space)
@@ -153,11 +171,16 @@ def _combine(stages, factors, source, target):
 @routine(fastmath=FAST)
 def solve(solver: MotionSolver, stages: Stages) -> None:
     """Replace the right-hand sides by corrections of the accelerations of the stages."""
+    call, rollers, first_of, normal = solver.routines, solver.rollers, solver.roller_first, solver.roller_normal
+    for i in range(stages.stages):
+        call.rotate_in(rollers, first_of, normal, at(stages.right, i * stages.height))
     _rotate(solver, stages, -1.0)
     _combine(stages, stages.into, stages.right, stages.planes)
     stages.routines.solve_planes(solver, stages)
     _combine(stages, stages.back, stages.planes, stages.right)
     _rotate(solver, stages, 1.0)
+    for i in range(stages.stages):
+        call.rotate_back(rollers, first_of, normal, at(stages.right, i * stages.height))
 
 
 @routine()
@@ -213,8 +236,12 @@ def accelerate(system: System, solver: MotionSolver, stages: Stages) -> None:
     solver.routines.assemble(system, solver)
     for k in range(unknown):
         right[k] = -system.residual[free[k]]
-    solver.routines.factor(unknown, solver.half, solver.reach, rows, solver.step)
-    solver.routines.solve_both(unknown, solver.half, rows, right)
+    call, rollers, first_of, normal = solver.routines, solver.rollers, solver.roller_first, solver.roller_normal
+    _constrain(solver, rows)
+    call.factor(unknown, solver.half, solver.reach, rows, solver.step)
+    call.rotate_in(rollers, first_of, normal, right)
+    call.solve_both(unknown, solver.half, rows, right)
+    call.rotate_back(rollers, first_of, normal, right)
     for k in range(unknown):
         state[2 * n + free[k]] = right[k]
 

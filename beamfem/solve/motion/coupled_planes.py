@@ -4,20 +4,17 @@ from collections.abc import Callable
 from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p, cast
 
 import numpy as np
-from scipy.sparse import csr_array
+from scipy.sparse import csc_array, csr_array
 
 from beamfem.equations.callbacks import Deferred
 from beamfem.equations.equations import tangent_of
 from beamfem.equations.motion_workspace import MotionWorkspace
 from beamfem.equations.system import System
-from beamfem.errors import ConvergenceError
 from beamfem.kernels import motion_stages
 from beamfem.kernels.stage_record import Stages
 from beamfem.kernels.stage_steps import march_stages
-from beamfem.linalg.lapack import LinAlgError
-from beamfem.linalg.tangent import UNROTATED
+from beamfem.linalg.lapack import LinAlgError, superlu
 from beamfem.solve.motion.coupled_stages import PythonRoutines
-from beamfem.solve.motion.equations_of_motion import EquationsOfMotion
 from beamfem.solve.motion.start_acceleration import initial_acceleration
 
 _Two = CFUNCTYPE(None, *(c_int64,) * 2)
@@ -40,7 +37,6 @@ class CoupledPlanes(PythonRoutines):
         self._equations, self._state, self._times = space.assembler.record, np.empty((4, 0)), np.empty(0)
         self._planes: list[csr_array] = []
         self._solvers: list[Callable[[np.ndarray], np.ndarray]] = []
-        self._motion = EquationsOfMotion(system, np.zeros(1, dtype=np.int64))
         self._functions = {
             "accelerate": _Three(self._guarded(self._accelerate)),
             "factor_planes": _Factor(self._guarded(self._factor)),
@@ -74,16 +70,16 @@ class CoupledPlanes(PythonRoutines):
 
     def _plane(self, coupled: list[np.ndarray]) -> csr_array:
         matrix = self._stages.matrices[len(self._planes)]
-        return csr_array(tangent_of(self._system, matrix, coupled).sparse(UNROTATED))
+        return tangent_of(self._system, matrix, coupled).sparse(self._system.rotated)
 
     def _factor(self, solver: int, stages: int) -> float:
         """Factorise the matrices of the planes; return 1, or 0 if one is singular."""
         planes, self._planes, real = self._planes, [], self._stages.real
         pairs = zip(planes[real::2], planes[real + 1 :: 2], strict=True)
         try:
-            self._solvers = [self._motion.solver(each) for each in planes[:real]]
-            self._solvers += [self._motion.solver(csr_array(re + 1j * im)) for re, im in pairs]
-        except (ConvergenceError, LinAlgError):
+            self._solvers = [superlu(csc_array(each)).solve for each in planes[:real]]
+            self._solvers += [superlu(csc_array(re + 1j * im)).solve for re, im in pairs]
+        except LinAlgError:
             return 0.0
         return 1.0
 
@@ -93,7 +89,7 @@ class CoupledPlanes(PythonRoutines):
         planes = own.planes[:, :unknown]
         for number, solve in enumerate(self._solvers):
             if number < own.real:
-                planes[number] = solve(planes[number])
+                planes[number] = solve(planes[number].copy())
             else:
                 re = 2 * number - own.real
                 solution = solve(planes[re] + 1j * planes[re + 1])

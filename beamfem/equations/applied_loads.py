@@ -2,7 +2,6 @@
 
 from collections import defaultdict
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -12,15 +11,15 @@ from beamfem.kernels.block import Stations
 from beamfem.kernels.record import CONSTANTS
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import jacobians, length_points, reference_axis, scales
-from beamfem.model.beam import Beam
-from beamfem.model.load_base import LineLoad, MovingLoad, PointLoad, factor, forces_of
+from beamfem.model.beam import Beam, Point
+from beamfem.model.load_base import Load, MovingLoad, forces_of
 from beamfem.model.model import Model
 from beamfem.physics.stations import DEAD, FOLLOWING, GROUNDED, STRETCHING
 
 
 @dataclass(frozen=True, eq=False)
 class LoadsAt:
-    """Loads of a model at a time, in statics at a load factor.
+    """Loads of a model with certain factors.
 
     body (beams, 4): acceleration [m/s^2] and load per length [N/m]; points (nl, 3) of each block: forces [N] and
     moments [N m] at points; imposing (k,): factors of the loads that impose strains.
@@ -29,6 +28,11 @@ class LoadsAt:
     body: np.ndarray
     points: tuple[np.ndarray, ...]
     imposing: np.ndarray
+
+    @property
+    def gravity(self) -> np.ndarray:
+        """Acceleration (2,) [m/s^2] of all mass."""
+        return self.body[0, :2]
 
     @property
     def arrays(self) -> tuple[np.ndarray, ...]:
@@ -49,15 +53,21 @@ class LoadsAt:
         return any(bool(array.any()) for array in self.arrays)
 
 
-def body_loads(model: Model, time: float, static: bool) -> np.ndarray:
-    """Return acceleration [m/s^2] and load per length [N/m] of each beam (beams, 4) at a time."""
+def even_loads(model: Model, factors: np.ndarray) -> np.ndarray:
+    """Return acceleration [m/s^2] and load per length [N/m] of each beam (beams, 4) by loads that are even.
+
+    factors (k,): of `model.acting`.
+    """
     result = np.zeros((len(model.beams), 4))
-    for load in model.gravity:
-        result[:, :2] += np.array(load.vector) * factor(load, time, static)
-    for line in model.line_loads:
-        if line.even:
-            result[model.number_of(line.beam), 2:] += forces_of(line, np.zeros(1))[0] * factor(line, time, static)
+    for load, size in zip(model.acting, factors.tolist(), strict=True):
+        if load.even:
+            ((name, vectors),) = load.acting(_START).items()
+            rows = model.number_of(load.place) if isinstance(load.place, Beam) else slice(None)
+            result[rows, _COLUMNS[name]] += vectors[0] * size
     return result
+
+
+_START, _COLUMNS = np.zeros(1), {"acceleration": slice(2), "line_force": slice(2, 4)}
 
 
 def pressures_have_potential(model: Model, prescribed: set[int]) -> bool:
@@ -87,8 +97,8 @@ def pressures_have_potential(model: Model, prescribed: set[int]) -> bool:
 class Actions:
     """Stations of a block and the values of their loads at a time.
 
-    unit (nl, 3): force [N] and moment [N m] of each, without its factor; source (nl,): index of the load in `loads`, -1
-    for springs; xi (nl,): position in the element; rule (nl,): number of Gauss points per element over which a load or
+    unit (nl, 3): force [N] and moment [N m] of each, without its factor; source (nl,): index in `model.acting`, -1 for
+    springs; xi (nl,): position in the element; rule (nl,): number of Gauss points per element over which a load or
     foundation along a beam is distributed, 0 at a point.
     """
 
@@ -97,8 +107,7 @@ class Actions:
     source: np.ndarray
     xi: np.ndarray
     rule: np.ndarray
-    loads: tuple[PointLoad | LineLoad, ...]
-    moving: tuple["_Moving", ...] = ()
+    moving: tuple["_Moving", ...]
 
     @cached_property
     def _distributed(self) -> tuple[np.ndarray, np.ndarray]:
@@ -109,7 +118,7 @@ class Actions:
 
     @cached_property
     def _at_points(self) -> list[tuple[int, int]]:
-        """Number of each load at a point and its number in `loads`."""
+        """Number of each load at a point and its number in `model.acting`."""
         rows = np.flatnonzero(self.rule == 0)
         return list(zip(rows.tolist(), self.source[rows].tolist(), strict=True))
 
@@ -122,32 +131,31 @@ class Actions:
 
     def of(self, model: Model) -> "Actions":
         """Return the actions on a model whose loads differ from the own ones only in their size."""
-        loads: tuple[Any, ...] = (*model.point_loads, *_lines(model))
         unit = self.unit.copy()
         for row, number in self._at_points:
-            unit[row] = loads[number].value
-        return replace(self, unit=unit, loads=loads)
+            unit[row] = _at_point(model.acting[number])
+        return replace(self, unit=unit)
 
-    def values(self, time: float, static: bool) -> np.ndarray:
-        """Return forces and moments (nl, 3) at a time."""
-        factors = [factor(load, time, static) for load in self.loads]
-        result = self.unit * np.array([*factors, 1.0])[self.source, None]
+    def values(self, time: float, factors: np.ndarray) -> np.ndarray:
+        """Return forces and moments (nl, 3) at a time, with the factors (k,) of `model.acting`."""
+        result = self.unit * np.append(factors, 1.0)[self.source, None]
         for moving in self.moving:
             rows, shares = moving.at(time)
-            force = factor(moving.load, time, static) * np.array(moving.load.vector)
+            force = factors[moving.number] * np.array(moving.load.vector)
             result[moving.first + rows, :2] = shares[:, None] * force
         return result
 
 
 @dataclass(frozen=True, eq=False)
 class _Moving:
-    """A moving load of a block, and the first of its rows, one for each Gauss point of its beam.
+    """A moving load of a block, its number in `model.acting`, and the first of its rows, one for each Gauss point.
 
     A polynomial of the degree of the field is determined by its values at the Gauss points of an element, so that
     forces there, in the shares of Lagrange's polynomials, have the nodal forces of one between them.
     """
 
     load: MovingLoad
+    number: int
     mesh: BeamMesh
     first: int
 
@@ -167,52 +175,51 @@ class _Moving:
 
 def build_actions(model: Model, block: int) -> Actions:
     """Return the stations of a block; those of loads and foundations along beams are Gauss points."""
-    points, lines = model.point_loads, _lines(model)
     size = len(model.groups[block].field.nodes) * len(model.groups[block].field.vectors)
     table, whole = np.zeros((0, size)), np.zeros(0, dtype=np.int64)
     none = whole, table, table, whole, np.zeros((0, CONSTANTS)), np.zeros((0, 3)), whole, np.zeros(0), whole
     parts, moving = list[tuple[np.ndarray, ...]]([none]), list[_Moving]()
-    for number, load in enumerate(points):
-        mesh = _mesh(model, load.point.beam, block)
-        if mesh is not None:
-            element, at = mesh.locate(load.point.fraction)
-            kind = FOLLOWING if load.follower else DEAD
-            parts.append(_part(mesh, np.array([element]), np.array([at]), kind, np.array([load.value]), number, rule=0))
-    for number, line in enumerate(lines, len(points)):
-        mesh = _mesh(model, line.beam, block)
-        if mesh is not None:
-            where, xi, weight = length_points(mesh)
-            force = weight[:, None] * forces_of(line, mesh.arc_length(where, xi))
-            unit = np.column_stack([force, np.zeros(len(xi))])
-            parts.append(_part(mesh, where, xi, _KINDS[line.axes], unit, number))
+    for number, load in enumerate(model.acting):
+        place = load.place
+        mesh = None if load.even else _mesh(model, place, block)
+        if mesh is None:
+            continue
+        if isinstance(place, Point):
+            element, at = mesh.locate(place.fraction)
+            unit = _at_point(load)[None]
+            parts.append(_part(mesh, np.array([element]), np.array([at]), _KINDS[load.axes], unit, number, rule=0))
+            continue
+        where, xi, weight = length_points(mesh)
+        if isinstance(load, MovingLoad):
+            moving.append(_Moving(load, number, mesh, sum(len(part[0]) for part in parts)))
+            parts.append(_part(mesh, where, xi, DEAD))
+        elif along := load.acting(mesh.arc_length(where, xi)):
+            unit = np.column_stack([weight[:, None] * along["line_force"], np.zeros(len(xi))])
+            parts.append(_part(mesh, where, xi, _KINDS[load.axes], unit, number))
     for foundation in model.line_supports:
-        mesh = _mesh(model, foundation.beam, block)
-        if mesh is not None:
+        if mesh := _mesh(model, foundation.beam, block):
             where, xi, weight = length_points(mesh)
             place = mesh.position[mesh.node[where, 0]] + reference_axis(mesh, where, xi).r
             constants = np.hstack([np.outer(weight, foundation.stiffness), place])
             parts.append(_part(mesh, where, xi, GROUNDED, constants=constants))
-    for wheel in model.moving_loads:
-        mesh = _mesh(model, wheel.beam, block)
-        if mesh is not None:
-            moving.append(_Moving(wheel, mesh, sum(len(part[0]) for part in parts)))
-            parts.append(_part(mesh, *length_points(mesh)[:2], DEAD))
     joined = [np.concatenate(values) for values in zip(*parts, strict=True)]
     unit, source, xi, rule = joined[5:]
-    return Actions(Stations(*joined[:5]), unit, source, xi, rule, (*points, *lines), tuple(moving))
+    return Actions(Stations(*joined[:5]), unit, source, xi, rule, tuple(moving))
 
 
-_KINDS = {"plane": DEAD, "section": FOLLOWING, "axis": STRETCHING}  # by the axes of a load along a beam
+_KINDS = {"plane": DEAD, "section": FOLLOWING, "axis": STRETCHING}  # by the axes of a load
 
 
-def _lines(model: Model) -> list[LineLoad]:
-    """Return the loads along beams that act at points of elements: all but uniform ones in the axes of the plane."""
-    return [load for load in model.line_loads if not load.even]
+def _mesh(model: Model, place: Beam | Point | None, block: int) -> BeamMesh | None:
+    """Return the mesh of the beam of a load or support if it is in a block."""
+    beam = place.beam if isinstance(place, Point) else place
+    mesh = None if beam is None else model.meshes[model.number_of(beam)]
+    return mesh if mesh is not None and mesh.block == block else None
 
 
-def _mesh(model: Model, beam: Beam, block: int) -> BeamMesh | None:
-    mesh = model.meshes[model.number_of(beam)]
-    return mesh if mesh.block == block else None
+def _at_point(load: Load) -> np.ndarray:
+    """Return force [N] and moment [N m] (3,) of a load at a point."""
+    return np.concatenate([load.acting(_START)[name][0] for name in ("force", "moment")])
 
 
 def _slope(mesh: BeamMesh, element: np.ndarray, xi: np.ndarray) -> np.ndarray:

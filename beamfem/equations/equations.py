@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.sparse import coo_array, csc_array, csr_array, hstack
 
+from beamfem.equations.applied_loads import LoadsAt
 from beamfem.equations.assembler import Assembler, Equations
 from beamfem.equations.differences import differentiated
 from beamfem.equations.frame_inertia import absolute, right_angle, right_angle_of_unknowns, speeds
@@ -21,17 +22,24 @@ _EMPTY = np.empty(0)
 _KEPT = 200_000  # floats of the largest workspace whose allocation is a noticeable part of an evaluation
 
 
-def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float, dt: float = 0.0) -> np.ndarray:
+def residual(
+    system: System,
+    p: np.ndarray,
+    v: np.ndarray,
+    a: np.ndarray,
+    time: float,
+    dt: float = 0.0,
+    loads: LoadsAt | None = None,
+) -> np.ndarray:
     """Return inertia + elastic - external generalized forces (n,) [N, N m]; at prescribed coordinates, the reactions.
 
-    dt [s]: time step since the committed history, 0 in an accepted state.
+    dt [s]: time step since the committed history, 0 in an accepted state; loads: others than those at the time.
     """
     if system.model.frame is None:
-        result = _residual(system, p, v, a, time, dt)
+        result = _residual(system, p, v, a, time, dt, loads)
     else:
-        at = speeds(system, time)
-        terms = [weight * _residual(system, p, *absolute(system, p, v, a, speed), time, dt) for weight, speed in at]
-        result = np.asarray(sum(terms))
+        at = [(weight, absolute(system, p, v, a, speed)) for weight, speed in speeds(system, time)]
+        result = np.asarray(sum(weight * _residual(system, p, *rates, time, dt, loads) for weight, rates in at))
     if not len(system.connectors.one_sided):
         return result
     return released(system, p, result, system.connectors.gradients(p, time), inactive_conditions(system, p, result))
@@ -93,14 +101,27 @@ def residual_at_rest(system: System, p: np.ndarray, time: float) -> np.ndarray:
     return residual(system, p, zeros, zeros, time)
 
 
-def _residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float, dt: float) -> np.ndarray:
+def residual_under(system: System, p: np.ndarray, time: float, factors: np.ndarray) -> np.ndarray:
+    """Return the residual (n,) of a state p (n,) at rest in a frame at rest, with factors (k,) of `model.acting`."""
+    zeros = np.zeros(len(p))
+    return _residual(system, p, zeros, zeros, time, 0.0, system.loads_of(time, factors))
+
+
+def imposed_forces(system: System, time: float) -> np.ndarray:
+    """Return the forces (n,) that would hold the beams in their reference against the strains imposed on them."""
+    return residual_under(system, system.reference, time, np.where(system.imposes, system.factors(time), 0.0))
+
+
+def _residual(
+    system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float, dt: float, loads: LoadsAt | None = None
+) -> np.ndarray:
     """Return the residual (n,) of a motion at rest, see `residual`."""
-    result, assembler = np.empty(len(p)), _acquired(system)
-    assembler.take(system.loads_at(time))
+    result, assembler, loads = np.empty(len(p)), _acquired(system), loads or system.loads_at(time)
+    assembler.take(loads)
     assembler.weigh((1.0, 1.0, 1.0), dt)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, _EMPTY, False)
     _return_assembler(system, assembler)
-    system.called.add_forces(result, (p, v, a), time)
+    system.called.add_forces(result, (p, v, a), time, loads.gravity)
     return result
 
 

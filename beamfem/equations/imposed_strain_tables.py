@@ -1,5 +1,6 @@
 """Strains that loads impose on the elements of a block."""
 
+from collections import defaultdict
 from collections.abc import Sequence
 
 import numpy as np
@@ -13,33 +14,22 @@ from beamfem.model.along_beam import jumps_along
 from beamfem.model.imposed_strains import ImposedStrain, free_strain_of
 
 
-def imposed_on(meshes: Sequence[tuple[int, BeamMesh]], loads: Sequence[tuple[int, ImposedStrain]]) -> Imposed | None:
-    """Return the strains that loads, each with its beam number, impose on a block of beams (number, mesh), or None."""
-    by_beam: dict[int, list[int]] = {}
-    for number, (beam, _) in enumerate(loads):
-        by_beam.setdefault(beam, []).append(number)
-    loads_of_mesh = [by_beam.get(beam, []) for beam, _ in meshes]
-    most = max(map(len, loads_of_mesh))
-    if most == 0:
-        return None
-    parts = [
-        free_strains(mesh, [loads[i][1] for i in numbers]) if numbers else None
-        for numbers, (_, mesh) in zip(loads_of_mesh, meshes, strict=True)
-    ]
-    points, measures = next(part[0].shape[2:] for part in parts if part is not None)
-    ends = np.cumsum([mesh.elements for _, mesh in meshes])
-    pairs = most if any(part is not None and part[1].any() for part in parts) else 0
-    load = np.full((most, ends[-1]), -1)
-    first, second = np.zeros((most, ends[-1], points, measures)), np.zeros((pairs, pairs, ends[-1], points, measures))
-    for numbers, part, (_, mesh), end in zip(loads_of_mesh, parts, meshes, ends.tolist(), strict=True):
-        if part is None:
-            continue
-        elements, count = slice(end - mesh.elements, end), len(numbers)
-        load[:count, elements] = np.array(numbers)[:, None]
-        first[:count, elements] = part[0]
-        if pairs:
-            second[:count, :count, elements] = part[1]
-    return Imposed(load, first, second)
+def imposed_on(meshes: Sequence[tuple[int, BeamMesh]], imposing: Sequence[tuple[int, ImposedStrain]]) -> Imposed | None:
+    """Return the strains that loads, each with its beam number, impose on beams (number, mesh)."""
+    terms, end, shape, by_beam = [], 0, (), defaultdict[int, list[int]](list)
+    for number, (beam, _) in enumerate(imposing):
+        by_beam[beam].append(number)
+    for beam, mesh in meshes:
+        elements, loads = slice(end, end + mesh.elements), by_beam[beam]
+        end += mesh.elements
+        if loads:
+            first, second = free_strains(mesh, [imposing[number][1] for number in loads])
+            shape = first.shape[2:]
+            for number, values, products in zip(loads, first, second, strict=True):
+                terms.append(([number], elements, values))
+                pairs = zip(loads, products, strict=True)
+                terms += [([number, other], elements, product) for other, product in pairs if product.any()]
+    return Imposed(tuple(terms), (end, *shape)) if terms else None
 
 
 _THICKNESS = 3  # column of the thickness stretch

@@ -1,7 +1,7 @@
 """The numerical data of a model: coordinates, blocks of elements, prescribed coordinates and loads at a time."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import Enum, auto
 from typing import Any, TypeVar
 
@@ -12,8 +12,8 @@ from beamfem.equations import equation_numbering as layout
 from beamfem.equations.applied_loads import (
     Actions,
     LoadsAt,
-    body_loads,
     build_actions,
+    even_loads,
     pressures_have_potential,
 )
 from beamfem.equations.assembler import Assembler, Equations
@@ -37,6 +37,7 @@ from beamfem.kernels.block import Block, Layout, Stations
 from beamfem.kernels.motion_record import MotionSolver
 from beamfem.kernels.newton_loop import NewtonSolver
 from beamfem.kernels.record import Parts
+from beamfem.model.imposed_strains import ImposedStrain
 from beamfem.model.load_base import factor
 from beamfem.model.model import Model
 from beamfem.physics.stations import FOLLOWING
@@ -45,7 +46,6 @@ from beamfem.validation import shown
 
 _Table = TypeVar("_Table", covariant=True)
 _KEPT_LOADS = 2  # load factors whose loads are cached
-_NOTHING = np.empty(0)
 _NO_MOVEMENT = 1e300  # scale of history variables: no change of them counts as movement
 
 
@@ -230,23 +230,13 @@ class System:
 
     @shared_table
     def _unloaded_actions(self) -> tuple[Actions, ...]:
-        """The actions without their loads, whose sizes and amplitudes are those of another model."""
-        built = (build_actions(self.model, number) for number in range(len(self.model.groups)))
-        return tuple(replace(actions, loads=()) for actions in built)
+        """The actions, where sizes of loads may be those of another model."""
+        return tuple(build_actions(self.model, number) for number in range(len(self.model.groups)))
 
     @shared_table
     def stations(self) -> tuple[Stations, ...]:
-        """Stations of each block, in the order of `point_values`."""
+        """Stations of each block, in the order of `LoadsAt.points`."""
         return tuple(actions.stations for actions in self._unloaded_actions)
-
-    def point_values(self, time: float) -> tuple[np.ndarray, ...]:
-        """Return the forces and moments (nl, 3) [N, N, N m] of each block at a time."""
-        return tuple(actions.values(time, self.static) for actions in self.actions)
-
-    def imposing(self, time: float) -> np.ndarray:
-        """Return the factors (k,) of the loads that impose strains at a time."""
-        imposing = self.model.imposing
-        return np.array([factor(load, time, self.static) for _, load in imposing]) if imposing else _NOTHING
 
     def loads_at(self, time: float) -> LoadsAt:
         """Return the loads at a time, in statics at a load factor."""
@@ -261,18 +251,35 @@ class System:
         return found
 
     def _loads_at(self, time: float) -> LoadsAt:
-        return LoadsAt(self.body(time), self.point_values(time), self.imposing(time))
+        return self.loads_of(time, self.factors(time))
+
+    def factors(self, time: float) -> np.ndarray:
+        """Return the factors (k,) of `model.acting` at a time."""
+        return np.array([factor(load, time, self.static) for load in self.model.acting], dtype=float)
+
+    def loads_of(self, time: float, factors: np.ndarray) -> LoadsAt:
+        """Return the loads at a time with given factors (k,) of `model.acting`."""
+        points = tuple(actions.values(time, factors) for actions in self.actions)
+        return LoadsAt(even_loads(self.model, factors), points, factors[self.imposes])
+
+    @cached_property
+    def imposes(self) -> np.ndarray:
+        """Mask (k,) of the loads of `model.acting` that impose strains."""
+        return np.array([isinstance(load, ImposedStrain) for load in self.model.acting], dtype=bool)
+
+    def imposing(self, time: float) -> np.ndarray:
+        """Return the factors (k,) of the loads that impose strains at a time."""
+        return self.loads_at(time).imposing
 
     @cached_property
     def varying(self) -> bool:
         """Whether a load has an amplitude, a function of time, or moves."""
-        return bool(self.model.moving_loads) or any(load.amplitude is not None for load in self.model.loads)
+        return any(load.moves or load.amplitude is not None for load in self.model.loads)
 
     @cached_property
     def proportional(self) -> bool:
         """Whether all loads are proportional to the load factor of statics."""
-        loads, moves = self.model.loads, bool(self.model.moving_loads)
-        return self.static and not moves and all(load.scale and load.amplitude is None for load in loads)
+        return self.static and not self.varying and all(load.scale for load in self.model.loads)
 
     @property
     def steady(self) -> bool:
@@ -283,10 +290,6 @@ class System:
     def springs(self) -> Alike:
         """Springs of single coordinates to the ground, unstressed in the reference."""
         return springs_to_ground(self.model, self.unknowns, self.reference)
-
-    def body(self, time: float) -> np.ndarray:
-        """Return acceleration [m/s^2] and load per length [N/m] of each beam (beams, 4) at a time."""
-        return body_loads(self.model, time, self.static)
 
     @shared_table
     def symmetric(self) -> bool:
@@ -429,6 +432,14 @@ class System:
         """Change of a coordinate that strains an element by about one (n,): its length for positions [m], else 1."""
         length = min(float(block.weight.sum(axis=1).min()) for block in self.blocks)
         return np.where(self.positions, length, 1.0)
+
+
+def loads_of_rows(system: System, times: Sequence[float] | np.ndarray) -> LoadsAt:
+    """Return the loads at times, which are the first axis of its arrays."""
+    rows, count = [system.loads_at(time) for time in times], len(times)
+    points = (np.array([row.points[i] for row in rows]).reshape(count, -1, 3) for i in range(len(system.blocks)))
+    body, imposing = (np.array([getattr(row, name) for row in rows]) for name in ("body", "imposing"))
+    return LoadsAt(body.reshape(count, -1, 4), tuple(points), imposing.reshape(count, -1))
 
 
 def system_of(model: Model, static: bool) -> System:

@@ -59,23 +59,22 @@ class Law(Protocol):
 
 
 class Imposed(NamedTuple):
-    """Strain measures that loads impose on ne elements with nq points each, at most m loads on one element."""
+    """Strain measures that loads impose on elements: a sum of products of one or two of their factors with values.
 
-    load: np.ndarray  # (m, ne) number of a load among all that impose strains, -1 where an element has fewer
-    first: np.ndarray  # (m, ne, nq, ns) measures per unit factor of a load
-    second: np.ndarray  # (m, m, ne, nq, ns) per unit product of two factors; (0, 0, ne, nq, ns) if there are none
+    terms: numbers of the loads among all that impose strains, elements, and values (elements, nq, ns); shape: of the
+    measures (ne, nq, ns) of all elements; chosen: those of interest.
+    """
+
+    terms: tuple[tuple[list[int], slice, np.ndarray], ...]
+    shape: tuple[int, ...]
+    chosen: slice | np.ndarray = slice(None)
 
     def at(self, factors: np.ndarray) -> np.ndarray:
-        """Return the measures (ne, nq, ns) imposed by loads with given factors (k,)."""
-        weights = np.append(factors, 0.0)[self.load]
-        result = np.einsum("me,meqs->eqs", weights, self.first)
-        if self.second.size:
-            result += np.einsum("me,ke,mkeqs->eqs", weights, weights, self.second)
-        return np.asarray(result)
-
-    def of(self, elements: slice | np.ndarray) -> "Imposed":
-        """Return the imposed measures of some elements."""
-        return Imposed(self.load[:, elements], self.first[:, elements], self.second[:, :, elements])
+        """Return the measures imposed by loads with given factors (k,)."""
+        result = np.zeros(self.shape)
+        for loads, elements, values in self.terms:
+            result[elements] += factors[loads].prod() * values
+        return result[self.chosen]
 
 
 class Block(NamedTuple):

@@ -37,6 +37,7 @@ class Load(ABC):
     """
 
     along: ClassVar[tuple[str, ...]] = ()
+    moves: ClassVar[bool] = False
 
     amplitude: Amplitude = None
     scale: bool = True
@@ -51,6 +52,11 @@ class Load(ABC):
     @abstractmethod
     def place(self) -> Beam | Point | None:
         """The beam or point that the load acts on, None for all beams."""
+
+    @property
+    def even(self) -> bool:
+        """Whether what acts is one vector of x and y on whole beams."""
+        return False
 
     @property
     def axes(self) -> Axes:
@@ -115,6 +121,7 @@ def factor(load: Load, time: float, static: bool) -> float:
 class BodyLoad(Load):
     """An acceleration `vector` [m/s^2] that acts on all mass."""
 
+    even = True
     vector: tuple[float, float]
 
     @property
@@ -219,6 +226,7 @@ class MovingLoad(Load):
         The force (fx, fy).
     """
 
+    moves = True
     beam: Beam
     vector: tuple[float, float]
 

@@ -397,6 +397,13 @@ class Model:
         return tuple(part for load in self.loads for part in load.parts)
 
     @cached_property
+    def acting(self) -> tuple[Load, ...]:
+        """The loads, and those that loads consist of; those that are even, which tables do not depend on, come last."""
+        return tuple(
+            sorted((part for part in self._parts_of_loads if isinstance(part, Load)), key=lambda load: load.even)
+        )
+
+    @cached_property
     def imposing(self) -> tuple[tuple[int, ImposedStrain], ...]:
         """The loads that impose strains, each with the number of its beam."""
         return tuple((self._numbers[id(load.beam)], load) for load in self.loads if isinstance(load, ImposedStrain))
@@ -418,11 +425,6 @@ class Model:
     def line_loads(self) -> tuple[LineLoad, ...]:
         """The loads that are forces along beams."""
         return tuple(load for load in self.loads if isinstance(load, LineLoad))
-
-    @cached_property
-    def moving_loads(self) -> tuple[MovingLoad, ...]:
-        """The forces that move along beams."""
-        return tuple(load for load in self.loads if isinstance(load, MovingLoad))
 
     @cached_property
     def point_loads(self) -> tuple[PointLoad, ...]:

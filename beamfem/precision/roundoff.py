@@ -5,18 +5,18 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.equations.applied_loads import LoadsAt
 from beamfem.equations.equations import (
     ROUND_OFF,
     STATICS,
+    imposed_forces,
     linearise,
     linearise_at_rest,
     residual_at_rest,
     residual_change,
+    residual_under,
     sizes,
     with_stresses,
 )
-from beamfem.equations.imposed_forces import imposed_forces
 from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.equations.system import Proven, System
 
@@ -146,15 +146,16 @@ def lost_digits(system: System, p: np.ndarray, load_factor: float, coefficients:
     return with_stresses(system, state, load_factor, coefficients, None, plain).lost(system.rotated)
 
 
-def load_size(system: System, loads: LoadsAt) -> float:
+def load_size(system: System, load_factor: float) -> float:
     """Return the largest load at a point: a force times the size of the model, or a moment [N m].
 
     If only imposed strains act, which may cause no forces, the forces that would suppress them count instead.
     """
+    loads = system.loads_at(load_factor)
     force, moment = loads.largest
     largest = max(system.extent * force, moment)
     if largest == 0.0 and loads.imposing.any() and not loads.body.any():
-        largest = max(largest, float(np.max(np.abs(imposed_forces(system, loads)) * system.scale)))
+        largest = max(largest, float(np.max(np.abs(imposed_forces(system, load_factor)) * system.scale)))
     return largest
 
 
@@ -169,7 +170,7 @@ def _acting(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: 
     connected[system.connectors.multipliers] = 0.0
     reactions = max(reactions, float(np.max(np.abs(connected * system.scale), initial=0.0)))
     sprung = np.abs(system.springs.forces(p)) * system.scale[system.springs.numbers]
-    return max(load_size(system, system.loads_at(load_factor)), reactions, float(sprung.max(initial=0.0)))
+    return max(load_size(system, load_factor), reactions, float(sprung.max(initial=0.0)))
 
 
 def _distributed(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: float) -> float:
@@ -177,14 +178,10 @@ def _distributed(system: System, p: np.ndarray, unbalanced: np.ndarray, load_fac
 
     Where foundations alone bear them, there is no larger force.
     """
-    loads = system.loads_at(load_factor)
-    if not loads.body.any():
+    if not system.loads_at(load_factor).body.any():
         return 0.0
-    assembler, zeros, without = system.assembler(), np.zeros(len(p)), np.empty(len(p))
-    assembler.take(LoadsAt(np.zeros_like(loads.body), loads.points, loads.imposing))
-    assembler.weigh((1.0, 1.0, 1.0))
-    assembler.balance(p, zeros, zeros, without, np.empty(0), False)
-    system.called.add_forces(without, (p, zeros, zeros), load_factor)
+    factors = system.factors(load_factor) * [not load.even for load in system.model.acting]
+    without = residual_under(system, p, load_factor, factors)
     forces = without - unbalanced
     totals = [abs(float(rigid_rates(system, RigidVelocity(way), p) @ forces)) for way in ((1.0, 0.0), (0.0, 1.0))]
     return max(float(np.max(np.abs(forces) * system.scale, initial=0.0)), system.extent * max(totals))

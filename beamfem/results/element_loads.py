@@ -8,7 +8,7 @@ import numpy as np
 from beamfem.element.fields import cross
 from beamfem.equations.applied_loads import shape_tables
 from beamfem.equations.frame_inertia import seen_from_rest
-from beamfem.equations.system import System
+from beamfem.equations.system import System, loads_of_rows
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import inertia_points, length_points
 from beamfem.physics.compiled_connections import in_python
@@ -22,7 +22,7 @@ from beamfem.results.solution_system import loading
 class Rows:
     """Rows of a solution and the forces that act in them.
 
-    p, v, a (steps, n): seen from rest, see `equations.frame_inertia`; body (steps, beams, 4): see `System.body`;
+    p, v, a (steps, n): seen from rest, see `equations.frame_inertia`; body (steps, beams, 4): see `LoadsAt`;
     values: for each block (steps, nl, 3), see `Actions`; imposing (steps, k): factors of the loads that impose strains.
     """
 
@@ -56,14 +56,8 @@ def _latest(solution: Solution) -> dict[str, tuple[slice | bytes, Rows]]:
 def _rows_of(solution: Solution, rows: slice | np.ndarray) -> Rows:
     system, at = loading(solution)
     times = at[rows].tolist()
-    body = np.array([system.body(time) for time in times]).reshape(len(times), -1, 4)
-    points = [system.point_values(time) for time in times]
-    values = tuple(
-        np.array([own[block] for own in points]).reshape(len(times), -1, 3) for block in range(len(system.blocks))
-    )
-    imposing = np.array([system.imposing(time) for time in times]).reshape(len(times), -1)
-    p, rates = solution.p[rows], (solution.v[rows], solution.a[rows])
-    return Rows(system, p, *seen_from_rest(system, p, *rates, at[rows]), body, values, imposing)
+    p, rates, loads = solution.p[rows], (solution.v[rows], solution.a[rows]), loads_of_rows(system, times)
+    return Rows(system, p, *seen_from_rest(system, p, *rates, at[rows]), loads.body, loads.points, loads.imposing)
 
 
 @dataclass(frozen=True, eq=False)

@@ -51,12 +51,14 @@ class Energy:
     @cached_property
     def _exchange(self) -> tuple[np.ndarray, np.ndarray]:
         """Work, nan for equilibria, and what rates dissipate since the first row (steps,) [J]."""
-        from beamfem.results.work_and_losses import exchange
+        from beamfem.results.work_and_losses import exchange, forces_without_potential
 
         solution = self.solution
         if solution is None or solution.static or solution.loaded is not None or not len(solution):
             return np.full_like(self.kinetic, np.nan), np.zeros_like(self.kinetic)
-        return exchange(solution)
+        own = exchange(solution, forces_without_potential(solution))
+        work, lost = (np.append(0.0, np.cumsum(change)) for change in (own.work + own.given + own.stored, own.lost))
+        return work, lost
 
     @property
     def work(self) -> np.ndarray:

@@ -7,16 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamfem.equations.connectors import Connectors
 from beamfem.equations.equations import INERTIA, ROUND_OFF, linearise, sizes
 from beamfem.equations.system import System, system_of
 from beamfem.kernels.motion_record import MotionLimits
 from beamfem.linalg.tangent import UNROTATED
-from beamfem.model.load_base import CompositeLoad
 from beamfem.model.time_functions import kinks_of
 from beamfem.results.full_turns import start_rotations
-from beamfem.results.reactions import energies_of
-from beamfem.results.work_and_losses import Forces, driving_connectors, forces_without_potential, work_between
+from beamfem.results.work_and_losses import Forces, exchange, forces_without_potential
 
 if TYPE_CHECKING:
     from beamfem.results.energies import Energy
@@ -198,7 +195,7 @@ def energy_warnings(solution: "Solution") -> tuple[str, ...]:
     if solution.static or len(solution) < 2 or solution.loaded is not None or resolved(solution):
         return ()
     moved = any(callable(item.value) for item in system_of(solution.model, static=False).prescribed)
-    if not takes_amplitudes(solution) or (moved and len(solution) != solution.statistics.steps + 1):
+    if moved and len(solution) != solution.statistics.steps + 1:
         return ()
     judged, unit = balance(_some_rows(solution)), solution.model.unit
     compared = f"compared with {judged.exchanged:.3g} {unit('J')} exchanged at most"
@@ -220,13 +217,6 @@ def energy_warnings(solution: "Solution") -> tuple[str, ...]:
     return ()
 
 
-def takes_amplitudes(solution: "Solution") -> bool:
-    """Return whether the loads without a potential, whose work is a difference, are dataclasses with an amplitude."""
-    loads = [load for load in solution.model.loads if not load.conservative]
-    fields = (getattr(type(load), "__dataclass_fields__", ()) for load in loads if not isinstance(load, CompositeLoad))
-    return all("amplitude" in names for names in fields)
-
-
 def _some_rows(solution: "Solution") -> "Solution":
     """Return all rows, or of many the fastest ones of equal spans, with the first ones and the last."""
     count = _WORKED if driven(solution) else _ROWS
@@ -240,19 +230,17 @@ def _some_rows(solution: "Solution") -> "Solution":
 def balance(solution: "Solution", accuracy: float = MotionLimits().tolerance) -> Balance:
     """Return the energy balance of the rows of a motion; accuracy: of coordinates, relative to the model."""
     system, energy = system_of(solution.model, static=False), solution.energy()
-    connectors = driving_connectors(solution, system)
-    total = energy.total - energies_of(connectors, solution, solution.at).sum(axis=1)
-    forces = forces_without_potential(solution, system, connectors)
     known, driving = _resolved(solution, system), np.fmin(energy.recorded, 0.0)
-    work, lost, given = work_between(solution, forces, connectors)
-    rise = _summed(np.diff(total) - work - np.maximum(given, 0.0) + np.diff(driving), known)
-    lost = np.maximum(lost, 0.0) + np.diff(energy.recorded)
-    loss = -_summed(np.diff(total) - work - given + lost, known)
+    forces = forces_without_potential(solution)
+    work, given, stored, lost = exchange(solution, forces)
+    change = np.diff(energy.total) - stored - work
+    rise = _summed(change - np.maximum(given, 0.0) + np.diff(driving), known)
+    loss = -_summed(change - given + np.maximum(lost, 0.0) + np.diff(energy.recorded), known)
     parts = (energy.kinetic, energy.strain, energy.potential, _summed(work, known))
     exchanged = max(*(np.ptp(part) for part in parts), energy.kinetic.max(), _SMALL * np.abs(energy.strain).max())
-    unknown = _summed(np.abs(np.diff(total)), ~known)
+    unknown = _summed(np.abs(np.diff(energy.total) - stored), ~known)
     unsure = unknown + _inaccuracy(system, solution.p, energy.strain, accuracy)
-    doubt = _doubt(solution, forces, connectors, work + given)
+    doubt = _doubt(solution, forces, work + given)
     return Balance(solution.at, energy, rise, loss, doubt, unsure, float(exchanged), driven(solution))
 
 
@@ -278,13 +266,13 @@ def _resolved(solution: "Solution", system: System) -> np.ndarray:
     return result
 
 
-def _doubt(solution: "Solution", forces: Forces, connectors: Connectors, work: np.ndarray) -> np.ndarray:
+def _doubt(solution: "Solution", forces: Forces, work: np.ndarray) -> np.ndarray:
     """Return by how much the work until each row (rows,) [J] differs if every second row is left out."""
     if not work.any():
         return np.zeros(len(solution))
     every = slice(None, None, 2)
-    half, _, given = work_between(with_rows(solution, every), forces.of(every), connectors)
-    coarse, fine = np.append(0.0, np.cumsum(half + given)), np.append(0.0, np.cumsum(work))
+    half = exchange(with_rows(solution, every), Forces(*(values[every] for values in forces)))
+    coarse, fine = np.append(0.0, np.cumsum(half.work + half.given)), np.append(0.0, np.cumsum(work))
     largest = np.maximum.accumulate(np.abs(coarse - fine[::2]))
     return np.asarray(largest[np.minimum((np.arange(len(fine)) + 1) // 2, len(largest) - 1)])
 

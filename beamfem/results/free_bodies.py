@@ -122,7 +122,7 @@ def parted(block: Block, elements: np.ndarray) -> Parted:
     used = np.unique(np.concatenate([dof[dof >= 0], history.ravel()]))
     part = block._replace(
         **classes_of(block, elements),
-        imposed=None if block.imposed is None else block.imposed.of(elements),
+        imposed=None if block.imposed is None else block.imposed._replace(chosen=elements),
         history=np.searchsorted(used, history) if history.size else history,
         node=np.arange(len(flat)).reshape(nodes.shape),
         dof=np.where(dof >= 0, np.searchsorted(used, dof), -1),

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.equations.system import System, system_of
+from beamfem.equations.system import System, loads_of_rows, system_of
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.results.solution import Solution
 
@@ -17,7 +17,7 @@ def loading(solution: Solution) -> tuple[System, np.ndarray]:
 def imposing(solution: Solution) -> np.ndarray:
     """Return the factors (steps, k) of the loads that impose strains."""
     system, at = loading(solution)
-    return np.array([system.imposing(time) for time in at.tolist()]).reshape(len(at), -1)
+    return loads_of_rows(system, at.tolist()).imposing
 
 
 def imposed_measures(solution: Solution, mesh: BeamMesh, rows: slice | np.ndarray = slice(None)) -> np.ndarray | float:
@@ -26,6 +26,6 @@ def imposed_measures(solution: Solution, mesh: BeamMesh, rows: slice | np.ndarra
     imposed = system.blocks[mesh.block].imposed
     if imposed is None:
         return 0.0
-    strains = imposed.of(slice(mesh.first_element, mesh.first_element + mesh.elements))
+    strains = imposed._replace(chosen=slice(mesh.first_element, mesh.first_element + mesh.elements))
     values = [strains.at(factors) for factors in solution.computed(imposing)[rows]]
-    return np.array(values).reshape(len(values), -1, strains.first.shape[-1])
+    return np.array(values).reshape(len(values), -1, imposed.shape[-1])

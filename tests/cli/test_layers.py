@@ -42,7 +42,6 @@ LAYERS = (
     "precision/roundoff",
     "equations/band_workspace",
     "equations/connector_equilibrium",
-    "equations/imposed_forces",
     "equations/data_derivatives",
     "equations/equations",
     "precision/mixed_tangent",

@@ -8,8 +8,13 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.cached_properties import cached_property
-from beamfem.equations.equations import linearise_at_rest, load_change, predicted_stresses, residual_at_rest
-from beamfem.equations.imposed_forces import imposed_forces
+from beamfem.equations.equations import (
+    imposed_forces,
+    linearise_at_rest,
+    load_change,
+    predicted_stresses,
+    residual_at_rest,
+)
 from beamfem.equations.system import System
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.linalg.tangent import Factorised, Stresses
@@ -309,6 +314,6 @@ def _reach(line: Continuation, p: np.ndarray, load_factor: float, stiffness: flo
     prescribed = [system.prescribed_values(at) / scale[system.prescribed_dofs] for at in ends]
     moved = float(np.abs(forces[1] - forces[0]) @ scale[system.free_dofs]) / stiffness
     if system.model.imposing:
-        hindered = [imposed_forces(system, system.loads_at(at)) for at in ends]
+        hindered = [imposed_forces(system, at) for at in ends]
         moved = max(moved, float(np.max(np.abs(hindered[1] - hindered[0]) * scale)) / stiffness)
     return max(moved, float(np.max(np.abs(prescribed[1] - prescribed[0]), initial=0.0))) / width

@@ -6,7 +6,6 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from beamfem.equations import equations
-from beamfem.equations.applied_loads import LoadsAt
 from beamfem.equations.equations import INERTIA, STATICS
 from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError
@@ -14,7 +13,7 @@ from beamfem.linalg.lapack import qr, solve_triangular
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.beam import beam_in_words
 from beamfem.model.imposed_strains import ImposedStrain
-from beamfem.model.load_base import BodyLoad, LineLoad, Load, factor, forces_of
+from beamfem.model.load_base import Load, factor
 from beamfem.model.model import Model
 from beamfem.results.solution import Solution, State
 from beamfem.solve.linear.linear_model import LinearModel, scale_of
@@ -217,38 +216,12 @@ def input_forces(system: System, p: np.ndarray, loads: Sequence[Load], time: flo
 
 
 def _force(system: System, p: np.ndarray, load: Load, time: float) -> np.ndarray:
-    """Return the external force (n,) per unit factor of a load, by a central difference; it is linear but for laws."""
-    imposed = isinstance(load, ImposedStrain)
+    """Return the external force (n,) per unit factor of a load, by a central difference; it is linear but for laws.
+
+    A load that is listed twice is one input.
+    """
+    imposed, own = isinstance(load, ImposedStrain), {id(part) for part in load.parts}
     middle, width = (factor(load, time, system.static), _WIDTH) if imposed else (0.0, _LARGE)
-    ends = [_residual(system, p, load, middle + side * width) for side in (-1.0, 1.0)]
-    return (ends[0] - ends[1]) / (2.0 * width)
-
-
-def _residual(system: System, p: np.ndarray, load: Load, size: float) -> np.ndarray:
-    """Return the residual (n,) at rest under one load alone, with its factor `size`."""
-    assembler, result, zeros = system.assembler(), np.empty(len(p)), np.zeros(len(p))
-    assembler.take(_alone(system, load, size))
-    assembler.weigh((1.0, 0.0, 0.0))
-    assembler.balance(p, zeros, zeros, result, np.empty(0), False)
-    gravity = size * np.array(load.vector) if isinstance(load, BodyLoad) else np.zeros(2)
-    for item in system.called.items:
-        np.add.at(result, item.all, item.force_in((p, zeros, zeros), 0.0, gravity))
-    return result
-
-
-def _alone(system: System, load: Load, size: float) -> LoadsAt:
-    """Return a load with its factor `size`, without all other loads."""
-    model, body = system.model, np.zeros((len(system.model.beams), 4))
-    if isinstance(load, BodyLoad):
-        body[:, :2] = size * np.array(load.vector)
-    if isinstance(load, LineLoad) and load.even:
-        body[model.number_of(load.beam), 2:] = size * forces_of(load, np.zeros(1))[0]
-    points = []
-    for actions in system.actions:
-        # a load that is listed twice is one input
-        rows = [number for number, own in enumerate(actions.loads) if own is load][:1]
-        points.append(size * actions.unit * np.isin(actions.source, rows)[:, None])
-    numbers = [number for number, (_, own) in enumerate(model.imposing) if own is load][:1]
-    imposing = np.zeros(len(model.imposing))
-    imposing[numbers] = size
-    return LoadsAt(body, tuple(points), imposing)
+    alone = np.array([id(part) in own for part in system.model.acting], dtype=float)
+    ends = [equations.residual_under(system, p, time, (middle + side * width) * alone) for side in (-1.0, 1.0)]
+    return (ends[0] - ends[1]) / (2.0 * width * sum(each is load for each in system.model.loads))

@@ -8,7 +8,7 @@ from scipy.sparse import csr_array
 
 from beamfem.equations.callbacks import Deferred
 from beamfem.equations.motion_workspace import MotionWorkspace
-from beamfem.equations.system import System
+from beamfem.equations.system import System, loads_of_rows
 from beamfem.errors import ConvergenceError
 from beamfem.kernels.complex_band import complex_band
 from beamfem.kernels.motion_record import MotionLimits, MotionStatistics
@@ -17,7 +17,7 @@ from beamfem.kernels.records import aligned
 from beamfem.kernels.stage_record import StageRoutines, Stages
 from beamfem.kernels.stage_steps import march_stages, predict
 from beamfem.solve.motion.collocation import Coefficients
-from beamfem.solve.motion.compiled_steps import StepsInCalls, sample_loads
+from beamfem.solve.motion.compiled_steps import StepsInCalls
 from beamfem.solve.motion.coupled_planes import CoupledPlanes, is_coupled
 from beamfem.solve.motion.equations_of_motion import EquationsOfMotion
 from beamfem.solve.motion.stored_states import Saving
@@ -77,17 +77,17 @@ class CollocationSteps(StepsInCalls):
         system, rule, space, own = self._system, self._rule, self._space, self._stages
         solver, begins = space.solver, np.append(self._time, times[:-1])
         sampled = (begins[:, None] + np.outer(times - begins, rule.samples)).ravel()
-        body, values, imposing = sample_loads(system, sampled)
-        space.assembler.load(body, values, imposing)
+        loads = loads_of_rows(system, sampled if system.varying else sampled[:1])
+        space.assembler.load(loads.body, loads.points, loads.imposing)
         space.assembler.place(state[0], state[1], state[2], space.residual, solver.rows)
         conditions = len(system.connectors.multipliers)
         solver.fill(
             state=state,
             steps=len(sampled),
             prescribed_values=self._prescribed(begins, times),
-            varies=len(body) > 1,
-            body_size=body[0].size,
-            bodies=body,
+            varies=len(loads.body) > 1,
+            body_size=loads.body[0].size,
+            bodies=loads.body,
             first_step=saving.first,
             every=saving.every,
             saved=saving.states,

@@ -4,7 +4,7 @@ import numpy as np
 
 from beamfem.equations.callbacks import Deferred
 from beamfem.equations.motion_workspace import MotionWorkspace
-from beamfem.equations.system import System
+from beamfem.equations.system import System, loads_of_rows
 from beamfem.kernels.motion_record import MotionLimits, MotionStatistics, Rule
 from beamfem.kernels.time_loop import march
 from beamfem.solve.motion.coupled_stages import CoupledStages, is_weak
@@ -115,17 +115,17 @@ class CompiledSteps(StepsInCalls):
             p, v, a, _ = state
             weak = is_weak(self._system, (p, v, a), float(times[0]), space.assembler.weights, self._step)
             self._coupled = CoupledStages(self._system, space) if weak else None
-        body, values, imposing = sample_loads(self._system, times)
+        loads = loads_of_rows(self._system, times if self._system.varying else times[:1])
         assembler, solver = space.assembler, space.solver
-        assembler.load(body, values, imposing)
+        assembler.load(loads.body, loads.points, loads.imposing)
         assembler.place(state[0], state[1], state[2], space.residual, solver.rows)
         solver.fill(
             state=state,
             steps=len(prescribed),
             prescribed_values=prescribed,
-            varies=len(body) > 1,
-            body_size=body[0].size,
-            bodies=body,
+            varies=len(loads.body) > 1,
+            body_size=loads.body[0].size,
+            bodies=loads.body,
             first_step=saving.first,
             every=saving.every,
             saved=saving.states,
@@ -147,15 +147,3 @@ class CompiledSteps(StepsInCalls):
         errors = () if self._coupled is None else (self._coupled.take_error(),)
         self._error = next((error for error in (*errors, assembler.take_error()) if error is not None), None)
         return completed if self._deferred.lost is None else 0
-
-
-def sample_loads(system: System, times: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...], np.ndarray]:
-    """Return body forces (steps, beams, 4), point values of each block (steps, nl, 3), factors (steps, k) of strains.
-
-    The last are those of imposed strains. There is one row only if nothing varies.
-    """
-    if not system.varying:
-        times = times[:1]
-    loads = [system.loads_at(time) for time in times]
-    points = tuple(np.array([sample.points[i] for sample in loads]) for i in range(len(system.blocks)))
-    return np.array([sample.body for sample in loads]), points, np.array([sample.imposing for sample in loads])

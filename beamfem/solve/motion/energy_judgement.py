@@ -7,7 +7,7 @@ import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.equations.system import System
-from beamfem.results.energy_balance import Balance, balance, driven, masses, takes_amplitudes
+from beamfem.results.energy_balance import Balance, balance, driven, masses
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics
 
@@ -59,10 +59,6 @@ class EnergyJudge:
         )
 
     @cached_property
-    def _able(self) -> bool:
-        return takes_amplitudes(self._first)
-
-    @cached_property
     def _conservative(self) -> bool:
         return not (driven(self._first) or self._system.damped or self._system.history.laws)
 
@@ -83,7 +79,7 @@ class EnergyJudge:
         grown = (speeds > _GROWN * fastest[:-1]) & (fastest[:-1] > 0.0) & (change > _SMOOTH * speeds)
         doubtful = ~(change <= _UNRESOLVED * fastest[1:]) | grown
         good = steps
-        if doubtful.any() and self._able:
+        if doubtful.any():
             chunks = [chunk for chunk, judged in zip(pairwise(bounds.tolist()), doubtful, strict=True) if judged]
             good = self._first_refused(times, states, chunks, coarse)
         number = int(np.argmax(np.where(ends <= good, speeds, -1.0)))

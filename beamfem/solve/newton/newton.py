@@ -181,7 +181,7 @@ def balance_of(system: System, p: np.ndarray, load_factor: float) -> Balance:
         forces[multipliers] = free[system.unknowns.free[multipliers]] = 0.0
     largest, force = float(np.max(free, initial=0.0)), float(np.max(forces, initial=0.0))
     gap = _largest_gap(system, p, load_factor, unbalanced) if len(multipliers) else 0.0
-    force = max(force, load_size(system, system.loads_at(load_factor)))  # without reactions the largest load counts
+    force = max(force, load_size(system, load_factor))  # without reactions the largest load counts
     return Balance(p, unbalanced, largest, force, system.assembler().smallest_jacobian(p) <= 0.0, gap)
 
 
@@ -372,7 +372,7 @@ class BandProblem(Equilibrium):
         self.system, self.start, self.newton, self.keep = system, start, newton, keep
         self.space = space = band_workspace(system)
         loads, self.state = system.loads_at(load_factor), space.p
-        self.load = load_size(system, loads)
+        self.load = load_size(system, load_factor)
         space.begin(loads, load_factor)
         own = space.solver
         space.p[:], own.step[:], own.prescribed_step[:], own.prescribed_force[:] = start, 0.0, step.step, step.force

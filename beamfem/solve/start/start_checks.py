@@ -47,9 +47,9 @@ def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
     """Return the largest unbalanced force [N, N m] in the state p (n,); 0 if it is small enough."""
     unbalanced, tangent = linearise_at_rest(system, p, load_factor)
     remaining = np.abs(system.along_free(unbalanced))
-    acting = [float(np.abs(values).max(initial=0.0)) for values in system.point_values(load_factor)]
+    acting = [float(np.abs(values).max(initial=0.0)) for values in system.loads_at(load_factor).points]
     if system.imposing(load_factor).any():
-        acting.append(load_size(system, system.loads_at(load_factor)) / system.extent)
+        acting.append(load_size(system, load_factor) / system.extent)
     force = max([float(np.abs(unbalanced).max()), *acting])
     reach = max([float(np.abs(p).max()), *(beam.curve.length for beam in system.model.beams)])
     round_off = _CANCELLED * reach * np.asarray(abs(tangent.sparse(system.rotated)).sum(axis=1))

@@ -267,6 +267,12 @@ class System:
         """Mask (k,) of the loads of `model.acting` that impose strains."""
         return np.array([isinstance(load, ImposedStrain) for load in self.model.acting], dtype=bool)
 
+    @cached_property
+    def conserves(self) -> np.ndarray:
+        """Mask (k,) of the loads of `model.acting` that belong to loads with a potential while factors are constant."""
+        own = {id(part) for load in self.model.loads if load.conservative for part in load.parts}
+        return np.array([id(load) in own for load in self.model.acting], dtype=bool)
+
     def imposing(self, time: float) -> np.ndarray:
         """Return the factors (k,) of the loads that impose strains at a time."""
         return self.loads_at(time).imposing

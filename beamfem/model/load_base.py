@@ -12,7 +12,7 @@ from beamfem.model.along_beam import AlongBeam, check_along, ends_and_middle, va
 from beamfem.model.beam import Beam, Point, require_beam, require_point_of
 from beamfem.model.joint_base import Joint
 from beamfem.model.load_shapes import Acceleration, Force, ForcesAlong, LoadShape, Moment
-from beamfem.model.state_protocols import Axes, Displaced, Placed, in_plane
+from beamfem.model.state_protocols import Axes, Placed, in_plane
 from beamfem.model.supports import Value
 from beamfem.validation import (
     called,
@@ -93,13 +93,6 @@ class Load(ABC):
         """
         return {}
 
-    def work(self, displaced: Displaced) -> np.ndarray:
-        """Return the work (steps,) [J] of a conservative load from the reference, without its factor.
-
-        That of imposed strains is in the strain energy.
-        """
-        return np.zeros(len(displaced))
-
     def require_valid(self) -> None:
         """Raise InputError for invalid members of a user-defined load."""
         if isinstance(getattr(type(self), "amplitude", None), property):
@@ -143,9 +136,6 @@ class BodyLoad(Load):
 
     def acting(self, arc_length: np.ndarray) -> Mapping[str, np.ndarray]:
         return {"acceleration": np.array([self.vector])}
-
-    def work(self, displaced: Displaced) -> np.ndarray:
-        return np.asarray(sum(moved @ np.array(self.vector) for moved in displaced.first_moments))
 
     def require_valid(self) -> None:
         super().require_valid()
@@ -195,13 +185,6 @@ class PointLoad(Load):
     def acting(self, arc_length: np.ndarray) -> Mapping[str, np.ndarray]:
         value = np.array([self.value])
         return {"force": value[:, :2], "moment": value[:, 2:]}
-
-    def work(self, displaced: Displaced) -> np.ndarray:
-        *force, moment = self.value
-        work = super().work(displaced)
-        if any(force):
-            work = displaced.displacement(self.point) @ np.array(force)
-        return work + moment * displaced.rotation(self.point) if moment else work
 
     def require_valid(self) -> None:
         super().require_valid()
@@ -294,11 +277,6 @@ class CompositeLoad(Load):
     def changed(self, change: Callable[[Value], Value]) -> "CompositeLoad":
         """Return the load with what `change` returns for its values, numbers or functions, in place of these."""
 
-    def work(self, displaced: Displaced) -> np.ndarray:
-        """Return the work of its loads, see `Load.work`."""
-        own = (part.work(displaced) for part in self.parts if isinstance(part, Load))
-        return sum(own, start=super().work(displaced))
-
 
 _ARROWS = 11  # along a beam
 
@@ -363,10 +341,6 @@ class LineLoad(AlongBeam, Load):
 
     def acting(self, arc_length: np.ndarray) -> Mapping[str, np.ndarray]:
         return {"line_force": forces_of(self, arc_length)}
-
-    def work(self, displaced: Displaced) -> np.ndarray:
-        moved, weight, arc_length = displaced.along(self.beam)
-        return np.asarray(np.einsum("sqc,qc,q->s", moved, forces_of(self, arc_length), weight))
 
     def require_valid(self) -> None:
         super().require_valid()

@@ -1,6 +1,5 @@
 """Data of a state that loads and supports need: directions of the axis, and displacements from the reference."""
 
-from collections.abc import Iterable
 from typing import Literal, Protocol
 
 import numpy as np
@@ -39,26 +38,6 @@ class Placed(Protocol):
 
     def stations(self, beam: Beam) -> np.ndarray:
         """Return the arc lengths (n,) [m] at which loads along a beam are integrated."""
-
-
-class Displaced(Protocol):
-    """States of a model, with the displacements from the reference by which loads do work and springs store it."""
-
-    def __len__(self) -> int:
-        """Return the number of states."""
-
-    @property
-    def first_moments(self) -> Iterable[np.ndarray]:
-        """Integral of the displacement over the mass of each beam (steps, 2) [kg m]."""
-
-    def displacement(self, point: Point) -> np.ndarray:
-        """Return the displacement of a point (steps, 2) [m]."""
-
-    def rotation(self, point: Point) -> np.ndarray:
-        """Return the rotation of the section at a point (steps,) [rad]."""
-
-    def along(self, beam: Beam) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return displacements (steps, n, 2) [m] at points along a beam, and their weights and arc lengths (n,) [m]."""
 
 
 def in_plane(vectors: np.ndarray, axes: Axes, at: Stations) -> np.ndarray:

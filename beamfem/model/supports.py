@@ -11,7 +11,6 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point, require_beam, require_point_of
 from beamfem.model.load_shapes import Constraint, Springs, SpringsAlong, SupportShape
-from beamfem.model.state_protocols import Displaced
 from beamfem.validation import called, finite, function_of_one, positive, require_known, shown, squared, vector
 
 DIRECTIONS = ("ux", "uy", "rotation")
@@ -30,13 +29,6 @@ class Support(ABC):
     @abstractmethod
     def shapes(self) -> tuple[SupportShape, ...]:
         """Return the shapes to draw."""
-
-    def energy(self, displaced: Displaced) -> np.ndarray:
-        """Return the energy (steps,) [J] of springs along a beam, zero in the reference.
-
-        That of springs at points is summed over all nodal coordinates.
-        """
-        return np.zeros(len(displaced))
 
     @abstractmethod
     def require_valid(self) -> None:
@@ -123,10 +115,6 @@ class LineSupport(Support):
 
     def shapes(self) -> tuple[SupportShape, ...]:
         return (SpringsAlong(self.beam, self.stiffness),)
-
-    def energy(self, displaced: Displaced) -> np.ndarray:
-        moved, weight, _ = displaced.along(self.beam)
-        return np.asarray(0.5 * np.einsum("sqc,c,q->s", moved**2, np.array(self.stiffness), weight))
 
     def require_valid(self) -> None:
         LineSupport.__post_init__(self)

@@ -1,17 +1,19 @@
 """Energies of a solution."""
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from beamfem.cached_properties import cached_property
+from beamfem.equations.applied_loads import even_loads
 from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
-from beamfem.mesh.reference import inertia_points, length_points, reference_axis, reference_position
-from beamfem.model.beam import Beam, Point
-from beamfem.model.load_base import factor
+from beamfem.equations.system import System
+from beamfem.model.beam import Point
+from beamfem.model.model import Model
+from beamfem.parts.at_points import ANALYTIC
+from beamfem.physics.stations import STATIONS
 from beamfem.reprs import brief
-from beamfem.results.axis_points import AxisPoints
+from beamfem.results.nodal import nodal_vectors
 from beamfem.results.postprocess import momenta
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
@@ -89,57 +91,13 @@ class Energy:
         return self.work - (self.total - self.total[:1]) - (self.dissipated - self.dissipated[:1])
 
 
-@dataclass(frozen=True, eq=False)
-class Displacements:
-    """The rows of a solution, with the members that the work of loads and the energy of supports need.
-
-    first: integral of the position over the mass of each beam (steps, 2) [kg m].
-    """
-
-    solution: Solution
-    first: Sequence[np.ndarray]
-
-    def __len__(self) -> int:
-        return len(self.solution)
-
-    @property
-    def first_moments(self) -> Iterator[np.ndarray]:
-        """Integral of the displacement over the mass of each beam (steps, 2) [kg m]."""
-        for mesh, first in zip(self.solution.model.meshes, self.first, strict=True):
-            element, xi, inertia = inertia_points(mesh)
-            at_rest = inertia[:, 0] @ reference_position(mesh, element, xi)
-            yield first - (at_rest + inertia[:, 1] @ reference_axis(mesh, element, xi).d)
-
-    def displacement(self, point: Point) -> np.ndarray:
-        """Return the displacement of a point (steps, 2) [m]."""
-        return self.solution.displacement(point)
-
-    def rotation(self, point: Point) -> np.ndarray:
-        """Return the rotation of the section at a point (steps,) [rad]."""
-        return self.solution.rotation(point)
-
-    def along(self, beam: Beam) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return displacements (steps, n, 2) [m] at points along a beam, and their weights and arc lengths (n,) [m]."""
-        element, xi, weight = length_points(mesh := self.solution.model.mesh_of(beam.start))
-        points = AxisPoints(mesh, element, xi)
-        return points.positions(self.solution.p)[0] - points.reference, weight, points.arc_length
-
-
-def potential(solution: Solution, first_moments: Sequence[np.ndarray]) -> np.ndarray:
+def potential(solution: Solution) -> np.ndarray:
     """Return the potential (steps,) [J] of loads, springs and foundations, zero in the reference configuration.
 
     Connectors are not included.
-
-    first_moments: integral of the position over the mass of each beam (steps, 2) [kg m].
     """
-    displaced, (system, times) = Displacements(solution, first_moments), loading(solution)
-    loads, springs = np.zeros(len(solution)), system.springs.potential(solution.p)
-    for load in solution.model.loads:
-        if load.conservative:
-            loads -= np.array([factor(load, at, system.static) for at in times]) * load.work(displaced)
-    for support in solution.model.supports:
-        springs += support.energy(displaced)
-    return np.asarray(loads + springs + _of_frame(solution))
+    springs = loading(solution)[0].springs.potential(solution.p)
+    return np.asarray(springs + _of_loads(solution) + _of_frame(solution))
 
 
 def recorded(solution: Solution, by_sections: np.ndarray) -> np.ndarray:
@@ -155,6 +113,51 @@ def recorded(solution: Solution, by_sections: np.ndarray) -> np.ndarray:
     ):
         return np.full(len(solution), np.nan)
     return by_sections + sum(solution.p[:, each].sum(axis=1) for each in own)
+
+
+def _of_loads(solution: Solution) -> np.ndarray:
+    """Return the potential (steps,) [J] of loads that keep their direction, and of foundations."""
+    system, times = loading(solution)
+    model, result = solution.model, np.zeros(len(solution))
+    if not system.conserves.any() and not model.line_supports:
+        return result
+    rows = times if system.static or system.varying else times[:1]  # one row stands for all of them
+    factors = np.array([np.where(system.conserves, system.factors(at), 0.0) for at in rows.tolist()])
+    factors = factors.reshape(len(rows), -1)
+    body = np.array([even_loads(model, row) for row in factors]).reshape(len(rows), -1, 4)
+    for number, (block, actions) in enumerate(zip(system.blocks, system.actions, strict=True)):
+        at = actions.stations
+        if not (body.any() or len(at.element)):
+            continue
+        e, start = _by_element(model, number, solution.p), system.table(_start)[number]
+        for table, columns in ((block.gravity, slice(2)), (block.length, slice(2, 4))):
+            if (acting := body[:, block.beam, columns]).any():
+                result -= np.einsum("sec,sec->s", np.einsum("en,senc->sec", table[block.kind], e - start), acting)
+        if len(at.element):
+            r, at_start = (np.einsum("qn,sqnc->sqc", at.position, each[:, at.element]) for each in (e, start))
+            own = np.append(factors, np.zeros((len(rows), 1)), axis=1)[:, actions.source]
+            result -= np.einsum("sqc,qc,sq->s", r - at_start, actions.unit[:, :2], own)
+            data = np.hstack([np.zeros((len(at.constants), 3)), at.constants])
+            for kind in np.unique(at.kind).tolist():
+                if energy := STATIONS[kind].potential:
+                    some = at.kind == kind
+                    result += energy([tuple(r[:, some].T)], data[some].T[:, :, None], (), ANALYTIC).sum(axis=0)
+    for load, own in zip(model.acting, factors.T, strict=True):
+        if isinstance(load.place, Point) and (moment := load.acting(np.zeros(1))["moment"][0, 0]) and own.any():
+            result -= own * moment * solution.rotation(load.place)
+    return result
+
+
+def _start(system: System) -> list[np.ndarray]:
+    """Return the nodal vectors (1, ne, nv, 2) of each block in the reference."""
+    return [_by_element(system.model, number, system.reference[None]) for number in range(len(system.blocks))]
+
+
+def _by_element(model: Model, block: int, p: np.ndarray) -> np.ndarray:
+    """Return the nodal vectors (steps, ne, nv, 2) of the elements of a block in states p (steps, n)."""
+    meshes = [mesh for mesh in model.meshes if mesh.block == block]
+    own = [nodal_vectors(mesh, p)[:, mesh.node] for mesh in meshes]
+    return np.concatenate([e.reshape(*e.shape[:2], -1, 2) for e in own], axis=1)
 
 
 def _of_frame(solution: Solution) -> np.ndarray:

@@ -211,19 +211,15 @@ def _energies_of_law(
 
 @dataclass(frozen=True)
 class Momenta:
-    """Kinetic energy [J], linear (steps, 2) [kg m/s] and angular momentum about the origin [kg m^2/s], first moment.
-
-    first_moment (steps, 2) [kg m] is the integral of the position over the mass.
-    """
+    """Kinetic energy [J], linear (steps, 2) [kg m/s] and angular momentum about the origin [kg m^2/s]."""
 
     kinetic: np.ndarray
     linear: np.ndarray
     angular: np.ndarray
-    first_moment: np.ndarray
 
 
 def momenta(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> Momenta:
-    """Return kinetic energy, momenta and first moment of a beam (steps, ...), see `Momenta`."""
+    """Return kinetic energy and momenta of a beam (steps, ...), see `Momenta`."""
     element, xi, inertia = inertia_points(mesh)
     mass, first, rotary = inertia.T
     now = axis_at(mesh, p, element, xi)
@@ -232,8 +228,7 @@ def momenta(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> Momenta:
     linear = np.einsum("sqc,q->sc", rate.r, mass) + np.einsum("sqc,q->sc", rate.d, first)
     angular = cross(now.r, rate.r) @ mass + cross(now.d, rate.d) @ rotary
     angular = angular + (cross(now.r, rate.d) + cross(now.d, rate.r)) @ first
-    moment = np.einsum("sqc,q->sc", now.r, mass) + np.einsum("sqc,q->sc", now.d, first)
-    return Momenta(kinetic, linear, angular, moment)
+    return Momenta(kinetic, linear, angular)
 
 
 def part_of(fields: Fields, index: Any) -> Fields:

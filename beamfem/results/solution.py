@@ -500,7 +500,7 @@ class Solution:
         imposed = ((mesh, imposed_measures(self, mesh)) for mesh in self.model.meshes)
         parts = (postprocess.strain_energies(mesh, self.p, measures) for mesh, measures in imposed)
         strain, lost = sum(parts, np.zeros((len(self), 2))).T
-        acting = stored + potential(self, [m.first_moment for m in self._momenta])
+        acting = stored + potential(self)
         return Energy(kinetic, strain, acting, recorded(self, lost), self.model.unit("J"), self)
 
     @cached_property

@@ -62,18 +62,16 @@ def forces_without_potential(solution: Solution) -> Forces:
     system, driving, (rows, size) = system_of(solution.model, static=False), _driving(solution), solution.p.shape
     work, connected, lost = np.zeros((rows, size)), np.zeros((rows, size)), np.zeros(rows)
     moving = [item.dof for item in system.prescribed if callable(item.value)]
-    model = solution.model
-    without = {id(part) for load in model.loads if not load.conservative for part in load.parts}
-    following = [id(load) in without for load in model.acting]
+    following = not system.conserves.all()
     damped = system.damped or (len(driving.items) < len(system.connectors.items) and system.connectors.damp)
-    if not (moving or without or damped or driving.items):
+    if not (moving or following or damped or driving.items):
         return Forces(work, connected, lost)
     for row, (at, p, v, a) in enumerate(zip(solution.at.tolist(), solution.p, solution.v, solution.a, strict=True)):
-        if moving or without:
+        if moving or following:
             acting = residual(system, p, v, a, at)
             work[row, moving] = acting[moving]
-        if without:
-            left = system.loads_of(at, np.where(following, 0.0, system.factors(at)))
+        if following:
+            left = system.loads_of(at, np.where(system.conserves, system.factors(at), 0.0))
             work[row] += residual(system, p, v, a, at, loads=left) - acting
         driving.add_forces(connected[row], (p, v, a), at)
         if damped:

@@ -34,6 +34,7 @@ Contents; see help(bf.Beam), for example, for details.
     Loads             PointForce PointMoment DistributedLoad Pressure Gravity Actuation Temperature
                       Pretension Motor MovingForce
     Time functions    Interpolated Piecewise
+    To files          write_abaqus write_opensees
     From files        read_mesh LineMesh Frame read_abaqus_model AbaqusModel read_dxf load
     Solvers           solve_static trace_equilibrium solve_buckling solve_modes simulate resume
                       linearise frequency_response reduce
@@ -52,7 +53,7 @@ Contents; see help(bf.Beam), for example, for details.
     Warnings          UnstableWarning RoundOffWarning LockingWarning LargeStrainWarning CuspWarning EnergyWarning
                       TimeStepWarning CoarseMeshWarning LongRunWarning
                       UnitsWarning SeveralTurnsWarning UnknownStressWarning
-                      NotJoinedWarning NotReadWarning NotStoredWarning ChangedCodeWarning
+                      NotJoinedWarning NotReadWarning NotWrittenWarning NotStoredWarning ChangedCodeWarning
 """
 
 from importlib.metadata import version as _version

@@ -45,6 +45,7 @@ from .errors import MissingPackageError as MissingPackageError
 from .errors import NotJoinedWarning as NotJoinedWarning
 from .errors import NotReadWarning as NotReadWarning
 from .errors import NotStoredWarning as NotStoredWarning
+from .errors import NotWrittenWarning as NotWrittenWarning
 from .errors import RoundOffWarning as RoundOffWarning
 from .errors import SeveralTurnsWarning as SeveralTurnsWarning
 from .errors import TimeStepWarning as TimeStepWarning
@@ -58,6 +59,8 @@ from .io.cad import read_dxf as read_dxf
 from .io.frame import Frame as Frame
 from .io.line_mesh import LineMesh as LineMesh
 from .io.line_mesh import read_mesh as read_mesh
+from .io.other_programs import write_abaqus as write_abaqus
+from .io.other_programs import write_opensees as write_opensees
 from .io.results_hdf5 import load as load
 from .material import Material as Material
 from .model.beam import Beam as Beam

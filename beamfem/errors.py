@@ -144,6 +144,10 @@ class NotReadWarning(UserWarning):
     """A mesh file holds more than lines and sets, such as sections, materials or supports, which are not taken over."""
 
 
+class NotWrittenWarning(UserWarning):
+    """A model has parts that a file of another program is written without."""
+
+
 class UnknownStressWarning(UserWarning):
     """Sections of some beams do not tell their shape, so that the stress there is nan or left out of a file."""
 

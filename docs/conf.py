@@ -12,6 +12,7 @@ from plain_docstrings import as_markup, without_constants
 project = "beamfem"
 version = release = installed("beamfem")
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax", "sphinx-mathjax-offline"]
+extensions += ["sphinx_design"]  # the cards of the start page
 myst_enable_extensions = ["amsmath", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 nb_execution_mode = "force"

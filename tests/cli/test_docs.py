@@ -85,6 +85,21 @@ def test_what_a_page_names_exists(page):
         assert (ROOT / "docs" / f"{drawn[1]}.py" if drawn else page.parent / link).exists(), link
 
 
+def test_cards_of_the_start_page_show_pictures_of_the_pages_to_which_they_lead():
+    cards = re.findall(
+        r":img-top: /_pictures/([\w/]+)/(\w+\.\w+)\n.*\n:link: ([\w/]+)\.html(?:#(\S+))?\n",
+        (ROOT / "docs/index.md").read_text(),
+    )
+    assert len(cards) >= 16
+    for folder, picture, page, heading in cards:
+        text = (ROOT / "docs" / f"{page}.md").read_text()
+        headings = [re.sub(r"[^\w -]", "", line).lower() for line in re.findall(r"^##+ (.*)$", text, re.M)]
+        assert not heading or heading in [line.replace(" ", "-") for line in headings], heading
+        code = "".join(path.read_text() for path in (ROOT / "examples").glob("*.py")) if page == "examples" else text
+        assert page == folder
+        assert re.search(rf'"out/(examples/)?{picture}"', code), picture
+
+
 def test_lengths_of_the_parts_in_extending_are_those_of_their_code():
     page = ROOT / "docs" / "extending.md"
     place = r"(?:`(tests/[\w/]+\.py)`|\[\w+\]\(([\w/]+\.md)#[^|]*)"

@@ -141,7 +141,7 @@ class SeveralTurnsWarning(UserWarning):
 
 
 class NotReadWarning(UserWarning):
-    """A mesh file holds more than lines and sets, such as sections, materials or supports, which are not taken over."""
+    """A file of another program holds more than is read, such as sections of a mesh file or amplitudes of a model."""
 
 
 class NotWrittenWarning(UserWarning):

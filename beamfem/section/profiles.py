@@ -30,8 +30,9 @@ def Profile(name: str, weak: bool = False, millimetre: float = 1e-3) -> Section:
     name : str
         Family and size.
     weak : bool, default False
-        Whether to bend about the weak axis: the web is across the plane; of a channel at the lower face, of an angle
-        it is the longer leg. Else the web, or the longer leg, is along y; the other leg is at the lower face.
+        Whether to bend about the weak axis, with the web across the plane, that of a channel at the lower face.
+        Otherwise the web is along y. For angles, the longer leg counts as the web, and the leg across the plane is at
+        the lower face.
     millimetre : float, [m], default 1e-3
         A millimetre, the unit of the names, in the unit of length of the model.
 

@@ -350,6 +350,8 @@ def _bar(area: float, material: Material, length: float) -> StiffnessSection:
 
 
 def _box(a: float, b: float, right: float, top: float, left: float, bottom: float) -> Section:
+    if top != bottom:
+        raise InputError("SECTION=BOX: the walls above and below must be equal, with the nodes at the centroid")
     outer = [(0.0, 0.0), (a, 0.0), (a, b), (0.0, b)]
     hole = [(left, bottom), (a - right, bottom), (a - right, b - top), (left, b - top)]
     return Polygon(outer, [hole], 0.44)

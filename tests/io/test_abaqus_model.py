@@ -220,6 +220,16 @@ def test_what_is_left_out_is_named(tmp_path):
     ("old", "new", "message"),
     [
         ("section=RECT", "section=HEX", "line 16: SECTION=HEX cannot be read; RECT, CIRC"),
+        (
+            "section=RECT, elset=ARM, material=steel\n0.01, 0.002",
+            "section=BOX, elset=ARM, material=steel\n1,1,.1,.1,.1,.2",
+            "equal",
+        ),
+        (
+            "section=RECT, elset=ARM, material=steel\n0.01, 0.002",
+            "section=I, elset=ARM, material=steel\n0,1,1,1,.1,.1,.1",
+            "centroid",
+        ),
         ("material=steel", "material=brass", r"no \*MATERIAL BRASS"),
         ("elset=ARM, mat", "elset=LEG, mat", "no elset LEG"),
         ("2.1e11, 0.3", "2.1e11, 0.7", "bulk modulus"),

@@ -3,7 +3,8 @@
 Source: Autodesk, DXF Reference (entities, object coordinate systems, bulges), read through ezdxf.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from itertools import islice
 from os import PathLike
 from typing import Any
 
@@ -21,6 +22,7 @@ _FLAT = 1e-9
 _SMALL_BULGE = 1e-4
 # flag of a vertex (group code 70) that a smoothed polyline only remembers
 _FRAME = 16
+_MOST = 1_000_000  # entities: blocks of blocks may hold far more than a computer can
 # what is written beside the curves of a drawing
 _ANNOTATION = ("TEXT", "MTEXT", "ATTDEF", "DIMENSION", "ARC_DIMENSION", "LEADER", "MULTILEADER", "TOLERANCE", "HATCH")
 
@@ -30,7 +32,7 @@ def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve
 
     LINE, ARC, CIRCLE, LWPOLYLINE and POLYLINE (bulges as arcs of a Chain), SPLINE and ELLIPSE (rational splines) are
     exact, except a SPLINE with fit points only, which the file does not define: it is drawn as ezdxf draws it. Texts,
-    dimensions, leaders, tolerances and hatches are skipped as annotation.
+    dimensions, leaders, tolerances and hatches are skipped as annotation. Blocks are read where they are inserted.
 
     Coordinates are taken as they are drawn; the unit in the header ($INSUNITS) converts nothing. The model has to be in
     the units of the drawing, such as `Model(..., units="N, mm")` for one in millimetres.
@@ -66,9 +68,11 @@ def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve
     source = readable(path)
     optional(text)("layer", layer)
     try:
-        entities = list(ezdxf.readfile(source).modelspace())
+        entities = list(islice(_exploded(ezdxf.readfile(source).modelspace()), _MOST + 1))
     except Exception as error:  # ezdxf raises anything for a damaged file
         raise InputError(f"{source} is not a DXF file that can be read: {error}") from error
+    if len(entities) > _MOST:
+        raise InputError(f"{source}: it draws more than {_MOST} entities, blocks included")
     drawn = [entity for entity in entities if entity.dxftype() not in _ANNOTATION]
     chosen = [entity for entity in drawn if layer is None or entity.dxf.layer.lower() == layer.lower()]
     if not chosen:
@@ -79,12 +83,24 @@ def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve
     return tuple(_curve(entity) for entity in chosen)
 
 
+def _exploded(entities: Any) -> Iterator[Any]:
+    """Yield entities, in place of blocks those that they hold, where they are inserted."""
+    for entity in entities:
+        if entity.dxftype() != "INSERT":
+            yield entity
+            continue
+        for single in entity.multi_insert() if entity.mcount > 1 else (entity,):
+            for part in _exploded(single.virtual_entities()):
+                if part.dxf.layer == "0":  # the layer of the block
+                    part.dxf.layer = entity.dxf.layer
+                yield part
+
+
 def _curve(entity: Any) -> Curve:
     kind = entity.dxftype()
     name = f"{kind} on layer {entity.dxf.layer!r}, handle {entity.dxf.handle}"
     if kind not in _READERS:
-        advice = "; explode it in the drawing program" if kind == "INSERT" else ""
-        raise InputError(f"{name}, is no curve that can be read{advice}; those that can are {', '.join(_READERS)}")
+        raise InputError(f"{name}, is no curve that can be read; those that can are {', '.join(_READERS)}")
     try:
         return _READERS[kind](entity)
     except (InputError, ValueError) as error:

@@ -209,8 +209,31 @@ BAD = {
         "SPLINE on layer '0', handle .*stands still",
     ),
     "point": (lambda space: space.add_point((0, 0)), r"POINT on layer '0', handle [0-9A-F]+, is no curve"),
-    "block": (lambda space: (space.doc.blocks.new("B"), space.add_blockref("B", (0, 0))), "INSERT .*explode"),
+    "empty block": (lambda space: (space.doc.blocks.new("B"), space.add_blockref("B", (0, 0))), "nothing is drawn"),
+    "block in itself": (
+        lambda space: (space.doc.blocks.new("B").add_blockref("B", (0, 0)), space.add_blockref("B", (0, 0))),
+        "recursion",
+    ),
 }
+
+
+def test_blocks_are_read_where_they_are_inserted(read):
+    def draw(space):
+        inner = space.doc.blocks.new("INNER")
+        inner.add_line((0, 0), (1, 0))
+        inner.add_text("a note")
+        outer = space.doc.blocks.new("OUTER")
+        outer.add_arc((0, 0), 1.0, 0.0, 90.0, dxfattribs={"layer": "arcs"})
+        outer.add_blockref("INNER", (2, 0), dxfattribs={"rotation": 90})
+        space.add_blockref("OUTER", (10, 0), dxfattribs={"xscale": 2, "yscale": 2, "layer": "axes"})
+        space.add_blockref("INNER", (0, 5), dxfattribs={"column_count": 3, "column_spacing": 4.0})
+
+    arc, line, *row = read(draw)
+    np.testing.assert_allclose(along(arc, 3), [(12, 0), (10 + 2**0.5, 2**0.5), (10, 2)], atol=1e-9)
+    np.testing.assert_allclose([line.start, line.end], [(14, 0), (14, 2)], atol=1e-9)
+    np.testing.assert_allclose([one.start for one in row], [(0, 5), (4, 5), (8, 5)], atol=1e-9)
+    assert len(read(draw, "axes")) == 1  # what is on layer 0 of a block is on the layer of its insert
+    assert isinstance(one(read(draw, "arcs"), Arc), Arc)
 
 
 @pytest.mark.parametrize("case", BAD)

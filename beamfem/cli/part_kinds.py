@@ -62,8 +62,6 @@ SECTIONS: Kinds = {
     **{kind: _along(make) for kind, make in _by_kind(*_SHAPES).items()},
     "moments": _along(section.Section),
     "stiffness": _along(section.Section.from_stiffness),
-    "polygon": section.Polygon,
-    "profile": section.Profile,
     "layered": section.Layered,
     "fibres": section.Fibres,
 }

@@ -77,13 +77,18 @@ class Slider(BetweenPlaces):
         """Return the unit normal of the axis, the distance of b from it, and what friction needs."""
         (x, y), apart = np.array(self.axis) / np.hypot(*self.axis), reference[1, :2] - reference[0, :2]
         smooth = -y, x, float(apart @ (-y, x))
-        return (*smooth, self.friction, self.stiffness or 0.0, float(apart @ (x, y))) if self.friction else smooth
+        if not self.friction:
+            return smooth
+        stiffness = self.stiffness or 0.0
+        # in the reference, where N is zero, round-off of the distance must not make it slip
+        least = 1e-15 * stiffness * float(np.hypot(*apart))
+        return (*smooth, self.friction, stiffness, float(apart @ (x, y)), least)
 
     def energy(self, at: At) -> tuple[float, float]:
         """Return no kinetic energy, and the potential energy [J] of the spring that sticks."""
         if not self.friction:
             return 0.0, 0.0
-        nx, ny, _, _, stiffness, start = self.data(at.reference)
+        nx, ny, _, _, stiffness, start, _ = self.data(at.reference)
         c, s = np.cos(at.q[0, 2]), np.sin(at.q[0, 2])
         along = (at.q[1, :2] - at.q[0, :2]) @ (c * ny + s * nx, s * ny - c * nx)
         return 0.0, 0.5 * stiffness * (along - start - at.memory[0]) ** 2

@@ -207,8 +207,8 @@ def _slider_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Num
 def _slider_slip(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, Number]:
     """Return the friction along the axis, which is at most `friction` |N|, and the change of the slip."""
     along, across = _in_frame(q, f)
-    trial = data[4] * (data[1] * along - data[0] * across - data[5] - data[6])
-    over = _clipped(trial, data[3] * (f.positive(data[8]) + f.positive(-data[8])), f)
+    trial = data[4] * (data[1] * along - data[0] * across - data[5] - data[7])
+    over = _clipped(trial, data[3] * (f.positive(data[9]) + f.positive(-data[9])) + data[6], f)
     return trial - over, over / data[4]
 
 
@@ -222,7 +222,7 @@ def _slider_friction(q: list[Vector], v: list[Vector], data: Vector, f: Function
 
 def _slider_remember(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
     friction, slipped = _slider_slip(q, data, f)
-    return data[6] + slipped, data[7] + friction * slipped
+    return data[7] + slipped, data[8] + friction * slipped
 
 
 def _weld_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
@@ -345,7 +345,7 @@ BUSHING = Connection("bushing", 2, 3, _BUSHING, None, _bushing_potential, _bushi
 SLIDER = Connection("slider", 2, 3, ("nx", "ny", "offset"), None, None, None, _slider_conditions, 2)
 ROUGH_SLIDER = SLIDER._replace(
     name="rough_slider",
-    data=(*SLIDER.data, "friction", "stiffness", "along"),
+    data=(*SLIDER.data, "friction", "stiffness", "along", "least"),
     memory=("slip", "dissipated"),
     force=_slider_friction,
     remember=_slider_remember,

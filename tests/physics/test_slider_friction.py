@@ -67,9 +67,10 @@ def test_a_sled_slides_down_a_slope_beyond_the_friction_angle():
     assert moved[-1] == pytest.approx(0.02 * GRAVITY * (np.sin(slope) - FRICTION * np.cos(slope)), rel=2e-3)
 
 
-def test_friction_holds_a_sled_on_a_slope_within_the_friction_angle():
+@pytest.mark.parametrize("share", [0.5, 0.7, 0.9, 0.99])
+def test_friction_holds_a_sled_on_a_slope_within_the_friction_angle(share):
     """By m g sin / stiffness down the slope."""
-    slope = 0.5 * np.arctan(FRICTION)
+    slope = share * np.arctan(FRICTION)
     model, bar = sled(slope)
     moved = bf.solve_static(model).displacement(bar.start)[-1] @ (np.cos(slope), np.sin(slope))
     assert moved == pytest.approx(-MASS * GRAVITY * np.sin(slope) / STIFFNESS, rel=1e-3)

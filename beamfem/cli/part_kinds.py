@@ -62,8 +62,7 @@ SECTIONS: Kinds = {
     **{kind: _along(make) for kind, make in _by_kind(*_SHAPES).items()},
     "moments": _along(section.Section),
     "stiffness": _along(section.Section.from_stiffness),
-    "layered": section.Layered,
-    "fibres": section.Fibres,
+    **_by_kind(section.Polygon, section.Profile, section.Layered, section.Fibres),
 }
 MATERIALS: Kinds = {"material": Material}
 LAWS: Kinds = _by_kind(*(make for make in public_dataclasses("section") if hasattr(make, "stress")))

@@ -142,9 +142,14 @@ def content_of(path: Path, keywords: Iterable[Keyword], trusses: str = "") -> Me
     return _assembled(path, nodes, cells, node_sets, element_sets)
 
 
+def number(word: str) -> float:
+    """Return a number, which may have a Fortran exponent; an empty word is zero."""
+    return float(word.upper().replace("D", "E") or 0.0)
+
+
 def _add_nodes(section: Keyword, nodes: dict[int, tuple[float, ...]], sets: _Sets) -> None:
     for row in section.rows:
-        point = (*(float(value or 0.0) for value in row[1:4]), 0.0, 0.0, 0.0)[:3]
+        point = (*map(number, row[1:4]), 0.0, 0.0, 0.0)[:3]
         if nodes.setdefault(int(row[0]), point) != point:
             raise InputError(
                 f"{section.place}: node {row[0]} is given twice at different places; files of several parts "

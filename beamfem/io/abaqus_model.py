@@ -13,7 +13,7 @@ import numpy as np
 from beamfem.atomic_write import readable
 from beamfem.element.element import CRBF, Element
 from beamfem.errors import InputError, NotReadWarning, warn
-from beamfem.io.abaqus import OF_THE_MESH, Keyword, content_of, keywords_of, listed
+from beamfem.io.abaqus import OF_THE_MESH, Keyword, content_of, keywords_of, listed, number
 from beamfem.io.frame import Frame, build_frame
 from beamfem.io.line_mesh import LineMesh, line_mesh
 from beamfem.material import Material
@@ -119,9 +119,9 @@ def read_abaqus_model(path: str | PathLike[str], elements: int = 1, element: Ele
     keywords = list(keywords_of(source))
     content = content_of(source, keywords, _TRUSSES)
     reading = _Reading()
+    for keyword in keywords:
+        reading.take(keyword)
     try:
-        for keyword in keywords:
-            reading.take(keyword)
         frame = reading.frame(line_mesh(content, False), elements, CRBF(order=2) if element is None else element)
         model = reading.model(frame)
     except InputError as error:
@@ -152,7 +152,7 @@ class _Reading:
             self._take(keyword, keyword.parameters)
         except InputError as error:
             raise InputError(f"{keyword.place}: {error}") from None
-        except (ValueError, IndexError, KeyError) as error:
+        except (ValueError, IndexError, KeyError, ZeroDivisionError) as error:
             raise InputError(f"{keyword.place}: the lines below *{keyword.keyword} cannot be read: {error}") from error
 
     def _take(self, keyword: Keyword, given: dict[str, str]) -> None:
@@ -166,11 +166,11 @@ class _Reading:
                 if kind == "PLASTIC":
                     self.note("*PLASTIC (its first yield stress is the strength)")
             case "BEAM SECTION" | "BEAM GENERAL SECTION":
-                shape = given.get("SECTION", "GENERAL").upper()
-                if kind == "BEAM SECTION":
+                shape = given.get("SECTION", "GENERAL").upper().replace("RECTANGULAR", "RECT")
+                if "MATERIAL" in given:  # CalculiX has it for general sections too
                     self.sections[given["ELSET"].upper()] = _shape(shape, rows), given["MATERIAL"].upper()
                 else:
-                    self.sections[given["ELSET"].upper()] = _general(shape, rows, float(given.get("DENSITY", 1.0)))
+                    self.sections[given["ELSET"].upper()] = _general(shape, rows, number(given.get("DENSITY", "1")))
             case "SOLID SECTION":
                 area = _numbers(rows[0])[0] if rows else 1.0
                 self.sections[given["ELSET"].upper()] = area, given["MATERIAL"].upper()
@@ -192,7 +192,7 @@ class _Reading:
             earlier: dict[str, dict[Any, Any]] = {"BOUNDARY": self.held, "CLOAD": self.forces, "DLOAD": self.along}
             earlier[kind].clear()
         for target, what, *more in rows:
-            name, values = target.rpartition(".")[2].upper(), [float(value or 0.0) for value in more]
+            name, values = target.rpartition(".")[2].upper(), _numbers(more)
             if kind == "DLOAD":
                 if what.upper() in ("PX", "PY", "P2", "GRAV"):
                     self.along[name, what.upper()] = values
@@ -242,17 +242,23 @@ class _Reading:
             joints += [(Hinge if free or id(other.beam) in hinged else Rigid)(first, other) for other in others]
         return replace(frame, places=places, joints=tuple(joints), mesh=mesh)
 
+    def _planar(self, direction: int, value: float) -> bool:
+        """Return whether a direction is in the plane; values in others are noted."""
+        if direction not in _DIRECTIONS and value:
+            self.note(f"loads and displacements in direction {direction}, out of the plane")
+        return direction in _DIRECTIONS
+
     def model(self, frame: Frame) -> Model:
         """Return the model with supports and loads. Raises InputError for sets and numbers that the file lacks."""
         names = {name.upper(): name for name in frame.mesh.point_sets}
         held: dict[int, dict[str, float]] = {}
         for (name, direction), value in self.held.items():
-            for node in _nodes(frame, names, name) if direction in _DIRECTIONS else ():
+            for node in _nodes(frame, names, name) if self._planar(direction, value) else ():
                 held.setdefault(node, {})[_DIRECTIONS[direction]] = value
         supports = [_support(frame.places[node][0], values) for node, values in held.items()]
         loads: list[Load] = []
         for (name, direction, follower), value in self.forces.items():
-            for node in _nodes(frame, names, name) if direction in _DIRECTIONS else ():
+            for node in _nodes(frame, names, name) if self._planar(direction, value) else ():
                 point = frame.places[node][0]
                 if direction == 6:
                     loads.append(PointMoment(point, value))
@@ -284,7 +290,7 @@ class _Reading:
 
 
 def _numbers(row: list[str]) -> list[float]:
-    return [float(value or 0.0) for value in row]
+    return [number(word) for word in row]
 
 
 def _known(names: dict[str, str], kind: str, name: str) -> str:
@@ -324,6 +330,8 @@ def _shape(shape: str, rows: list[list[str]]) -> Section:
         raise InputError(f"SECTION={shape} cannot be read; {', '.join(_SHAPES)} can")
     count, make = _SHAPES[shape]
     sizes = _numbers(rows[0])[:count]
+    if len(sizes) < count:
+        raise InputError(f"SECTION={shape} needs {count} sizes, got {len(sizes)}")
     if len(rows) > 1 and len(rows[1]) >= 3:
         x, y, z = _numbers(rows[1])[:3]
         if abs(z) < max(abs(x), abs(y)):  # the first axis of the section is in the plane

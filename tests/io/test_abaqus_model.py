@@ -183,9 +183,11 @@ def test_a_section_turned_by_its_first_axis_and_one_with_its_own_elasticity(tmp_
     (beam,) = read(tmp_path, NODES + SECTION.replace("0., 0., -1.", "0., 1., 0.") + STEP).model.beams
     assert beam.section == bf.Rectangle(0.002, 0.01, 0.85)
     general = "*BEAM GENERAL SECTION, SECTION=CIRC, ELSET=Arm, DENSITY=7850.\n0.01\n0., 0., -1.\n2.6e11, 1e11\n"
-    (beam,) = read(tmp_path, NODES + general + "*BOUNDARY\n1, ENCASTRE\n").model.beams
+    (beam,) = read(tmp_path, NODES + general.replace("2.6e11", "2.6D11") + "*BOUNDARY\n1, ENCASTRE\n").model.beams
     assert beam.section == bf.Circle(0.02, 0.89)
     assert beam.material.poisson_ratio == pytest.approx(0.3)
+    (same,) = read(tmp_path, NODES + SECTION.replace("Beam Section", "Beam General Section") + STEP).model.beams
+    assert same.section == bf.Rectangle(0.01, 0.002, 0.85)
 
 
 def test_supports_in_directions_of_the_plane_only(tmp_path):
@@ -198,7 +200,7 @@ def test_supports_in_directions_of_the_plane_only(tmp_path):
 def test_what_is_left_out_is_named(tmp_path):
     more = "*Amplitude, name=Ramp\n0., 0., 1., 1.\n*MPC\nPIN, 1, 2\n*Plastic\n2.35e8, 0.\n"
     text = NODES + SECTION.replace("*Density\n7850.\n", "") + more + STEP.replace(", nlgeom=YES", "")
-    text = text.replace("*Cload", "*Dload\nArm, P1, 3.\n*Cload") + STEP
+    text = text.replace("*Cload", "*Dload\nArm, P1, 3.\n*Cload\nTip, 3, 1.\n*Cload") + STEP
     with pytest.warns(bf.NotReadWarning) as caught:
         file = read(tmp_path, text)
     sentence = str(caught[0].message)
@@ -208,6 +210,7 @@ def test_what_is_left_out_is_named(tmp_path):
         "*PLASTIC (its first",
         "without NLGEOM",
         "*DLOAD P1",
+        "in direction 3",
         "no *DENSITY of STEEL",
         "steps",
     ):
@@ -230,6 +233,7 @@ def test_what_is_left_out_is_named(tmp_path):
             "section=I, elset=ARM, material=steel\n0,1,1,1,.1,.1,.1",
             "centroid",
         ),
+        ("0.01, 0.002", "0.01", "line 16: SECTION=RECT needs 2 sizes, got 1"),
         ("material=steel", "material=brass", r"no \*MATERIAL BRASS"),
         ("elset=ARM, mat", "elset=LEG, mat", "no elset LEG"),
         ("2.1e11, 0.3", "2.1e11, 0.7", "bulk modulus"),

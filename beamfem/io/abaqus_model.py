@@ -1,4 +1,4 @@
-"""Planar models of beams and trusses in input files of Abaqus and CalculiX: what a `Model` is made of.
+"""Planar models of beams and trusses in Abaqus input files, which CalculiX reads too: what a `Model` is made of.
 
 Source: Abaqus keywords reference and analysis guide (beam section library, default shear coefficients, loads of beams).
 """
@@ -74,13 +74,14 @@ class AbaqusModel:
 
 
 def read_abaqus_model(path: str | PathLike[str], elements: int = 1, element: Element | None = None) -> AbaqusModel:
-    """Return the planar model of an input file of Abaqus or CalculiX, in its units.
+    """Return the planar model of an Abaqus input file, in its units.
 
     Beams (B21, B22, B23 and the like, in the plane z = 0) and trusses (T2D2, hinged bars that do not buckle);
     *BEAM SECTION (RECT, CIRC, PIPE, BOX, I) with the shear coefficients of Abaqus, *BEAM GENERAL SECTION, *SOLID
     SECTION; *ELASTIC, *DENSITY, *EXPANSION, the first yield stress of *PLASTIC as strength; *BOUNDARY; *CLOAD; *DLOAD
     of types PX, PY, P2 and GRAV. Loads and displacements are those at the end of the last step. Elements that follow
-    each other become one beam, and deflections are large, whether a step has NLGEOM or not.
+    each other become one beam, and deflections are large, whether a step has NLGEOM or not. Files of CalculiX are read
+    alike, but the size of CIRC is the radius as in Abaqus, where CalculiX takes it for the diameter.
 
     Parameters
     ----------

@@ -1,12 +1,13 @@
 """The comparison with Exudyn: what it says without it, what it takes for right, and how it chooses."""
 
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import beamfem as bf
-from studies.benchmarks import peer_cases, peer_clock, peer_figures, peer_precision, peers
+from studies.benchmarks import integrators, peer_cases, peer_clock, peer_figures, peer_precision, peers
 from studies.benchmarks.peer_precision import Run
 from studies.benchmarks.peer_ratios import row
 
@@ -18,6 +19,18 @@ def test_without_exudyn_it_says_so_and_writes_nothing(monkeypatch, capsys, tmp_p
     said = capsys.readouterr().out
     assert said.count("\n") == 1
     assert said.startswith("Exudyn cannot be imported here")
+
+
+def test_integrators_are_compared_by_what_an_error_costs(tmp_path):
+    case = replace(integrators.soft(), steps={bf.Gauss(2): (20, 80), bf.Radau(3): (40, 80)}, exact=(bf.Gauss(4), 200))
+    found = case.measured()
+    for runs in found.values():
+        assert (runs[0, 0] > 5.0 * runs[1, 0]) & (runs[:, 1] > 0.0).all()
+        middle = float(np.sqrt(runs[0, 0] * runs[1, 0]))
+        assert integrators.cost(runs, middle) == pytest.approx(np.sqrt(runs[0, 1] * runs[1, 1]))
+        assert np.isnan(integrators.cost(runs, 0.5 * runs[1, 0]))
+    integrators.draw({"pendulum": found, "again": found}, tmp_path / "integrators.svg")
+    assert (tmp_path / "integrators.svg").stat().st_size > 0
 
 
 def test_chains_have_the_stiffness_of_the_models():

@@ -55,9 +55,8 @@ def test_the_work_of_a_slow_push_forth_and_back_is_lost(slope):
         normal = np.abs(found.multipliers(found.model.connectors[0])[rows, 0][1:])
         assert np.diff(lost[rows]) == pytest.approx(FRICTION * normal * way, rel=1e-9, abs=1e-13)
         work = sign * way * (push[rows][1:] * cos - MASS * GRAVITY * sin)
-        assert np.diff(lost[rows]) == pytest.approx(
-            work, rel=1e-6
-        )  # of 8e8 N in the stiff bar, round-off leaves 2e-7 N
+        # round-off of E A = 8e8 N leaves 2e-7 N
+        assert np.diff(lost[rows]) == pytest.approx(work, rel=1e-6)
 
 
 def test_losses_of_a_softer_sled_are_the_work_of_the_push():

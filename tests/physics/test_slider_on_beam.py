@@ -101,3 +101,17 @@ def test_it_is_saved_loaded_and_drawn_and_refuses_what_it_cannot_slide_on(tmp_pa
         bf.SliderOnBeam(slider.beam, slider.beam.end)
     with pytest.raises(bf.InputError, match="SliderOnBeam needs r_x as a coordinate"):
         pushed(bf.ShearRigid(), 0.01, steps=2)
+
+
+def test_a_mass_vibrates_with_the_beam_and_along_it():
+    """As one fixed to the middle of the beam, and on the spring that holds it there; the carriage turns freely."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 8, bf.CRBF(3), bf.Rectangle(0.02, 0.02), STEEL)
+    carriage = bf.Beam(bf.Line((0.5, 0), (0.5, 0.2)), 2, bf.CRBF(3), SQUARE, LIGHT)
+    clamps = [bf.Clamp(beam.start), bf.Clamp(beam.end)]
+    slider, ball = bf.SliderOnBeam(beam, carriage.start), bf.PointMass(carriage.start, 5.0)
+    spring = bf.Spring(carriage.start, (1e3, 0.0))
+    riding = bf.Model([beam, carriage], [*clamps, spring], connectors=[slider], masses=[ball])
+    fixed = bf.Model([beam], clamps, masses=[bf.PointMass(beam.at(0.5), 5.0)])
+    _, along, across = bf.solve_modes(riding, 3).frequencies
+    assert along == pytest.approx(np.sqrt(1e3 / 5.0) / (2 * np.pi), rel=1e-6)
+    assert across == pytest.approx(bf.solve_modes(fixed, 1).frequencies[0], rel=1e-6)

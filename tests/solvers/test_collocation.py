@@ -1,11 +1,13 @@
 """Gauss and Radau methods: their orders, what they keep, and stiff motions at steps that resolve no vibration."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from history_laws import SECTION as STIFFNESSES
 from history_laws import Creeping
+from own_bushing import Mount
 
 import beamfem as bf
 
@@ -97,6 +99,41 @@ def test_order_with_moved_supports_of_positions_and_reactions(integrator, expect
     for result, at in ((bf.Solution.position, one.end), (bf.Solution.reaction, one.start)):
         found = [np.max(np.abs(result(motion, at) - result(exact, at))[:-1]) for motion in motions]
         assert order(found) == pytest.approx(expected, abs=0.35)
+
+
+class Failing(Mount):
+    def force(self, at):
+        if np.abs(at.v).max() > 0.5:
+            raise ZeroDivisionError("too fast")
+        return super().force(at)
+
+
+def mounted(kind):
+    one, other = beam(bf.CRBF(2)), beam(bf.CRBF(2), (1, 0), (2, 0))
+    mount = kind(one.end, other.start, (300.0, 300.0, 5.0), (1.0, 1.0, 0.1))
+    return pushed(one, other, connectors=[mount], supports=[bf.Clamp(one.start), bf.Pin(other.end)])
+
+
+@pytest.mark.parametrize("integrator", [bf.Gauss(2), bf.Radau(3)], **ids)
+def test_connectors_in_python_take_the_steps_of_compiled_ones_and_raise_their_errors(integrator):
+    tips = []
+    for kind in (Mount, bf.Bushing):
+        one, model = mounted(kind)
+        tips.append(bf.simulate(model, 0.04, 2e-3, integrator=integrator).position(one.end))
+    np.testing.assert_allclose(*tips, atol=1e-10)
+    with pytest.raises(bf.InputError, match="ZeroDivisionError: too fast") as raised:
+        bf.simulate(mounted(Failing)[1], 0.04, 2e-3, integrator=integrator)
+    assert len(raised.value.solution) > 1
+
+
+@pytest.mark.parametrize("make", [on_a_roller, hinged, sprung])
+@pytest.mark.parametrize("integrator", [bf.Gauss(2), bf.Radau(3)], **ids)
+def test_sparse_tangents_take_the_steps_of_bands(monkeypatch, integrator, make):
+    one, model = make(bf.CRBF(2))
+    band = bf.simulate(model, 0.04, 2e-3, integrator=integrator).position(one.end)
+    monkeypatch.setattr("beamfem.equations.equation_numbering._WIDEST_BAND", -1)
+    sparse = bf.simulate(replace(model), 0.04, 2e-3, integrator=integrator).position(one.end)
+    np.testing.assert_allclose(sparse, band, atol=1e-10)
 
 
 def test_gauss_is_symmetric_in_time_and_keeps_the_energy_of_a_soft_pendulum():

@@ -16,10 +16,11 @@ from beamfem.convergence.refinement_curve import Curve
 from beamfem.extras import needed_for
 from beamfem.results.solution import Solution
 from beamfem.sweeps.workers import Failure
-from beamfem.validation import flag
+from beamfem.validation import flag, require_known, shown
 from beamfem.view.html_page import Entry, Part, Table, write_page
 from beamfem.view.plots import COLOURS, MARKERS, new_figure, save_figure
 
+WORK = "accuracy or elements"  # refinement of studies that compare the work of fixed and adaptive meshes
 EXPLANATION = (
     "Order between a value and the one before it; order of a curve: slope of the least-squares line of log error over "
     "log h through its asymptotic part (the finest points above round-off, as far back as the orders between "
@@ -191,17 +192,23 @@ class Convergence:
         coordinates = {"curve": [curve.label for curve in self.curves], self.refine: refinement}
         return xarray.Dataset(data, coordinates, {"function": self.function, "quantity": self.quantity})
 
-    def plot(self, path: str | PathLike[str] | None = None) -> Any:
+    def plot(self, path: str | PathLike[str] | None = None, *, against: str | None = None) -> Any:
         """Plot the error against the refinement on logarithmic axes, one line per curve.
 
-        Hollow markers are errors at round-off, which the fitted order leaves out. path: file to write (PNG, SVG, PDF).
-        Returns the figure. Raises InputError for another suffix, MissingPackageError without matplotlib.
+        against: another number that the function returns, such as that of unknowns, or "seconds", which are the default
+        where fixed and adaptive meshes are compared. Hollow markers are errors at round-off, which the fitted order
+        leaves out. path: file to write (PNG, SVG, PDF). Returns the figure. Raises InputError for another suffix or an
+        unknown number, MissingPackageError without matplotlib.
 
         Examples
         --------
         >>> study = bf.converge(lambda n: 1.0 + 1.0 / n**2, refine="n", n=[4, 8, 16, 32], reference=1.0)
         >>> figure = study.plot("convergence.png")
         """
+        against = "seconds" if against is None and self.refine == WORK else against
+        if against is not None:
+            names = ["seconds", *(name for curve in self.curves[:1] for name in curve.others)]
+            require_known(f"the study has no number {shown(against)}", against, names)
         figure, axes = new_figure(7.2, 5.0)
         axes.set_xscale("log")
         axes.set_yscale("log")
@@ -209,14 +216,15 @@ class Convergence:
         triangles: dict[int, tuple[Curve, str]] = {}
         for i, curve in enumerate(self.curves):
             colour, marker = COLOURS[i % len(COLOURS)], MARKERS[i % len(MARKERS)]
-            x, y = np.array(curve.refinement, dtype=float), curve.error
+            along = curve.refinement if against is None else {"seconds": curve.seconds, **curve.others}[against]
+            x, y = np.array(along, dtype=float), curve.error
             positive = y > 0.0
             label = curve.label
-            if curve.fit is not None:
+            if curve.fit is not None and against is None:
                 band = "" if np.isnan(curve.fit.band) else f" ± {curve.fit.band:.2f}"
                 label = f"{label}: order {curve.fit.order:.2f}{band}"
             axes.plot(x[positive], y[positive], color=colour, marker=marker, markersize=5, linewidth=1.4, label=label)
-            if curve.fit is None:
+            if curve.fit is None or against is not None:
                 continue
             noise = positive & (np.arange(len(x)) > curve.fit.last)
             axes.plot(x[noise], y[noise], marker, markersize=5, color=colour, markerfacecolor="white")
@@ -225,10 +233,10 @@ class Convergence:
                 triangles[round(curve.fit.order)] = curve, colour
         for curve, colour in triangles.values():
             _triangle(axes, curve, colour)
-        axes.set_xlabel(self.refine)
+        axes.set_xlabel(against or self.refine)
         axes.set_ylabel(f"{self.error_name} of {self.quantity}")
         ticks = sorted({value for curve in self.curves for value in curve.refinement})
-        if len(ticks) <= 12:
+        if against is None and len(ticks) <= 12:
             axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
             axes.minorticks_off()
         if self.curves:

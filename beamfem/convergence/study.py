@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from beamfem import validation
-from beamfem.convergence.convergence_result import Convergence
+from beamfem.convergence.convergence_result import WORK, Convergence
 from beamfem.convergence.refinement_curve import Curve, highest_order, judge, scale_of
 from beamfem.errors import InputError
 from beamfem.progress import progress
@@ -52,7 +52,8 @@ def converge(
         Name of the number whose error is studied; the others become columns.
     refine : str
         Name of the parameter of refinement, whose values are counts (whole numbers, h = 1/n) or decreasing step sizes
-        (h).
+        (h). With "accuracy" and a list of `elements` there are two curves for each element kind, to compare their work:
+        fixed meshes, with accuracy=None, and adaptive ones, with elements="auto".
     reference : float, optional
         The limit, if known; otherwise each curve is extrapolated (Richardson). Errors are relative to the limit unless
         it is zero.
@@ -94,6 +95,12 @@ def converge(
         f"refine names the parameter {shown(refine)}, which must be given as a list of values", refine, varied
     )
     optional(validation.text)("quantity", quantity)
+    if refine == "accuracy" and "elements" in varied:
+        shared: Any = {"quantity": quantity, "reference": reference, "until": until, "executor": executor}
+        return _side_by_side(
+            converge(function, **shared, refine="elements", **(parameters | {"accuracy": None})),
+            converge(function, **shared, refine="accuracy", **(parameters | {"elements": "auto"})),
+        )
     refinement, counts = _from_coarse_to_fine(refine, varied.pop(refine))
     reference, goal = optional(finite)("reference", reference), optional(positive)("until", until)
     lines = _lines(function, varied, fixed)
@@ -116,6 +123,16 @@ def converge(
     failures = [failure for line in lines for failure in _failures(line, refine)]
     name = name_of(function)
     return Convergence(name, quantity or name, refine, reference, tuple(curves), tuple(failures))
+
+
+def _side_by_side(fixed: Convergence, adaptive: Convergence) -> Convergence:
+    """Return the studies of fixed and adaptive meshes as one."""
+    curves = [
+        replace(curve, label=f"{mesh}, {curve.label}", texts={"mesh": mesh, **curve.texts})
+        for mesh, study in (("fixed", fixed), ("adaptive", adaptive))
+        for curve in study.curves
+    ]
+    return replace(fixed, refine=WORK, curves=tuple(curves), failures=fixed.failures + adaptive.failures)
 
 
 def _from_coarse_to_fine(refine: str, values: Sequence[Any]) -> tuple[tuple[Any, ...], bool]:

@@ -278,3 +278,37 @@ def test_one_level_has_the_error_that_its_function_estimates():
     fine = estimated_tip(8, 8)["tip"]
     (curve,) = study.curves
     assert curve.estimated_error == pytest.approx(abs(fine / curve.value[0] - 1.0), rel=0.1)
+
+
+def test_work_of_fixed_and_adaptive_meshes_is_compared(tmp_path):
+    """A cantilever with a large deflection, whose limit is that of many elements of order 8."""
+    steel, section = bf.Material(2e11, 0.3, 7800.0), bf.Rectangle(0.02, 0.01)
+
+    def tip(element, elements, accuracy):
+        beam = bf.Beam(bf.Line((0, 0), (1, 0)), elements, element, section, steel)
+        load = bf.PointForce(beam.end, (0.0, 5.0 * 2e11 * section.second_moment))
+        solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [load]), accuracy=accuracy)
+        return {"deflection": solution.displacement(beam.end)[-1, 1], "unknowns": solution.model.size}
+
+    exact = tip(bf.CRBF(8), 24, None)["deflection"]
+    meshes = {"accuracy": [1e-2, 1e-4], "elements": [2, 8, 32], "element": [bf.CRBF(1), bf.ShearRigid()]}
+    study = bf.converge(tip, "deflection", refine="accuracy", reference=exact, **meshes)
+    assert [curve.label for curve in study.curves] == [
+        *(f"fixed, {kind}" for kind in ("CRBF-1", "shear-rigid-stretchable")),
+        *(f"adaptive, {kind}" for kind in ("CRBF-1", "shear-rigid-stretchable")),
+    ]
+    for curve in study.curves[2:]:
+        assert (curve.error * exact < curve.refinement).all()
+    fixed, adaptive = study.curves[0], study.curves[2]
+    assert fixed.others["unknowns"] == (9, 27, 99)
+    assert adaptive.error[-1] < fixed.error[-1]
+    assert adaptive.others["unknowns"][-1] < fixed.others["unknowns"][-1] / 2
+    header, rows = study.points()
+    assert header[:3] == ["mesh", "element", "accuracy or elements"]
+    assert [row[0] for row in rows] == ["fixed"] * 6 + ["adaptive"] * 4
+    (axes,) = study.plot(tmp_path / "work.png", against="unknowns").axes
+    assert axes.get_xlabel() == "unknowns"
+    assert sorted(axes.lines[0].get_xdata()) == list(fixed.others["unknowns"])
+    assert study.plot().axes[0].get_xlabel() == "seconds"
+    with pytest.raises(bf.InputError, match="the study has no number 'work'"):
+        study.plot(against="work")

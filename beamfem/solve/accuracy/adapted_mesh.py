@@ -26,6 +26,7 @@ from beamfem.solve.accuracy.error_estimate import (
     error_shares,
     largest_displacement_error,
     of_order,
+    position_shares,
     remeshed,
 )
 from beamfem.validation import positive
@@ -161,7 +162,8 @@ def static_attempt(solution: Solution, quantity: Quantity) -> tuple[Solution, fl
         error = _relative_error(solution, quantity)
     except ConvergenceError:  # too far from the finer mesh to say how far
         return solution, np.inf, None
-    return solution, error, error_shares(solution[last], enriched_row(solution, last))
+    shares = error_shares if quantity is not None else position_shares
+    return solution, error, shares(solution[last], enriched_row(solution, last))
 
 
 def _relative_error(solution: Solution, quantity: Quantity) -> float:

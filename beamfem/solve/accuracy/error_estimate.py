@@ -356,6 +356,33 @@ def error_shares(state: State, finer: Solution) -> list[np.ndarray]:
     return _shares(state.model, finer.model, _energies(finer.model, changes))
 
 
+def position_shares(state: State, finer: Solution) -> list[np.ndarray]:
+    """Return the share (ne,) [-] of each element of each beam in the largest error of positions along beams.
+
+    Elements are off between their ends by their own interpolation, such as that of a curved axis, and at their ends by
+    the errors of all elements, in which they have `error_shares`. Their sum may exceed 1, as each is the larger of two.
+    """
+    within, at_ends = [], 0.0
+    for old, new in zip(state.model.meshes, finer.model.meshes, strict=True):
+        element, xi = places(old, new, new.beam.element.field.nodes)
+        before = axis_at(old, state.p[None], element.ravel(), xi.ravel()).r[0]
+        change = _complex(finer.p[0][new.kinematics.dof[new.node.ravel(), :2]] - before).reshape(xi.shape)
+        parent = element[:, 0]
+        every = np.arange(old.elements)
+        start = change[np.searchsorted(parent, every), 0]
+        end = change[np.searchsorted(parent, every, side="right") - 1, -1]
+        bent = np.abs(change - start[parent, None] * (1.0 - xi) - end[parent, None] * xi).max(axis=1)
+        within.append(np.zeros(old.elements))
+        np.maximum.at(within[-1], parent, bent)
+        at_ends = max(at_ends, float(np.abs(start).max()), float(np.abs(end).max()))
+    largest = max(at_ends, *(float(each.max()) for each in within))
+    if largest == 0.0:
+        return within
+    elements = sum(map(len, within))
+    pairs = zip(error_shares(state, finer), within, strict=True)
+    return [np.maximum(at_ends / largest * share, own / (largest * elements)) for share, own in pairs]
+
+
 def mode_shares(modes: Iterable[tuple[State, np.ndarray, State, np.ndarray]]) -> list[np.ndarray]:
     """Return the share (ne,) [-] of each element of each beam in the relative errors of eigenvalues; their sum is 1.
 

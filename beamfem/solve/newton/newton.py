@@ -218,7 +218,7 @@ def check_convergence(system: System, balance: Balance, newton: Newton, correcti
 def _settled(system: System, p: np.ndarray, correction: Correction) -> bool:
     """Return whether the next correction, at the present rate, is small relative to the movement or below round-off."""
     size, before = correction.size, correction.before
-    following = size * min(size / before, 1.0) if correction.number > 1 else size
+    following = size * min(size / before, 1.0) if correction.number > 1 and before > 0.0 else size
     moved = largest_change(system, p - system.reference)
     lasting = max(_SURE * moved, _EPS * float((np.abs(p) / system.scale).max(initial=1.0)))
     return correction.stagnates or following <= lasting

@@ -23,7 +23,7 @@ from beamfem.kernels.compiler import machine
 from beamfem.kernels.compiler.bounds_checks import CHECKED, raise_violation
 from beamfem.kernels.compiler.callables import Inlined
 from beamfem.kernels.compiler.translation import translate
-from beamfem.kernels.compiler.value_types import NUMBER, WHOLE, Kind, Signature, signature_of
+from beamfem.kernels.compiler.value_types import NUMBER, WHOLE, WIDTH, Kind, Signature, signature_of
 from beamfem.kernels.pointers import at
 from beamfem.kernels.records import Record, checked, kind_of
 
@@ -171,7 +171,8 @@ class Derived(Routine):
     @_lockless_property
     def function(self) -> Callable[..., Any]:
         """The definition, the only function of its source."""
-        text, file, names = self._source(), f"<{self.name}>", {"__name__": self.name, "math": math, "at": at}
+        text, file = self._source(), f"<{self.name}>"
+        names: dict[str, Any] = {"__name__": self.name, "math": math, "at": at, "WIDTH": WIDTH}
         linecache.cache[file] = (len(text), None, text.splitlines(keepends=True), file)
         exec(compile(text, file, "exec"), names)
         return next(reversed(names.values()))

@@ -9,7 +9,6 @@ from itertools import combinations_with_replacement
 from typing import Any
 
 from beamfem.kernels import point
-from beamfem.kernels.compiler.value_types import WIDTH
 from beamfem.kernels.compiling import Derived
 from beamfem.kernels.record import CONVECT_PASS, ROW, ROWS_PASS
 from beamfem.physics.kinematics import KINDS, Kinematics
@@ -17,7 +16,7 @@ from beamfem.physics.measures import MEASURES, Measure
 from beamfem.physics.terms import Graph, Number, changes, gradient, source, sqrt, symbols
 
 _FAST = {"contract", "reassoc", "nsz"}
-_OPENING = f"    for i in range(0, count, {WIDTH}):", "        own = at(x, i)"
+_OPENING = "    for i in range(0, count, WIDTH):", "        own = at(x, i)"
 # blocks rr, rd, re, dd, de, ee of the second derivative by q; of symmetric blocks, only the upper triangle
 _ORDER = [(i, j) for a in (0, 2, 4) for b in range(a, 6, 2) for i in (a, a + 1) for j in (b, b + 1) if i <= j or a != b]
 

@@ -19,8 +19,10 @@ from beamfem.kernels import nodes, pointers
 from beamfem.kernels import simd as lanes
 from beamfem.kernels import simd as pairs
 from beamfem.kernels.compiler.callables import Inlined, Operation
+from beamfem.kernels.compiler.value_types import WIDTH
 from beamfem.kernels.compiling import Routine
 from beamfem.kernels.records import Record
+from beamfem.physics.compiled_elements import MEASURE_PASSES, NODE_PASSES
 
 
 class Pointer:
@@ -143,7 +145,7 @@ def uncompiled() -> Iterator[None]:
     constants = {"WIDTH": 1, "WRITES_PARTS": False}
     numbers = SimpleNamespace(floor=lambda x: math.floor(float(x)))
     try:
-        for module in _modules():
+        for module in [*_modules()]:  # all before the first is changed, from which others import
             for name, value in list(vars(module).items()):
                 if name in constants:
                     replaced.append((module, name, value))
@@ -156,10 +158,21 @@ def uncompiled() -> Iterator[None]:
                     setattr(module, name, value.function)
         replaced.append((nodes, "np", np))
         nodes.np = numbers
+        for derived in _derived():
+            derived |= {"at": at, **constants}
         yield
     finally:
         for module, name, value in replaced:
             setattr(module, name, value)
+        for derived in _derived():
+            derived |= {"at": pointers.at, "WIDTH": WIDTH}
+
+
+def _derived() -> Iterator[dict[str, Any]]:
+    """Yield what derived passes of strain measures and nodes find outside."""
+    for passes in (*MEASURE_PASSES, *NODE_PASSES):
+        for each in passes.values():
+            yield each.function.__globals__
 
 
 def _modules() -> Iterator[ModuleType]:

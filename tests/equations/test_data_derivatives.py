@@ -34,6 +34,7 @@ DATA = {
     "line load": (bf.DistributedLoad, ["first", (7.0, -9.0)]),
     "pressure": (bf.Pressure, ["second", 11.0]),
     "actuation": (bf.Actuation, ["first", 0.1, 0.002, 0.003]),
+    "pretension": (bf.Pretension, ["first", 3.0]),
     "temperature": (bf.Temperature, ["second", 40.0, 3e3]),
     "wheel": (bf.MovingForce, ["first", lambda time: 0.3 + time, (3.0, -20.0)]),
     "motor": (bf.Motor, ["hinge", None, None, 5.0]),
@@ -102,6 +103,7 @@ def build(turning=False, **changed):
     supports = [bf.Clamp(parts["first"].start), bf.Clamp(parts["thick"].start), bf.Pin(parts["guided"].start)]
     supports += map(part, ("spring", "foundation", "prescribed"))
     loads = ("gravity", "force", "moment", "line load", "pressure", "actuation", "temperature", "wheel", "motor")
+    loads += ("pretension",)
     between = [
         "cable",
         "cable between",

@@ -136,7 +136,7 @@ class CollocationSteps(StepsInCalls):
                 moved = np.array([system.prescribed_changes(time) for time in at])
                 own[:] = rule.motion(moved, self._step).swapaxes(0, 1)
             result[:, :, 0] += system.reference[system.prescribed_dofs]
-        return result.reshape(-1, *result.shape[2:])
+        return result.reshape(len(ends) * len(rule.samples), *result.shape[2:])
 
     def _solved_together(self, state: np.ndarray, step: int, begins: np.ndarray, ends: np.ndarray) -> bool:
         """Solve for the stages of a step by Newton's method on all of them; return whether it has converged.

@@ -224,7 +224,7 @@ def ANCF(forces: Forces | None = None, integration: Integration | None = None) -
     >>> element.coordinates_per_node, element.integration
     (6, 'lobatto')
     """
-    return Element(Cubic(), Gradients(), forces or ContinuumMechanics(), integration, "ANCF")
+    return Element(Cubic(), Gradients(), _chosen(forces, ContinuumMechanics()), integration, "ANCF")
 
 
 def ANCFCRBF(forces: Forces | None = None, integration: Integration | None = None) -> Element:
@@ -243,7 +243,7 @@ def ANCFCRBF(forces: Forces | None = None, integration: Integration | None = Non
     >>> element.coordinates_per_node, element.integration
     (5, 'full')
     """
-    return Element(Cubic(), Rotation(), forces or ContinuumMechanics(), integration, "ANCF-CRBF")
+    return Element(Cubic(), Rotation(), _chosen(forces, ContinuumMechanics()), integration, "ANCF-CRBF")
 
 
 def BilinearANCF(forces: Forces | None = None, integration: Integration = "full") -> Element:
@@ -262,7 +262,7 @@ def BilinearANCF(forces: Forces | None = None, integration: Integration = "full"
     >>> element.coordinates_per_node, element.integration
     (4, 'full')
     """
-    return Element(Lagrange(1), Gradients(), forces or ContinuumMechanics(), integration, "bilinear-ANCF")
+    return Element(Lagrange(1), Gradients(), _chosen(forces, ContinuumMechanics()), integration, "bilinear-ANCF")
 
 
 def BilinearCRBF(forces: Forces | None = None, integration: Integration = "full") -> Element:
@@ -281,7 +281,7 @@ def BilinearCRBF(forces: Forces | None = None, integration: Integration = "full"
     >>> element.coordinates_per_node, element.integration
     (3, 'full')
     """
-    return Element(Lagrange(1), Rotation(), forces or ContinuumMechanics(), integration, "bilinear-CRBF")
+    return Element(Lagrange(1), Rotation(), _chosen(forces, ContinuumMechanics()), integration, "bilinear-CRBF")
 
 
 def CRBF(order: int, forces: Forces | None = None, integration: Integration = "reduced") -> Element:
@@ -302,7 +302,7 @@ def CRBF(order: int, forces: Forces | None = None, integration: Integration = "r
     >>> element.name, element.coordinates_per_node
     ('CRBF-3', 3)
     """
-    return Element(Lagrange(order), Rotation(), forces or Structural(), integration, f"CRBF-{order}")
+    return Element(Lagrange(order), Rotation(), _chosen(forces, Structural()), integration, f"CRBF-{order}")
 
 
 def ShearRigid(
@@ -328,7 +328,11 @@ def ShearRigid(
     (3, 'lobatto')
     """
     label = "shear-rigid-stretchable" if flag("stretchable", stretchable) else "shear-rigid"
-    chosen = forces or Structural()
+    chosen = _chosen(forces, Structural())
     if integration is None and isinstance(chosen, ContinuumMechanics | SplitContinuum):
         integration = "reduced"
     return Element(Cubic(), ShearFree(stretchable), chosen, integration, label)
+
+
+def _chosen(forces: Forces | None, usual: Forces) -> Forces:
+    return usual if forces is None else forces

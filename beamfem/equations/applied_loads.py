@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from beamfem.kernels.record import CONSTANTS
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import jacobians, length_points, reference_axis, scales
 from beamfem.model.beam import Beam, Point
-from beamfem.model.load_base import Load, MovingLoad, forces_of
+from beamfem.model.load_base import MovingLoad, PointLoad, forces_of
 from beamfem.model.model import Model
 from beamfem.physics.stations import DEAD, FOLLOWING, GROUNDED, STRETCHING
 
@@ -133,7 +134,7 @@ class Actions:
         """Return the actions on a model whose loads differ from the own ones only in their size."""
         unit = self.unit.copy()
         for row, number in self._at_points:
-            unit[row] = _at_point(model.acting[number])
+            unit[row] = cast("PointLoad", model.acting[number]).value
         return replace(self, unit=unit)
 
     def values(self, time: float, factors: np.ndarray) -> np.ndarray:
@@ -184,9 +185,9 @@ def build_actions(model: Model, block: int) -> Actions:
         mesh = None if load.even else _mesh(model, place, block)
         if mesh is None:
             continue
-        if isinstance(place, Point):
-            element, at = mesh.locate(place.fraction)
-            unit = _at_point(load)[None]
+        if isinstance(load, PointLoad):
+            element, at = mesh.locate(load.point.fraction)
+            unit = np.array([load.value], dtype=float)
             parts.append(_part(mesh, np.array([element]), np.array([at]), _KINDS[load.axes], unit, number, rule=0))
             continue
         where, xi, weight = length_points(mesh)
@@ -215,11 +216,6 @@ def _mesh(model: Model, place: Beam | Point | None, block: int) -> BeamMesh | No
     beam = place.beam if isinstance(place, Point) else place
     mesh = None if beam is None else model.meshes[model.number_of(beam)]
     return mesh if mesh is not None and mesh.block == block else None
-
-
-def _at_point(load: Load) -> np.ndarray:
-    """Return force [N] and moment [N m] (3,) of a load at a point."""
-    return np.concatenate([load.acting(_START)[name][0] for name in ("force", "moment")])
 
 
 def _slope(mesh: BeamMesh, element: np.ndarray, xi: np.ndarray) -> np.ndarray:

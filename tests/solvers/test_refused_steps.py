@@ -7,8 +7,6 @@ import pytest
 from refused_steps import CASES, ELEMENTS, UNDAMPED, double_pendulum, largest_changes, strip
 
 import beamfem as bf
-from beamfem.equations.system import system_of
-from beamfem.solve.newton.newton import Correction, _settled
 
 QUICK = {
     ("double pendulum, 5 ms", "ShearRigid"),
@@ -122,11 +120,3 @@ def test_a_motion_that_bends_elements_too_far_ends_with_the_beam_that_needs_more
     model = bf.Model([strand], [bf.Pin(strand.start)], [bf.Gravity((0, -9.81))])
     with pytest.raises(bf.ConvergenceError, match=r"element of beam 0 is bent by .* rad there: use more elements"):
         bf.simulate(model, 3.0, 0.05, file=tmp_path / "strand.h5" if stored else None)
-
-
-def test_a_correction_after_one_of_zero_is_judged_by_its_own_size():
-    """A fine mesh at rest began with a correction of zero, by which the next one was divided."""
-    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Rectangle(0.02, 0.01), bf.Material(2e11, 0.3, 7800.0))
-    system = system_of(bf.Model([beam], [bf.Clamp(beam.start)]), static=True)
-    assert _settled(system, system.reference, Correction(2, 1e-20, 0.0, 0))
-    assert not _settled(system, system.reference, Correction(2, 1e-3, 0.0, 0))

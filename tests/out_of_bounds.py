@@ -9,7 +9,7 @@ import numpy as np
 import beamfem as bf
 from beamfem.kernels.compiler.bounds_checks import CheckError
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.pointers import address_of, at, room, slots
+from beamfem.kernels.pointers import address_of, at, room, wholes
 from beamfem.kernels.records import Reals, Record, Several, Wholes, calls
 from beamfem.kernels.simd import as_rows
 
@@ -52,7 +52,7 @@ def read_stack(place, values):
 
 @routine("nr")
 def read_address(place, values):
-    short = slots(place[1])
+    short = wholes(place[1])
     values[0] = short[place[0]]
 
 
@@ -114,7 +114,7 @@ def solved():
 
 def main():
     """Print the ends of all calls as JSON."""
-    table = np.arange(4, dtype=np.int32)
+    table = np.arange(4, dtype=np.int64)
     odd = np.zeros(81, dtype=np.uint8)[1:].view(np.float64)
     ends = {f"write {i}": ended(write, np.array([i])) for i in (0, 9, 10, -1, 2**61)}
     ends |= {f"step {i}": ended(write_after_a_step, np.array([i])) for i in (-4, 5, -5, 6)}

@@ -673,3 +673,9 @@ def _require_finite(item: Connector) -> None:
         at = replace(at, q=at.q + _TURNED, v=at.v + _TURNED, a=at.a + _TURNED)
     if not (np.isfinite(item.force(at)).all() and np.isfinite(item.energy(at)).all()):
         raise InputError(f"force or energy of {item.name} is not finite near the reference")
+
+
+def same_connectors(own: Connectors, others: Connectors) -> dict[Connector, Connector]:
+    """Return the connectors of a model that are in another one, too, each with the one there."""
+    known = {id(item.item): item for item in others.items}
+    return {item: known[id(item.item)] for item in own.items if id(item.item) in known}

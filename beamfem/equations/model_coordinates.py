@@ -1,6 +1,6 @@
 """Coordinates of the stress-free state of a model, and those that supports prescribe."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -148,3 +148,11 @@ def _axis_of(normal: np.ndarray) -> str | None:
     if ny < 1e-12:
         return "x"
     return "y" if nx < 1e-12 else None
+
+
+def set_coordinates(mesh: BeamMesh, values: Mapping[str, np.ndarray], p: np.ndarray) -> None:
+    """Set the coordinates of a mesh in p (n,); values: of every coordinate that a node could have (nodes,), by name."""
+    for label, nodes, dofs in coordinate_columns(mesh):
+        # a rotated vector belongs to the first of the joined nodes
+        mask = mesh.kinematics.node_kind[nodes] != ROTATED_GRADIENTS if label.startswith("r_y") else slice(None)
+        p[dofs[mask]] = values[label][nodes[mask]]

@@ -29,7 +29,7 @@ from beamfem.results.postprocess import nodal_rotations
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import imposed_measures, loading
 from beamfem.results.status import Finding
-from beamfem.section.thermal import materials_of
+from beamfem.section.moments import materials_of
 
 _MUCH = 1.5  # [rad]: an element that turns by this much between its ends is far from the curve that it stands for
 

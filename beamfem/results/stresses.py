@@ -16,8 +16,9 @@ from beamfem.model.imposed_strains import heat_of
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import imposing
+from beamfem.section.moments import materials_of
 from beamfem.section.protocol import CrossSection
-from beamfem.section.thermal import expands_evenly, materials_of, thermal_strain
+from beamfem.section.thermal import expands_evenly, thermal_strain
 
 
 def von_mises(along: np.ndarray, sheared: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.quadrature import gauss_between
 from beamfem.section.outline import MomentsOutline, Part
-from beamfem.section.protocol import Inertia, Rigidity
+from beamfem.section.protocol import CrossSection, Inertia, Rigidity
 from beamfem.validation import convert, finite, positive
 
 
@@ -224,3 +224,11 @@ def required(material: Material | None) -> Material:
             "this section needs a material", remedy="give the beam one, or use a section with materials of its own"
         )
     return material
+
+
+def materials_of(section: CrossSection, material: Material | None) -> list[Material]:
+    """Return the materials of a section, from the bottom up; none of one that is known by its stiffness."""
+    try:
+        return [own for own, _ in section.moments(material)]
+    except InputError:
+        return []

@@ -26,14 +26,6 @@ def thermal_strain(section: CrossSection, material: Material | None) -> np.ndarr
     return np.vstack([axial, [f0 / e0, f1 / e0]])
 
 
-def materials_of(section: CrossSection, material: Material | None) -> list[Material]:
-    """Return the materials of a section, from the bottom up; none of one that is known by its stiffness."""
-    try:
-        return [own for own, _ in section.moments(material)]
-    except InputError:
-        return []
-
-
 def expansion(section: CrossSection, material: Material | None) -> np.ndarray:
     """Return `thermal_strain`, zeros if the section has no material."""
     try:

@@ -11,7 +11,9 @@ from scipy.linalg import LinAlgError
 from beamfem.cached_properties import cached_property
 from beamfem.element.element import Element
 from beamfem.element.fields import Lagrange
+from beamfem.equations.connectors import same_connectors
 from beamfem.equations.equations import predicted_stresses
+from beamfem.equations.model_coordinates import set_coordinates
 from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.linalg.tangent import Stresses
@@ -26,7 +28,6 @@ from beamfem.results.postprocess import position
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
 from beamfem.solve.newton.newton import Newton, NewtonResult, PivotedProblem, PrescribedStep
-from beamfem.solve.start.start_state import same_connectors, set_coordinates
 from beamfem.validation import number_below, shown
 
 # halved elements of order k have an error of about 2^-2k of the others, for the same cost as those of order k + 1
@@ -114,7 +115,7 @@ def carried_coordinates(state: State, target: Model) -> np.ndarray:
     p = system.reference.copy()
     for old, new in zip(source.meshes, target.meshes, strict=True):
         set_coordinates(new, _values_at_nodes(old, new, state), p)
-    for item, same in same_connectors(source, system).items():
+    for item, same in same_connectors(system.connectors, system_of(source, True).connectors).items():
         p[item.own] = state.p[same.own]
     return p
 

@@ -1,16 +1,13 @@
 """The state that a solve starts from, also of another model that has the same beams and meshes."""
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from beamfem.element.coordinates import across
 from beamfem.element.fields import cross, dot
-from beamfem.equations.connectors import Connector
-from beamfem.equations.model_coordinates import coordinate_columns
+from beamfem.equations.connectors import same_connectors
+from beamfem.equations.model_coordinates import set_coordinates
 from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError, warn
-from beamfem.kernels.block import ROTATED_GRADIENTS
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.model_meshes import required_nodes
 from beamfem.mesh.reference import reference_angle
@@ -45,27 +42,13 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
         set_coordinates(new, rates, v)
         if _keeps_history(old, new):
             p[new.history] = state.p[old.history]
-    known = same_connectors(source, system)
+    known = same_connectors(system.connectors, system_of(source, system.static).connectors)
     for item in system.connectors.items:
         if item in known:
             p[item.memory], p[item.own] = state.p[known[item].memory], state.p[known[item].own]
         else:
             p[item.values] = item.values_in(p)
     return p, v
-
-
-def set_coordinates(mesh: BeamMesh, values: Mapping[str, np.ndarray], p: np.ndarray) -> None:
-    """Set the coordinates of a mesh in p (n,); values: of every coordinate that a node could have (nodes,), by name."""
-    for label, nodes, dofs in coordinate_columns(mesh):
-        # a rotated vector belongs to the first of the joined nodes
-        mask = mesh.kinematics.node_kind[nodes] != ROTATED_GRADIENTS if label.startswith("r_y") else slice(None)
-        p[dofs[mask]] = values[label][nodes[mask]]
-
-
-def same_connectors(source: Model, system: System) -> dict[Connector, Connector]:
-    """Return the connectors of a system that are in another model, too, each with the one there."""
-    known = {id(item.item): item for item in system_of(source, system.static).connectors.items}
-    return {item: known[id(item.item)] for item in system.connectors.items if id(item.item) in known}
 
 
 def warn_of_lost_history(state: State, system: System, name: str) -> None:

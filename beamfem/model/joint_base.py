@@ -1,4 +1,4 @@
-"""The base class of joints between beams."""
+"""The base class of joints at coincident points; those that slide or keep a distance are in `physics.connections`."""
 
 from typing import ClassVar
 

@@ -1,4 +1,7 @@
-"""Section laws: resultants that are nonlinear functions of the strains, with or without history."""
+"""Section laws: resultants that are nonlinear functions of the strains, with or without history.
+
+Laws of one stress, such as plasticity, are in `fibre_laws`.
+"""
 
 from collections.abc import Sequence
 from ctypes import CFUNCTYPE, c_double, c_void_p

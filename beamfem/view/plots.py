@@ -1,4 +1,4 @@
-"""Figures of matplotlib without a window."""
+"""Figures of matplotlib without a window, and how they are saved; curves are in `quantity_curve`, shapes in `drawing`."""
 
 from os import PathLike
 from typing import Any

@@ -1,4 +1,4 @@
-"""Figures of matplotlib without a window, and how they are saved; curves are in `quantity_curve`, shapes in `drawing`."""
+"""Figures of matplotlib without a window, and how they are saved; see `quantity_curve` and `drawing` for plots."""
 
 from os import PathLike
 from typing import Any

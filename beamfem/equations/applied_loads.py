@@ -1,6 +1,7 @@
 """Loads of a model at a time, and the stations of elements where they act."""
 
 from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import cast
 
@@ -55,16 +56,17 @@ class LoadsAt:
 
 
 def even_loads(model: Model, factors: np.ndarray) -> np.ndarray:
-    """Return acceleration [m/s^2] and load per length [N/m] of each beam (beams, 4) by loads that are even.
+    """Return acceleration [m/s^2] and load per length [N/m] of each beam (..., beams, 4) by loads that are even.
 
-    factors (k,): of `model.acting`.
+    factors (..., k): of `model.acting`.
     """
-    result = np.zeros((len(model.beams), 4))
-    for load, size in zip(model.acting, factors.tolist(), strict=True):
+    result = np.zeros((*factors.shape[:-1], len(model.beams), 4))
+    for number, load in enumerate(model.acting):
         if load.even:
             ((name, vectors),) = load.acting(_START).items()
-            rows = model.number_of(load.place) if isinstance(load.place, Beam) else slice(None)
-            result[rows, _COLUMNS[name]] += vectors[0] * size
+            beams = model.number_of(load.place) if isinstance(load.place, Beam) else 0
+            rows = slice(beams, beams + 1 if isinstance(load.place, Beam) else None)
+            result[..., rows, _COLUMNS[name]] += factors[..., number, None, None] * vectors[0]
     return result
 
 
@@ -139,12 +141,25 @@ class Actions:
 
     def values(self, time: float, factors: np.ndarray) -> np.ndarray:
         """Return forces and moments (nl, 3) at a time, with the factors (k,) of `model.acting`."""
-        result = self.unit * np.append(factors, 1.0)[self.source, None]
+        result = self._at_rest(factors)
         for moving in self.moving:
             rows, shares = moving.at(time)
             force = factors[moving.number] * np.array(moving.load.vector)
             result[moving.first + rows, :2] = shares[:, None] * force
         return result
+
+    def values_of_rows(self, times: Sequence[float] | np.ndarray, factors: np.ndarray) -> np.ndarray:
+        """Return forces and moments (rows, nl, 3) at times, with the factors (rows, k) of `model.acting`."""
+        if not self.moving:
+            return self._at_rest(factors)
+        rows = [self.values(time, own) for time, own in zip(times, factors, strict=True)]
+        return np.array(rows).reshape(len(rows), -1, 3)
+
+    def _at_rest(self, factors: np.ndarray) -> np.ndarray:
+        """Return forces and moments (..., nl, 3) of all loads but those that move, with factors (..., k)."""
+        sizes = np.ones((*factors.shape[:-1], factors.shape[-1] + 1))
+        sizes[..., :-1] = factors
+        return np.asarray(self.unit * sizes[..., self.source, None])
 
 
 @dataclass(frozen=True, eq=False)

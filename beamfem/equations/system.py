@@ -275,7 +275,7 @@ class System:
 
     def imposing(self, time: float) -> np.ndarray:
         """Return the factors (k,) of the loads that impose strains at a time."""
-        return self.loads_at(time).imposing
+        return self.factors(time)[self.imposes] if self.imposes.any() else np.empty(0)
 
     @cached_property
     def varying(self) -> bool:
@@ -442,10 +442,9 @@ class System:
 
 def loads_of_rows(system: System, times: Sequence[float] | np.ndarray) -> LoadsAt:
     """Return the loads at times, which are the first axis of its arrays."""
-    rows, count = [system.loads_at(time) for time in times], len(times)
-    points = (np.array([row.points[i] for row in rows]).reshape(count, -1, 3) for i in range(len(system.blocks)))
-    body, imposing = (np.array([getattr(row, name) for row in rows]) for name in ("body", "imposing"))
-    return LoadsAt(body.reshape(count, -1, 4), tuple(points), imposing.reshape(count, -1))
+    factors = np.array([system.factors(time) for time in times]).reshape(len(times), -1)
+    points = tuple(actions.values_of_rows(times, factors) for actions in system.actions)
+    return LoadsAt(even_loads(system.model, factors), points, factors[:, system.imposes])
 
 
 def system_of(model: Model, static: bool) -> System:

@@ -124,7 +124,7 @@ def _of_loads(solution: Solution) -> np.ndarray:
     rows = times if system.static or system.varying else times[:1]  # one row stands for all of them
     factors = np.array([np.where(system.conserves, system.factors(at), 0.0) for at in rows.tolist()])
     factors = factors.reshape(len(rows), -1)
-    body = np.array([even_loads(model, row) for row in factors]).reshape(len(rows), -1, 4)
+    body = even_loads(model, factors)
     for number, (block, actions) in enumerate(zip(system.blocks, system.actions, strict=True)):
         at = actions.stations
         if not (body.any() or len(at.element)):

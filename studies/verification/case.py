@@ -54,7 +54,5 @@ class Case:
         self.draw(picture)
         header = ["quantity", "reference", "beamfem", "difference"]
         rows = [[v.name, f"{v.reference:.10g}", f"{v.computed:.10g}", f"{v.difference:.0e}"] for v in self.values]
-        table = Table(
-            self.mesh, header, rows, f"Reference: {self.source}. Differences below {self.within:g} are expected."
-        )
-        return Part(self.title, self.problem, [Entry(self.title, picture, "", self.mesh)], [table])
+        table = Table(f"Mesh: {self.mesh}", header, rows, f"Differences below {self.within:g} are expected.")
+        return Part(self.title, self.problem, [Entry("Reference", picture, "", self.source)], [table])

@@ -94,7 +94,7 @@ def roll_up() -> Case:
     values: tuple[Value, ...] = ()
     for row, angle in enumerate((0.5 * np.pi, np.pi, 2.0 * np.pi)):
         names = tuple(f"{angle / np.pi:g} pi: {name}" for name in ("x / L", "y / L", "angle [rad]"))
-        circle = (round(np.sin(angle) / angle, 15), round((1.0 - np.cos(angle)) / angle, 15), angle)
+        circle = (round(np.sin(angle) / angle, 15) + 0.0, round((1.0 - np.cos(angle)) / angle, 15), angle)
         values += compared(names, circle, (*map(float, positions[row]), float(turned[row])))
     problem = "A cantilever under an end moment, up to 2 pi E I / L, is bent into circles."
     return Case("Roll-up", problem, "exact", model, values, lambda path: solution.plot(path, shapes=3), 1e-7)

@@ -8,7 +8,7 @@ from scipy.sparse import csr_array
 
 from beamfem.equations.callbacks import Deferred
 from beamfem.equations.motion_workspace import MotionWorkspace
-from beamfem.equations.system import System, loads_of_rows
+from beamfem.equations.system import System
 from beamfem.errors import ConvergenceError
 from beamfem.kernels.complex_band import complex_band
 from beamfem.kernels.motion_record import MotionLimits, MotionStatistics
@@ -77,26 +77,8 @@ class CollocationSteps(StepsInCalls):
         system, rule, space, own = self._system, self._rule, self._space, self._stages
         solver, begins = space.solver, np.append(self._time, times[:-1])
         sampled = (begins[:, None] + np.outer(times - begins, rule.samples)).ravel()
-        loads = loads_of_rows(system, sampled if system.varying else sampled[:1])
-        space.assembler.load(loads.body, loads.points, loads.imposing)
-        space.assembler.place(state[0], state[1], state[2], space.residual, solver.rows)
-        conditions = len(system.connectors.multipliers)
-        solver.fill(
-            state=state,
-            steps=len(sampled),
-            prescribed_values=self._prescribed(begins, times),
-            varies=len(loads.body) > 1,
-            body_size=loads.body[0].size,
-            bodies=loads.body,
-            first_step=saving.first,
-            every=saving.every,
-            saved=saving.states,
-            rotation_count=len(saving.pairs),
-            rotation_table=saving.pairs,
-            rotated_by=saving.rotations,
-            saved_rotations=saving.saved_rotations,
-            conditions=conditions,
-        )
+        self._fill(state, self._prescribed(begins, times), sampled, saving)
+        solver.fill(conditions=len(system.connectors.multipliers))
         if self._coupled is None and not space.assembler.calls_python:
             done = self._march(state, begins, times, lambda: march_stages(space.assembler.record, solver, own))
         else:

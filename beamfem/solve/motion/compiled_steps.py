@@ -43,6 +43,30 @@ class StepsInCalls:
             self._deferred is not None and (self._deferred.interrupted or self._deferred.lost is not None)
         )
 
+    def _fill(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> None:
+        """Hand a state, what is prescribed and the loads at times, and where rows are saved to compiled code."""
+        loads, assembler = (
+            loads_of_rows(self._system, times if self._system.varying else times[:1]),
+            self._space.assembler,
+        )
+        assembler.load(loads.body, loads.points, loads.imposing)
+        assembler.place(state[0], state[1], state[2], self._space.residual, self._space.solver.rows)
+        self._space.solver.fill(
+            state=state,
+            steps=len(prescribed),
+            prescribed_values=prescribed,
+            varies=len(loads.body) > 1,
+            body_size=loads.body[0].size,
+            bodies=loads.body,
+            first_step=saving.first,
+            every=saving.every,
+            saved=saving.states,
+            rotation_count=len(saving.pairs),
+            rotation_table=saving.pairs,
+            rotated_by=saving.rotations,
+            saved_rotations=saving.saved_rotations,
+        )
+
     def advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """March p, p', p'' and the auxiliary acceleration (4, n) in place; return how many steps were completed.
 
@@ -115,25 +139,9 @@ class CompiledSteps(StepsInCalls):
             p, v, a, _ = state
             weak = is_weak(self._system, (p, v, a), float(times[0]), space.assembler.weights, self._step)
             self._coupled = CoupledStages(self._system, space) if weak else None
-        loads = loads_of_rows(self._system, times if self._system.varying else times[:1])
         assembler, solver = space.assembler, space.solver
-        assembler.load(loads.body, loads.points, loads.imposing)
-        assembler.place(state[0], state[1], state[2], space.residual, solver.rows)
-        solver.fill(
-            state=state,
-            steps=len(prescribed),
-            prescribed_values=prescribed,
-            varies=len(loads.body) > 1,
-            body_size=loads.body[0].size,
-            bodies=loads.body,
-            first_step=saving.first,
-            every=saving.every,
-            saved=saving.states,
-            rotation_count=len(saving.pairs),
-            rotation_table=saving.pairs,
-            rotated_by=saving.rotations,
-            saved_rotations=saving.saved_rotations,
-            # stages in Python factorise the border themselves
+        self._fill(state, prescribed, times, saving)
+        solver.fill(  # stages in Python factorise the border themselves
             edge=len(unknowns.border) if self._coupled is None else 0,
             conditions=unknowns.border_size - len(unknowns.border) if self._coupled is None else 0,
         )

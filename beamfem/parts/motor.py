@@ -134,6 +134,8 @@ class Motor(CompositeLoad):
     torque: Value | Callable[[float, float, float], float] | None = field(default=None, metadata={UNIT: "N m"})
 
     def __post_init__(self) -> None:
+        if callable(self.torque) and not self.controlled:
+            function_of_one("torque of Motor", self.torque, "time, or of time, angle and speed")
         super().__post_init__()
         if not isinstance(self.at, Point | Hinge):
             raise InputError(f"Motor acts at a point, such as beam.start, or in a Hinge, got {shown(self.at)}")
@@ -141,7 +143,7 @@ class Motor(CompositeLoad):
         if len(given) != 1:
             raise InputError(f"Motor needs one of angle, speed and torque, got {' and '.join(given) or 'none'}")
         if callable(value := getattr(self, given[0])):
-            if not self.controlled:
+            if given[0] != "torque":
                 function_of_one(f"{given[0]} of Motor", value, "time")
         else:
             convert(self, squared(finite), given[0])

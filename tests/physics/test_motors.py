@@ -204,6 +204,10 @@ def test_invalid_motors():
         (r"speed of Motor must be a function of time alone", lambda: bf.Motor(crank.start, speed=lambda a, b: 1.0)),
         (r"torque of Motor must be .*number", lambda: bf.Motor(crank.start, torque="strong")),
         (
+            r"torque of Motor .*time, or of time, angle and speed",
+            lambda: bf.Motor(crank.start, torque=lambda a, b: 1.0),
+        ),
+        (
             r"Motor acts in a Hinge at .* not one of the joints",
             lambda: model.with_loads([bf.Motor(bf.Hinge(crank.start, rod.end), angle=1.0)]),
         ),

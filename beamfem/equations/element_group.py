@@ -6,11 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamfem.equations.routines import Routines, routines
+from beamfem.kernels import linear_law
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.block import (
     ELASTIC_LINE,
     GRADIENTS,
+    GREEN_LAGRANGE,
     ROTATED_GRADIENTS,
     ROTATION,
     SHEAR_RIGID,
@@ -21,9 +22,11 @@ from beamfem.kernels.block import (
     Layout,
     Stations,
 )
-from beamfem.kernels.record import LANES, ROW, Group, StationPasses
+from beamfem.kernels.compiling import Routine
+from beamfem.kernels.record import LANES, ROW, Group, GroupRoutines, NodePasses, StationPasses
 from beamfem.kernels.simd import WIDTH
 from beamfem.physics.compiled_connections import passes_of
+from beamfem.physics.compiled_elements import MEASURE_PASSES, NODE_PASSES
 from beamfem.physics.stations import STATIONS
 
 _CACHE = 400  # workspace rows times elements of a batch, in units of `LANES`, that fit into the cache of a core
@@ -245,6 +248,43 @@ _PADDING = np.zeros(WIDTH)  # vectors of lanes read beyond the last node
 _UPPER = {measures: np.flatnonzero(np.triu(np.ones((measures, measures)))) for measures in (4, 6)}
 
 
+class Routines:
+    """The compiled functions for a strain measure, each set when a task first needs it.
+
+    nodes, vectors: of an element and of a node, constants for the compiler since they are the same for all elements;
+    law: address of the section law that replaces the linear one, 0 for none.
+    """
+
+    def __init__(self, measures: int, nodes: int, vectors: int, law: int = 0) -> None:
+        self.record = GroupRoutines(nodes=[NodePasses() for _ in NODE_PASSES])
+        self._sizes = {"nodes": nodes, "vectors": vectors, "bends": int(measures == ELASTIC_LINE)}
+        self._measures, self._law = measures, law
+        self._ready = set[tuple[tuple[str, ...], tuple[int, ...]]]()
+
+    def require(self, tasks: tuple[str, ...], kinds: tuple[int, ...]) -> None:
+        """Compile or load the routines of tasks; kinds: nodes with an angle, indices in `physics.kinematics.KINDS`."""
+        if (tasks, kinds) in self._ready:
+            return
+        for task in tasks:
+            for name, called in GroupRoutines.called.items():
+                if task in called.tasks:
+                    setattr(self.record, name, self._own(name))
+            for name, called in NodePasses.called.items():
+                for kind in kinds if task in called.tasks else ():
+                    setattr(self.record.nodes[kind], name, NODE_PASSES[kind][name])
+        self._ready.add((tasks, kinds))
+
+    def _own(self, name: str) -> Routine | int:
+        """Return the routine of these elements, or its address."""
+        if name == "law" and (self._law or self._measures == GREEN_LAGRANGE):
+            return self._law or linear_law.six_resultants
+        own = MEASURE_PASSES[self._measures].get(name)
+        return own or GroupRoutines.called[name].routine.fixed(**self._sizes)
+
+
+_known_routines = lru_cache(maxsize=None)(Routines)
+
+
 @dataclass(frozen=True, eq=False)
 class ElementGroup:
     """A group of similar elements in the form that compiled code expects.
@@ -326,9 +366,8 @@ def make_group(block: Block, layout: Layout, stations: Stations) -> ElementGroup
 
 def _routines(block: Block) -> Routines:
     nodes = block.node.shape[1]
-    vectors, bends = block.scale.shape[1] // nodes, int(block.measures == ELASTIC_LINE)
-    sizes = (("nodes", nodes), ("vectors", vectors), ("bends", bends))
-    return routines(block.measures, sizes) if block.law is None else Routines(block.measures, sizes, block.law.address)
+    of = block.measures, nodes, block.scale.shape[1] // nodes
+    return _known_routines(*of) if block.law is None else Routines(*of, block.law.address)
 
 
 def _constant_of_nodes(structure: Structure, frame: np.ndarray) -> np.ndarray | None:

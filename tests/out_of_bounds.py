@@ -9,8 +9,8 @@ import numpy as np
 import beamfem as bf
 from beamfem.kernels.compiler.bounds_checks import CheckError
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.pointers import address_of, at, room, wholes
-from beamfem.kernels.records import Reals, Record, Several, Wholes, calls
+from beamfem.kernels.pointers import at, room, wholes
+from beamfem.kernels.records import Reals, Record, Several, Wholes, address_of, calls
 from beamfem.kernels.simd import as_rows
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from beamfem.element.fields import Axis, dot, section_frame
-from beamfem.physics.measures import evaluate, green_lagrange
+from beamfem.physics.kinematics import evaluate, green_lagrange
 
 Strain = tuple[np.ndarray, np.ndarray, np.ndarray]  # exx, eyy and 2 exy
 

@@ -15,7 +15,7 @@ from beamfem.element.coordinates import Coordinates, Gradients
 from beamfem.element.fields import Axis, section_frame
 from beamfem.kernels.block import ELASTIC_LINE, GREEN_LAGRANGE, STRUCTURAL
 from beamfem.material import Material
-from beamfem.physics.measures import elastic_line, evaluate, green_lagrange, structural
+from beamfem.physics.kinematics import elastic_line, evaluate, green_lagrange, structural
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import flag
 

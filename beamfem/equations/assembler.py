@@ -11,8 +11,7 @@ from beamfem.equations.callbacks import Deferred
 from beamfem.equations.element_group import ElementGroup
 from beamfem.kernels import element_passes, model_passes, node_passes, record
 from beamfem.kernels.connection_passes import add_parts
-from beamfem.kernels.pointers import address_of
-from beamfem.kernels.records import aligned
+from beamfem.kernels.records import address_of, aligned
 from beamfem.kernels.simd import WIDTH
 
 _NONE = np.empty(0)

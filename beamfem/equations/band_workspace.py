@@ -1,6 +1,7 @@
 """Workspace of the compiled Newton iteration with a band matrix, reused by the next solve of the same model."""
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 from beamfem.equations.applied_loads import LoadsAt
@@ -8,10 +9,25 @@ from beamfem.equations.assembler import Scratch, lend_scratch, take_back_scratch
 from beamfem.equations.connector_equilibrium import ConnectedBalance
 from beamfem.equations.equations import STATICS
 from beamfem.equations.system import System
+from beamfem.kernels.band import band
+from beamfem.kernels.newton_loop import NewtonRoutines, NewtonSolver
 from beamfem.kernels.records import aligned
 from beamfem.linalg.bordered import condensed_record
 
 _KEPT = 100_000  # entries of the largest tangent for which allocation is a noticeable part of a solve
+
+
+def newton_solver(system: System) -> NewtonSolver:
+    """Return the solver of a model without workspace."""
+    fields, scale = system.solver_fields, system.scale.copy()
+    scale[system.connectors.multipliers] = 0.0  # their rows are no forces
+    return NewtonSolver(routines=_routines(fields["half"]), **fields | {"scale": scale})
+
+
+@cache
+def _routines(half_width: int) -> NewtonRoutines:
+    own = band(half_width)
+    return NewtonRoutines.usual(factor=own.factor, solve_upper=own.solve_upper)
 
 
 class BandWorkspace:
@@ -21,7 +37,7 @@ class BandWorkspace:
         self.assembler = system.assembler(shared=True)
         self.assembler.weigh(STATICS)
         self.assembler.require("tangent", "prediction")
-        self.solver, unknowns = system.newton_solver.copy(), system.unknowns
+        self.solver, unknowns = system.table(newton_solver).copy(), system.unknowns
         own = self.solver
         n, declared = (own.size,), own.shapes("right", "prescribed_step", "prescribed_force", "linear")
         room = aligned({"p": n, "residual": n, "step": n, "rows": (unknowns.entries,), **declared})

@@ -2,11 +2,14 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 
 import numpy as np
 
 from beamfem.equations.rotating_vectors import runs_of
 from beamfem.equations.system import System
+from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
+from beamfem.kernels.motion_record import MotionRoutines, MotionSolver
 from beamfem.kernels.predictor import difference_rows, padded
 from beamfem.kernels.records import aligned
 from beamfem.kernels.stage_record import Stages
@@ -14,12 +17,25 @@ from beamfem.kernels.stage_record import Stages
 _KEPT = 40_000_000  # entries of the largest tangent whose workspace is kept for the next motion of the model
 
 
+def motion_solver(system: System) -> MotionSolver:
+    """Return the solver of a model without workspace."""
+    fields, prescribed = system.solver_fields, system.prescribed_dofs
+    routines = _routines(fields["half"], fields["unknown"] < SHORT)
+    return MotionSolver(routines=routines, prescribed=len(prescribed), prescribed_dofs=prescribed, **fields)
+
+
+@cache
+def _routines(half_width: int, short: bool) -> MotionRoutines:
+    own = bidirectional_lu(half_width, short)
+    return MotionRoutines.usual(factor=own.factor, solve_both=own.solve)
+
+
 class MotionWorkspace:
     """Workspace for one motion; residual (n,): of the state reached; stages: of collocation, by method."""
 
     def __init__(self, system: System) -> None:
         unknowns, pairs = system.unknowns, runs_of(system.rotating)
-        self.assembler, free, self.solver = system.assembler(), system.free_dofs, system.motion_solver.copy()
+        self.assembler, free, self.solver = system.assembler(), system.free_dofs, system.table(motion_solver).copy()
         own = self.solver
         own.node_stride = sum(work.record.nodes for work in self.assembler.works)
         first, size, unknown = own.first_free, own.size, own.unknown

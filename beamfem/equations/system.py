@@ -30,12 +30,9 @@ from beamfem.equations.model_coordinates import (
     stress_free,
 )
 from beamfem.equations.rotating_vectors import rotating_vectors
-from beamfem.equations.solver_table import motion_solver, newton_solver
 from beamfem.equations.strain_rates import StrainRates, strain_rates
 from beamfem.errors import InputError
 from beamfem.kernels.block import Block, Layout, Stations
-from beamfem.kernels.motion_record import MotionSolver
-from beamfem.kernels.newton_loop import NewtonSolver
 from beamfem.kernels.record import Parts
 from beamfem.model.imposed_strains import ImposedStrain
 from beamfem.model.load_base import factor
@@ -192,14 +189,23 @@ class System:
         return Assembler(self.equations, shared=shared)
 
     @shared_table
-    def newton_solver(self) -> NewtonSolver:
-        """The solver of Newton's iteration without workspace."""
-        return newton_solver(self.unknowns, self.rotated, self.scale, self.connectors.multipliers)
-
-    @shared_table
-    def motion_solver(self) -> MotionSolver:
-        """The solver of time steps without workspace."""
-        return motion_solver(self.unknowns, self.rotated, self.scale, self.prescribed_dofs)
+    def solver_fields(self) -> dict[str, Any]:
+        """The fields of `kernels.record.Solver` for a band that are no workspace."""
+        unknowns, (first, normals), half = self.unknowns, self.rotated, self.layouts[0].half_width
+        return {
+            "size": self.model.size,
+            "unknown": len(unknowns.dofs),
+            "free_dofs": np.ascontiguousarray(unknowns.dofs, dtype=np.int64),
+            "first_free": unknowns.first,
+            "half": half,
+            "width": 2 * half + 1,
+            "rollers": len(first),
+            "roller_first": first,
+            "roller_normal": normals,
+            "scale": self.scale,
+            "inverse_scale": 1.0 / self.scale,
+            "reach": unknowns.reach,
+        }
 
     @shared_table
     def residual_errors(self) -> np.ndarray:

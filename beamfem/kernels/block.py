@@ -12,7 +12,7 @@ SHEAR_RIGID = 3
 ROTATED_GRADIENTS = 4  # gradients, with r_y rotated by the reference angle of the node
 COORDINATES = (GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID)  # those of elements
 
-# Strain measures, see `physics.measures`.
+# Strain measures, see `physics.kinematics`.
 GREEN_LAGRANGE = 0
 STRUCTURAL = 1
 ELASTIC_LINE = 2

@@ -1,18 +1,13 @@
-"""Memory in compiled code: pointers, and the addresses of arrays."""
+"""Memory in compiled code: pointers."""
 
 from collections.abc import Callable
-from ctypes import addressof, c_char
 from typing import Any
 
-import numpy as np
 from llvmlite import ir
 
-from beamfem.kernels.compiler.bounds_checks import CHECKED, register
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import operation
 from beamfem.kernels.compiler.value_types import FLAG, REALS, WHOLE, WHOLES, Kind, Value
-
-_memory_of: Any = (c_char * 0).from_buffer  # an array may be empty
 
 
 @operation
@@ -51,13 +46,3 @@ def given(build: Build, pointer: Value) -> Value:
 
 reals = _pointer(REALS)
 wholes = _pointer(WHOLES)
-
-
-def address_of(values: np.ndarray) -> int:
-    """Return the address of the first number of an array."""
-    if CHECKED:
-        register(values)
-    try:
-        return addressof(_memory_of(values))
-    except TypeError:  # an array that is only read or not contiguous, which takes longer
-        return int(values.__array_interface__["data"][0])

@@ -5,7 +5,7 @@ are held by their addresses. Compiled code reads and sets `record.field` as Pyth
 """
 
 from collections.abc import Mapping, Sequence
-from ctypes import c_char
+from ctypes import addressof, c_char
 from inspect import get_annotations
 from math import prod
 from pkgutil import resolve_name
@@ -13,6 +13,7 @@ from typing import Annotated, Any, ClassVar, Self, TypeVar, get_args, get_origin
 
 import numpy as np
 
+from beamfem.kernels.compiler.bounds_checks import CHECKED, register
 from beamfem.kernels.compiler.value_types import (
     NUMBER,
     REALS,
@@ -28,7 +29,6 @@ from beamfem.kernels.compiler.value_types import (
     record_kind,
     side_by_side,
 )
-from beamfem.kernels.pointers import address_of
 
 _Item = TypeVar("_Item", bound="Record")
 Reals = Annotated[np.ndarray, REALS]
@@ -37,6 +37,18 @@ Wholes = Annotated[np.ndarray, WHOLES]
 Slots = Annotated[np.ndarray, SLOTS]  # integers of 32 bits
 Table = Annotated[Sequence[_Item], addresses_of]  # records anywhere, by their addresses
 Several = Annotated[np.ndarray, side_by_side]  # records side by side: Annotated[Several, Kind of record]
+
+_memory_of: Any = (c_char * 0).from_buffer  # an array may be empty
+
+
+def address_of(values: np.ndarray) -> int:
+    """Return the address of the first number of an array."""
+    if CHECKED:
+        register(values)
+    try:
+        return addressof(_memory_of(values))
+    except TypeError:  # an array that is only read or not contiguous, which takes longer
+        return int(values.__array_interface__["data"][0])
 
 
 def _type(kind: Kind) -> np.dtype[Any]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from beamfem.element.coordinates import labels
 from beamfem.kernels.block import ELASTIC_LINE, SHEAR_RIGID, STRETCH, Block, Stations
-from beamfem.physics.measures import MEASURES, evaluate
+from beamfem.physics.kinematics import MEASURES, evaluate
 from beamfem.physics.stations import GROUNDED
 
 _COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted

@@ -13,7 +13,7 @@ from beamfem.equations.system import System
 from beamfem.errors import CuspWarning, EnergyWarning, LargeStrainWarning, LockingWarning, warn
 from beamfem.kernels.block import ELASTIC_LINE, GREEN_LAGRANGE, STRUCTURAL
 from beamfem.kernels.neighbouring_nodes import LOCKED, STRAINED, exceeds
-from beamfem.kernels.pointers import address_of
+from beamfem.kernels.records import address_of
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import energy_points, energy_stiffness_at, reference_axis
 from beamfem.mesh.section_stress import layers

@@ -128,7 +128,7 @@ def test_with_other_loads_a_model_is_a_fresh_one(before, after, mesh, tables, so
     assert all(one is other for one, other in zip(old.beams, new.beams, strict=True))
     assert (new.meshes is old.meshes) == mesh
     one, other = system_of(old, True), system_of(new, True)
-    for name in ("blocks", "unknowns", "equations", "reference", "newton_solver", "stations"):
+    for name in ("blocks", "unknowns", "equations", "reference", "solver_fields", "stations"):
         assert (getattr(one, name) is getattr(other, name)) == tables, name
 
 
@@ -233,7 +233,7 @@ def test_no_shared_table_depends_on_the_size_of_loads():
 # addresses, work spaces, supports, and the unit loads of the first model, which `Actions.of` replaces
 _WITHOUT_NUMBERS = (
     *("prescribed", "_rotated"),
-    *("newton_solver", "motion_solver", "equations", "without_stiffness", "strain_rates"),
+    *("equations", "without_stiffness", "strain_rates"),
     *("spare", "spare_motions", "spare_assemblers", "_unloaded_actions"),
 )
 

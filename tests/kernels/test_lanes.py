@@ -7,8 +7,8 @@ import pytest
 
 from beamfem.kernels import nodes
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.pointers import address_of
 from beamfem.kernels.record import ROW
+from beamfem.kernels.records import address_of
 from beamfem.kernels.simd import WIDTH, as_rows, larger, largest, merged, power_of_two, zeros
 
 COUNTS = (1, 2, WIDTH - 1, WIDTH, WIDTH + 1, 3 * WIDTH, 3 * WIDTH + 5)

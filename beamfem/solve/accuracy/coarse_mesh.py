@@ -11,7 +11,7 @@ from beamfem.element.fields import Lagrange
 from beamfem.equations.system import System, system_of
 from beamfem.errors import CoarseMeshWarning, ConvergenceError, InputError, LockingWarning
 from beamfem.kernels.bent_elements import WEIGHTS, coarseness
-from beamfem.kernels.pointers import address_of
+from beamfem.kernels.records import address_of
 from beamfem.mesh.beam_grid import distances
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.model_meshes import required_nodes

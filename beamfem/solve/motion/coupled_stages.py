@@ -13,7 +13,7 @@ from beamfem.equations.motion_workspace import MotionWorkspace
 from beamfem.equations.system import System
 from beamfem.kernels import motion_stages, motion_steps, rollers
 from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
-from beamfem.kernels.pointers import address_of
+from beamfem.kernels.records import address_of
 from beamfem.kernels.time_loop import march
 from beamfem.linalg.bordered import NO_BORDER, BorderedFactors, BorderedTangent
 from beamfem.linalg.lapack import LinAlgError

@@ -12,7 +12,7 @@ from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.kernels.block import ELASTIC_LINE, GRADIENTS, ROTATED_GRADIENTS, ROTATION, STRUCTURAL, Block
 from beamfem.physics.connections import MASS
-from beamfem.physics.measures import MEASURES, evaluate
+from beamfem.physics.kinematics import MEASURES, evaluate
 from beamfem.results.solution import State
 from beamfem.solve.motion.equations_of_motion import EquationsOfMotion
 from beamfem.solve.motion.time_marching import initial_acceleration

@@ -10,7 +10,6 @@ from beamfem.equations.applied_loads import LoadsAt
 from beamfem.equations.callbacks import Deferred
 from beamfem.equations.element_group import ElementGroup
 from beamfem.kernels import element_passes, model_passes, node_passes, record
-from beamfem.kernels.connection_passes import add_parts
 from beamfem.kernels.records import address_of, aligned
 from beamfem.kernels.simd import WIDTH
 
@@ -69,13 +68,17 @@ class Work:
 
 
 class Equations:
-    """Groups of elements and parts at points in the form that compiled code expects, without workspace."""
+    """Groups of elements and parts at points in the form that compiled code expects, without workspace.
 
-    def __init__(self, groups: Sequence[ElementGroup], size: int, parts: Sequence[record.Parts] = ()) -> None:
+    called: what of them calls Python.
+    """
+
+    def __init__(
+        self, groups: Sequence[ElementGroup], size: int, parts: Sequence[record.Parts] = (), called: Sequence[Any] = ()
+    ) -> None:
         self.groups, self.size = tuple(groups), size
-        self.record = record.System(size=size, group_count=len(self.groups))
-        if parts:
-            self.record.fill(part_kinds=len(parts), parts=parts, add_parts=add_parts)
+        self.record = record.System(size=size, group_count=len(self.groups), part_kinds=len(parts), parts=parts)
+        self.called = *called, *(group.law for group in groups if group.law is not None and group.law.in_python)
 
 
 class Assembler:
@@ -89,7 +92,6 @@ class Assembler:
         self.equations, self.size, self.record = equations, equations.size, equations.record.copy()
         self._imposes = any(group.imposed is not None for group in equations.groups)
         self._damped = any(group.record.damped or group.record.mass_damping for group in equations.groups)
-        self._laws = tuple(group.law for group in equations.groups if group.law is not None and group.law.in_python)
         self.works = tuple(Work(group, group.record.copy()) for group in equations.groups)
         self.scratch = self.numbers = 0
         for group, own in ((work.group, work.record) for work in self.works):
@@ -130,8 +132,9 @@ class Assembler:
         for work, stress in zip(self.works, stresses, strict=True):
             work.record.stress = np.ascontiguousarray(stress, dtype=float)
 
-    def take(self, loads: LoadsAt) -> None:
-        """Set the loads, unless they are already set."""
+    def take(self, loads: LoadsAt, time: float) -> None:
+        """Set the time, or load factor, and the loads, unless they are already set."""
+        self.record.time = time
         if loads is not self._taken:
             self.load(loads.body, loads.points, loads.imposing)
             self._taken = loads
@@ -186,7 +189,7 @@ class Assembler:
     def place(self, p: np.ndarray, v: np.ndarray, a: np.ndarray, residual: np.ndarray, matrix: np.ndarray) -> None:
         """Set the arrays (n,) of the state and of the results."""
         own = self.record
-        own.p, own.v, own.a, own.residual, own.matrix, own.entries = p, v, a, residual, matrix, matrix.size
+        own.p, own.v, own.a, own.residual, own.entries, own.matrix = p, v, a, residual, matrix.size, matrix
 
     def balance(
         self, p: np.ndarray, v: np.ndarray, a: np.ndarray, residual: np.ndarray, matrix: np.ndarray, predicted: bool
@@ -210,12 +213,12 @@ class Assembler:
 
     @property
     def calls_python(self) -> bool:
-        """Whether compiled code calls section laws in Python."""
-        return bool(self._laws)
+        """Whether compiled code calls Python."""
+        return bool(self.equations.called)
 
     def call(self, driver: Callable[..., Any], *arguments: Any) -> Any:
-        """Call a compiled driver and return its result. Raises the error of a section law in it, if there is one."""
-        if not self._laws:
+        """Call a compiled driver and return its result. Raises the first error in what it has called in Python."""
+        if not self.calls_python:
             return driver(*arguments)
         with Deferred() as deferred:
             result = driver(*arguments)
@@ -226,8 +229,8 @@ class Assembler:
         return result
 
     def take_error(self) -> BaseException | None:
-        """Return the first error of a section law in compiled code, if any, and forget all of them."""
-        errors = [law.take_error() for law in self._laws]
+        """Return the first error in what compiled code has called in Python, if any, and forget all of them."""
+        errors = [each.take_error() for each in self.equations.called]
         return next((error for error in errors if error is not None), None)
 
     def elastic(self, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

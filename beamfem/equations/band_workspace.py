@@ -6,7 +6,6 @@ from typing import Any
 
 from beamfem.equations.applied_loads import LoadsAt
 from beamfem.equations.assembler import Scratch, lend_scratch, take_back_scratch
-from beamfem.equations.connector_equilibrium import ConnectedBalance
 from beamfem.equations.equations import STATICS
 from beamfem.equations.system import System
 from beamfem.kernels.band import band
@@ -52,22 +51,14 @@ class BandWorkspace:
                 ),
             )
             own.border.rows, own.border.entries = own.rows, own.rows[unknowns.entries - unknowns.border_size**2 :]
-        self._connected = None
-        if system.called.items:
-            self._connected = ConnectedBalance(system, self.assembler, self.p, self.residual, own.rows)
-            own.routines = own.routines.copy()
-            own.routines.balance = self._connected.address
 
     def begin(self, loads: LoadsAt, load_factor: float) -> None:
         """Set the loads of an iteration."""
-        self.assembler.take(loads)
-        if self._connected is not None:
-            self._connected.load_factor = load_factor
+        self.assembler.take(loads, load_factor)
 
     def call(self, driver: Callable[..., Any]) -> Any:
-        """Call a compiled driver and return its result. Raises errors of section laws and connectors in it."""
-        caller = self.assembler if self._connected is None else self._connected
-        return caller.call(driver, self.assembler.record.address, self.solver.address)
+        """Call a compiled driver and return its result. Raises the first error in what it has called in Python."""
+        return self.assembler.call(driver, self.assembler.record.address, self.solver.address)
 
     def return_scratch(self, system: System) -> None:
         """Return the scratch memory, and keep the workspace for the next solve if it is small."""

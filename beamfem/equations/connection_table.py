@@ -9,6 +9,7 @@ import numpy as np
 from beamfem.equations.connectors import Connector
 from beamfem.equations.equation_numbering import Unknowns
 from beamfem.equations.model_coordinates import COORDINATES
+from beamfem.kernels.connection_passes import add_parts
 from beamfem.kernels.record import Parts
 from beamfem.model.model import Model
 from beamfem.parts.at_points import ANALYTIC
@@ -42,6 +43,7 @@ class Alike(NamedTuple):
             history_size=self.history.shape[1],
             force=force,
             tangent=tangent,
+            add=add_parts,
             **{name: np.ascontiguousarray(getattr(self, name)) for name in ("numbers", "data", "history", "places")},
         )
 

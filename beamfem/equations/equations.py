@@ -1,7 +1,5 @@
 """Residual and tangent of a system in a state: the interface between solvers and kernels."""
 
-from collections.abc import Sequence
-
 import numpy as np
 from scipy.sparse import coo_array, csc_array, csr_array, hstack
 
@@ -117,11 +115,10 @@ def _residual(
 ) -> np.ndarray:
     """Return the residual (n,) of a motion at rest, see `residual`."""
     result, assembler, loads = np.empty(len(p)), _acquired(system), loads or system.loads_at(time)
-    assembler.take(loads)
+    assembler.take(loads, time)
     assembler.weigh((1.0, 1.0, 1.0), dt)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, _EMPTY, False)
     _return_assembler(system, assembler)
-    system.called.add_forces(result, (p, v, a), time, loads.gravity)
     return result
 
 
@@ -204,14 +201,13 @@ def _linearise(
     own = assembler.stresses
     if stresses is not None:
         assembler.take_stresses(stresses)
-    assembler.take(system.loads_at(time))
+    assembler.take(system.loads_at(time), time)
     assembler.weigh(coefficients, dt, moving)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, matrix, stresses is not None)
     if equations is None:
         assembler.take_stresses(own)
         _return_assembler(system, assembler)
-    system.called.add_forces(result, (p, v, a), time)
-    return result, tangent_of(system, matrix, system.called.tangents((p, v, a), time, coefficients))
+    return result, tangent_of(system, matrix)
 
 
 def _linearise_turning(
@@ -288,12 +284,12 @@ def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float
     if Proven.LOSES_DIGITS in system.proven or system.model.frame is not None or one_sided:
         return linearise_at_rest(system, p, time, predicted_stresses(system, p, step, time))[1]
     matrix, assembler = _entries(system), _acquired(system)
-    assembler.take(system.loads_at(time))
+    assembler.take(system.loads_at(time), time)
     assembler.weigh(STATICS)
     assembler.predict(p, step)
     assembler.balance(p, zeros, zeros, np.empty(len(p)), matrix, True)
     _return_assembler(system, assembler)
-    return tangent_of(system, matrix, system.called.tangents((p, zeros, zeros), time, STATICS))
+    return tangent_of(system, matrix)
 
 
 def _entries(system: System) -> np.ndarray:
@@ -301,21 +297,10 @@ def _entries(system: System) -> np.ndarray:
     return np.empty(system.unknowns.entries)
 
 
-def add_coupled(system: System, matrix: np.ndarray, coupled: Sequence[np.ndarray]) -> None:
-    """Add the tangents (k, k) of connectors that Python evaluates to the entries of a matrix."""
-    for positions, tangent in zip(system.called_places, coupled, strict=True):
-        mask = positions >= 0
-        np.add.at(matrix.reshape(-1), positions[mask], tangent[mask])
-
-
-def tangent_of(system: System, matrix: np.ndarray, coupled: Sequence[np.ndarray]) -> Tangent:
-    """Return the tangent with the entries of a matrix, flat as compiled code fills them.
-
-    coupled: tangent (k, k) of each connector that Python evaluates, which is added to the matrix in place.
-    """
+def tangent_of(system: System, matrix: np.ndarray) -> Tangent:
+    """Return the tangent with the entries of a matrix, flat as compiled code fills them."""
     unknowns, multipliers = system.unknowns, len(system.connectors.multipliers)
     pattern = unknowns.pattern
-    add_coupled(system, matrix, coupled)
     if pattern is None:
         width, size = 2 * system.layouts[0].half_width + 1, unknowns.border_size
         band = BandTangent(matrix[: unknowns.banded * width].reshape(-1, width), unknowns.reach[0])

@@ -66,7 +66,7 @@ class MotionWorkspace:
         """Let go of the loads and the rows of a motion."""
         self.assembler.unload()
         self.assembler.record.forget("p", "v", "a")
-        self.solver.forget("state", "bodies", "prescribed_values")
+        self.solver.forget("state", "bodies", "prescribed_values", "times")
         self.solver.forget("saved", "saved_rotations", "rotated_by", "rotation_table")
         self.stages = {rule: own for rule, own in self.stages.items() if own.matrices.size <= _KEPT}
 

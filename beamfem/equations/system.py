@@ -29,6 +29,7 @@ from beamfem.equations.model_coordinates import (
     prescribed_coordinates,
     stress_free,
 )
+from beamfem.equations.parts_in_python import PartsInPython
 from beamfem.equations.rotating_vectors import rotating_vectors
 from beamfem.equations.strain_rates import StrainRates, strain_rates
 from beamfem.errors import InputError
@@ -153,36 +154,22 @@ class System:
     def equations_of(self, blocks: Sequence[Block]) -> Equations:
         """Return the equations with other blocks in place of those of the system."""
         groups = [make_group(*parts) for parts in zip(blocks, self.layouts, self.stations, strict=True)]
-        return Equations(groups, self.model.size, self._parts)
+        return Equations(groups, self.model.size, self._parts, self.called)
 
     @shared_table
     def _parts(self) -> list[Parts]:
-        """The parts at points that compiled code evaluates."""
-        found = [self.springs] if len(self.springs.numbers) else []
-        if any(self._inside):
-            places = zip(self.connectors.items, self.unknowns.coupled, self._inside, strict=True)
-            found += alike((item, own) for item, own, inside in places if inside)
-        return [each.record for each in found]
+        """The parts at points, by kind."""
+        placed = zip(self.connectors.items, self.unknowns.coupled, strict=True)
+        alike_ones = alike(pair for pair in placed if pair[0].compiled is not None)
+        found = [self.springs, *alike_ones] if len(self.springs.numbers) else alike_ones
+        return [each.record for each in (*found, *self.called)]
 
     @shared_table
-    def _inside(self) -> tuple[bool, ...]:
-        """Which connectors compiled code evaluates: the parts of the package."""
-        return tuple(item.compiled is not None for item in self.connectors.items)
-
-    @cached_property
-    def called(self) -> Connectors:
-        """The connectors that Python evaluates."""
-        items = self._called(self.connectors.items)
-        return Connectors(self.model, self.static, items)
-
-    @shared_table
-    def called_places(self) -> tuple[np.ndarray, ...]:
-        """Positions (k, k) of the entries of the tangents of `called` in the matrix, -1 for those without one."""
-        return self._called(self.unknowns.coupled)
-
-    def _called(self, values: Sequence[Any]) -> tuple[Any, ...]:
-        """Return those of the values, one for each connector, that belong to connectors evaluated by Python."""
-        return tuple(value for value, inside in zip(values, self._inside, strict=True) if not inside) if values else ()
+    def called(self) -> tuple[PartsInPython, ...]:
+        """Those that Python evaluates."""
+        placed = zip(self.connectors.items, self.unknowns.coupled, strict=True)
+        found = [pair for pair in placed if pair[0].compiled is None]
+        return (PartsInPython(found, self.model.size),) if found else ()
 
     def assembler(self, shared: bool = False) -> Assembler:
         """Return the equations with a new workspace; shared: see `Assembler`."""

@@ -3,7 +3,7 @@
 from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.nodes import cosine_sine
 from beamfem.kernels.pointers import at, room
-from beamfem.kernels.record import System
+from beamfem.kernels.record import Parts, System
 
 MOST = 12  # coordinates of a part, or multipliers and prescribed values
 MOST_DATA = 24  # numbers and history variables of a part with history
@@ -23,42 +23,38 @@ def _clear(count, to):
 
 
 @routine()
-def add_parts(system: System) -> None:
-    """Add the forces of all parts at points to the residual and, if needed, their tangents to the matrix."""
+def add_parts(parts: Parts, system: System) -> None:
+    """Add the forces of the parts of a kind to the residual and, if needed, their tangents to the matrix."""
     p, residual, matrix = system.p, system.residual, system.matrix
     gravity = system.body  # of the first beam: gravity acts on all mass
     recalled = room(MOST_DATA)
     q, v, a, own, turned, out = room(MOST), room(MOST), room(MOST), room(MOST), room(MOST), room(_ENTRIES)
-    for kind in range(system.part_kinds):
-        parts = system.parts[kind]
-        size, unknowns = parts.coordinates, parts.unknowns
-        for part in range(parts.count):
-            numbers, data = at(parts.numbers, part * unknowns), at(parts.data, part * parts.data_size)
-            if parts.history_size > 0:
-                for i in range(parts.data_size):
-                    recalled[i] = data[i]
-                _gather(
-                    parts.history_size, at(parts.history, part * parts.history_size), p, at(recalled, parts.data_size)
-                )
-                data = recalled
-            _gather(size, numbers, p, q)
-            _gather(parts.multipliers, at(numbers, size), p, own)
-            _clear(size, v)
-            _clear(size, a)
-            if system.rated != 0:
-                _gather(size, numbers, system.v, v)
-            if system.moving != 0:
-                _gather(size, numbers, system.a, a)
-            if parts.per_point == 3:
-                for point in range(size // 3):
-                    turned[2 * point], turned[2 * point + 1] = cosine_sine(q[3 * point + 2])
-            parts.force(q, v, a, own, turned, data, gravity, out)
-            for i in range(unknowns):
-                residual[numbers[i]] += out[i]
-            if system.tangent != 0:
-                ck, cv, ca = system.weight_p, system.weight_v, system.weight_a
-                parts.tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out)
-                places = at(parts.places, part * unknowns * unknowns)
-                for i in range(unknowns * unknowns):
-                    if places[i] >= 0:
-                        matrix[places[i]] += out[i]
+    size, unknowns = parts.coordinates, parts.unknowns
+    for part in range(parts.count):
+        numbers, data = at(parts.numbers, part * unknowns), at(parts.data, part * parts.data_size)
+        if parts.history_size > 0:
+            for i in range(parts.data_size):
+                recalled[i] = data[i]
+            _gather(parts.history_size, at(parts.history, part * parts.history_size), p, at(recalled, parts.data_size))
+            data = recalled
+        _gather(size, numbers, p, q)
+        _gather(parts.multipliers, at(numbers, size), p, own)
+        _clear(size, v)
+        _clear(size, a)
+        if system.rated != 0:
+            _gather(size, numbers, system.v, v)
+        if system.moving != 0:
+            _gather(size, numbers, system.a, a)
+        if parts.per_point == 3:
+            for point in range(size // 3):
+                turned[2 * point], turned[2 * point + 1] = cosine_sine(q[3 * point + 2])
+        parts.force(q, v, a, own, turned, data, gravity, out)
+        for i in range(unknowns):
+            residual[numbers[i]] += out[i]
+        if system.tangent != 0:
+            ck, cv, ca = system.weight_p, system.weight_v, system.weight_a
+            parts.tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out)
+            places = at(parts.places, part * unknowns * unknowns)
+            for i in range(unknowns * unknowns):
+                if places[i] >= 0:
+                    matrix[places[i]] += out[i]

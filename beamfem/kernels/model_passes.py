@@ -31,9 +31,10 @@ def add_group(group, system):
 
 @inlined
 def add_parts_at_points(system):
-    """Add the forces of masses, springs and the like, see `connection_passes`, and their tangents."""
-    if system.part_kinds > 0:
-        system.add_parts(system)
+    """Add the forces of masses, springs and the like, and their tangents."""
+    for kind in range(system.part_kinds):
+        parts = system.parts[kind]
+        parts.add(parts, system)
 
 
 @routine()

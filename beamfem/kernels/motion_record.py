@@ -112,6 +112,7 @@ class MotionSolver(Solver):
     prescribed_values: Annotated[Reals, "steps", 3, "prescribed"]
     prescribed_now: Reals  # (3, prescribed): in this step
     steps: int
+    times: Reals  # (rows,) [s]
     now: int  # number of the step that is taken, of those of this call
     first_step: int
     every: int

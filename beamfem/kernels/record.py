@@ -198,6 +198,7 @@ class Parts(Record):
     history_size: int
     history: Annotated[Wholes, "count", "history_size"]  # coordinates that are its history variables
     places: Annotated[Wholes, "count", "unknowns", "unknowns"]  # of the tangent's entries in the matrix, -1 for none
+    add = calls("connection_passes:add_parts")  # or a function in Python
     force = calls(POINT_FORCE)
     tangent = calls(POINT_TANGENT)
 
@@ -214,10 +215,11 @@ class System(Record):
     body: Reals  # (beams, 4)
     residual: Annotated[Reals, "size"]
     entries: int
-    matrix: Reals  # (entries,)
+    matrix: Annotated[Reals, "entries"]
     weight_p: float  # ck, cv, ca: weights of p, p' and p'' in the tangent
     weight_v: float
     weight_a: float
+    time: float  # [s], in statics the load factor
     since_committed: float  # [s] from the committed history
     tangent: int  # whether it is needed
     predicted: int  # whether the geometric part of the tangent uses the resultants in `stress`
@@ -226,7 +228,6 @@ class System(Record):
     loaded: int
     part_kinds: int
     parts: Table[Parts]
-    add_parts = calls("connection_passes:add_parts")
 
 
 class Border(Record):

@@ -34,7 +34,7 @@ def _is_inside_out(system, solver):
 @inlined
 def load_row(system, solver, row):
     """Take the loads, imposed strains and values of prescribed coordinates of a row, which is a step or a stage."""
-    solver.now = row
+    solver.now, system.time = row, solver.times[row]
     solver.prescribed_now = at(solver.prescribed_values, 3 * solver.prescribed * row)
     row = row if solver.varies != 0 else 0
     system.body = at(solver.bodies, row * solver.body_size)

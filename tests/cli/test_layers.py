@@ -41,7 +41,6 @@ LAYERS = (
     "results",
     "precision/roundoff",
     "equations/band_workspace",
-    "equations/connector_equilibrium",
     "equations/data_derivatives",
     "equations/equations",
     "precision/mixed_tangent",

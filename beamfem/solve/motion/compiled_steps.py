@@ -54,6 +54,7 @@ class StepsInCalls:
         self._space.solver.fill(
             state=state,
             steps=len(prescribed),
+            times=np.ascontiguousarray(times),
             prescribed_values=prescribed,
             varies=len(loads.body) > 1,
             body_size=loads.body[0].size,
@@ -112,9 +113,8 @@ class CompiledSteps(StepsInCalls):
     def __init__(self, system: System, space: MotionWorkspace, rule: np.ndarray, statistics: MotionStatistics) -> None:
         h, alpha_m, alpha_f, gamma, beta = map(float, rule)
         super().__init__(system, space, statistics, h)
-        sparse, connected = system.unknowns.pattern is not None, bool(system.called.items)
-        bordered = system.unknowns.border_size > 0
-        self._limits = SPARSE if sparse else BORDERED if connected or bordered else BAND
+        sparse, bordered = system.unknowns.pattern is not None, system.unknowns.border_size > 0
+        self._limits = SPARSE if sparse else BORDERED if bordered or system.called else BAND
         space.solver.fill(
             rule=Rule(time_step=h, alpha_m=alpha_m, alpha_f=alpha_f, gamma=gamma, beta=beta),
             limits=self._limits,
@@ -123,7 +123,7 @@ class CompiledSteps(StepsInCalls):
         space.solver.differences[:] = 0.0
         space.assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))), self._step)
         space.assembler.require("tangent", "prediction")
-        self._coupled = CoupledStages(system, space) if sparse or connected else None
+        self._coupled = CoupledStages(system, space) if sparse else None
         self._untried = bordered and self._coupled is None
 
     @property
@@ -151,7 +151,7 @@ class CompiledSteps(StepsInCalls):
             if self._coupled is None:
                 completed = int(march(assembler.record, solver))
             else:
-                completed = self._coupled.march(state, times, self._deferred)
+                completed = self._coupled.march(state, self._deferred)
         errors = () if self._coupled is None else (self._coupled.take_error(),)
         self._error = next((error for error in (*errors, assembler.take_error()) if error is not None), None)
         return completed if self._deferred.lost is None else 0

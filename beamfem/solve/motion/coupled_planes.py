@@ -1,4 +1,4 @@
-"""Routines in Python for steps of collocation methods, of models with connectors or a tangent that is no plain band."""
+"""Routines in Python for steps of collocation methods, of models with a tangent that is no plain band."""
 
 from collections.abc import Callable
 from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p, cast
@@ -25,11 +25,11 @@ _Factor = CFUNCTYPE(c_double, *(c_int64,) * 2)
 def is_coupled(system: System) -> bool:
     """Return whether the equations need `CoupledPlanes`."""
     unknowns = system.unknowns
-    return bool(system.called.items or unknowns.pattern is not None or unknowns.border_size or len(system.rotated[0]))
+    return unknowns.pattern is not None or unknowns.border_size > 0 or len(system.rotated[0]) > 0
 
 
 class CoupledPlanes(PythonRoutines):
-    """The routines of such steps: connectors add their forces, and SuperLU factorises the matrices of the planes."""
+    """The routines of such steps: SuperLU factorises the matrices of the planes."""
 
     def __init__(self, system: System, space: MotionWorkspace, stages: Stages) -> None:
         super().__init__(stages.right)
@@ -59,18 +59,9 @@ class CoupledPlanes(PythonRoutines):
     def _assemble(self, system: int, solver: int) -> None:
         """See `motion_stages.assemble`."""
         motion_stages.assemble.compiled(system, solver)
-        row, n, own = self._solver.now, self._solver.size, self._stages
-        stage, time = row % own.samples, float(self._times[row])
-        state = (own.p[stage, :n], own.v[stage, :n], own.a[stage, :n])
-        connectors, record = self._system.called, self._equations
-        connectors.add_forces(record.residual, state, time)
-        if record.tangent:
-            weights = record.weight_p, record.weight_v, record.weight_a
-            self._planes.append(self._plane(connectors.tangents(state, time, weights)))
-
-    def _plane(self, coupled: list[np.ndarray]) -> csr_array:
-        matrix = self._stages.matrices[len(self._planes)]
-        return tangent_of(self._system, matrix, coupled).sparse(self._system.rotated)
+        if self._equations.tangent:
+            matrix = self._stages.matrices[len(self._planes)]
+            self._planes.append(tangent_of(self._system, matrix).sparse(self._system.rotated))
 
     def _factor(self, solver: int, stages: int) -> float:
         """Factorise the matrices of the planes; return 1, or 0 if one is singular."""

@@ -1,4 +1,4 @@
-"""Stages of compiled time steps for models with connectors or a sparse tangent: routines that call Python."""
+"""Stages of compiled time steps for models with a sparse tangent, or a weak band: routines that call Python."""
 
 from collections.abc import Callable
 from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p, cast
@@ -11,7 +11,7 @@ from beamfem.equations.callbacks import Deferred, KeptErrors
 from beamfem.equations.equations import linearise, tangent_of
 from beamfem.equations.motion_workspace import MotionWorkspace
 from beamfem.equations.system import System
-from beamfem.kernels import motion_stages, motion_steps, rollers
+from beamfem.kernels import motion_steps, rollers
 from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 from beamfem.kernels.records import address_of
 from beamfem.kernels.time_loop import march
@@ -66,9 +66,9 @@ class SparseFactorisation:
     def __init__(self, system: System, matrix: np.ndarray) -> None:
         self._system, self._matrix = system, matrix
 
-    def __call__(self, coupled: list[np.ndarray], space: int) -> CoupledFactors:
-        """Return the factors; coupled: tangent (k, k) of each connector. Raises LinAlgError."""
-        tangent, multipliers = tangent_of(self._system, self._matrix, coupled), len(self._system.connectors.multipliers)
+    def __call__(self, space: int) -> CoupledFactors:
+        """Return the factors. Raises LinAlgError."""
+        tangent, multipliers = tangent_of(self._system, self._matrix), len(self._system.connectors.multipliers)
         if len(self._system.rotated[0]):
             constrained = SparseTangent(csc_array(tangent.sparse(self._system.rotated)))
             tangent = SaddleTangent(constrained, multipliers) if multipliers else constrained
@@ -88,13 +88,10 @@ class BandFactorisation:
         self._rows, self._reach = address_of(matrix), address_of(system.unknowns.reach)
         self._routines = bidirectional_lu(self._half, self._size < SHORT)
 
-    def __call__(self, coupled: list[np.ndarray], space: int) -> CoupledFactors:
-        """Return the factors; coupled: tangent (k, k) of each connector; space: address of numbers (n,).
-
-        Raises LinAlgError.
-        """
+    def __call__(self, space: int) -> CoupledFactors:
+        """Return the factors; space: address of numbers (n,). Raises LinAlgError."""
         size = self._size
-        tangent = tangent_of(self._system, self._matrix, coupled)
+        tangent = tangent_of(self._system, self._matrix)
         border = tangent.border if isinstance(tangent, BorderedTangent) else NO_BORDER
         self._kept[:] = self._matrix
         ratio = self._routines.factor.compiled(size, self._half, self._reach, self._rows, space)
@@ -107,7 +104,6 @@ class BandFactorisation:
         self._routines.solve.compiled(self._size, self._half, self._rows, address_of(x))
 
 
-_Assemble = CFUNCTYPE(None, *(c_int64,) * 2)
 _Factor = CFUNCTYPE(c_double, *(c_int64,) * 2, *(c_void_p,) * 3)
 _Solve = CFUNCTYPE(None, *(c_int64,) * 2, *(c_void_p,) * 2)
 _Correct = CFUNCTYPE(c_double, *(c_int64,) * 2)
@@ -146,19 +142,15 @@ class PythonRoutines:
 
 
 class CoupledStages(PythonRoutines):
-    """The routines of a motion with connectors or a sparse tangent."""
+    """The routines of a motion with a sparse tangent, or a band that is weak without its border."""
 
     def __init__(self, system: System, space: MotionWorkspace) -> None:
         super().__init__(space.solver.right)
         self.system = system
-        self._state, self._times = np.empty((4, 0)), np.empty(0)
-        self._equations, self._solver = space.assembler.record, space.solver
-        self._weights = space.assembler.weights
-        self._coupled: list[np.ndarray] | None = []
+        self._state, self._equations, self._solver = np.empty((4, 0)), space.assembler.record, space.solver
         factorisation = BandFactorisation if system.unknowns.pattern is None else SparseFactorisation
         self._factorised = factorisation(system, space.solver.rows)
         self._functions = {
-            "assemble": _Assemble(self._guarded(self._assemble)),
             "factor": _Factor(self._guarded(self._factor)),
             "solve_both": _Solve(self._guarded(self._solve)),
             "correct": _Correct(self._guarded(self._correct)),
@@ -167,32 +159,20 @@ class CoupledStages(PythonRoutines):
         self._routines.constrain_normals = rollers.constrain_nothing
         self._routines.fill(**{name: cast(each, c_void_p).value for name, each in self._functions.items()})
 
-    def march(self, state: np.ndarray, times: np.ndarray, deferred: Deferred) -> int:
-        """March p, p', p'' and the auxiliary acceleration (4, n) to times (steps,) [s]; see `time_loop.march`."""
-        self._state, self._times, self._deferred = state, times, deferred
+    def march(self, state: np.ndarray, deferred: Deferred) -> int:
+        """March p, p', p'' and the auxiliary acceleration (4, n); see `time_loop.march`."""
+        self._state, self._deferred = state, deferred
         usual, self._solver.routines = self._solver.routines, self._routines
         try:
             return int(march(self._equations, self._solver))
         finally:
             self._solver.routines = usual
 
-    def _assemble(self, system: int, solver: int) -> None:
-        """See `motion_stages.assemble`."""
-        motion_stages.assemble.compiled(system, solver)
-        connectors, (p, v, a, _) = self.system.called, self._state
-        if connectors.items:
-            time = float(self._times[self._solver.now])
-            connectors.add_forces(self._equations.residual, (p, v, a), time)
-            if self._equations.tangent:
-                self._coupled = None  # if the tangents cannot be formed
-                self._coupled = connectors.tangents((p, v, a), time, self._weights)
-
     def _factor(self, unknown: int, half: int, reach: int, rows: int, space: int) -> float:
         """Factorise the tangent; return 1, or 0 if it is singular."""
         try:
             self._factors = None  # frees memory before the new factorisation
-            if self._coupled is not None:
-                self._factors = self._factorised(self._coupled, space)
+            self._factors = self._factorised(space)
         except LinAlgError:
             return 0.0
         return 1.0

@@ -135,7 +135,7 @@ def cutter_of(
     # see initial_acceleration; laws with history know rates by differences only
     relaxed = is_scheme(integrator) and (bool(system.history.laws) or (damped and not _keeps_rates(integrator)))
     # a user-defined integrator may raise any exception; the states reached before are kept
-    calls_python = bool(system.called.items) or any(block.law is not None for block in system.blocks)
+    calls_python = bool(system.called) or any(block.law is not None for block in system.blocks)
     first_chunk = _FIRST_CHUNK // 50 if calls_python else _FIRST_CHUNK
     size, end = 1, float(parts[-1].times[-1])
     judge, largest = None, 1

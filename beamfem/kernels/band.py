@@ -31,11 +31,6 @@ class Band(NamedTuple):
     solve_upper: Routine
 
 
-def band(half_width: int) -> Band:
-    """Return the compiled functions for a half width, specialised for those in `KNOWN`."""
-    return _band(half_width if half_width in KNOWN else 0)
-
-
 @operation
 def push(build: Build, window: Value, count: Value, value: Value) -> None:
     """Move the numbers, or pairs, of a window one place down, and put a value at its end."""
@@ -47,17 +42,19 @@ def push(build: Build, window: Value, count: Value, value: Value) -> None:
 
 
 @cache
-def _band(known: int) -> Band:
-    """Return functions that know a half width; 0: any."""
-    case = f"half_width_{known or 'any'}"
-    _eliminate = inlined(elimination(known, case, backwards=False))
+def band(half_width: int) -> Band:
+    """Return the compiled functions for a half width, specialised for those in `KNOWN`; 0: any."""
+    if half_width and half_width not in KNOWN:
+        return band(0)
+    case = f"half_width_{half_width or 'any'}"
+    _eliminate = inlined(elimination(half_width, case, backwards=False))
 
     @routine("iiiisrrr", "d", case, fastmath=FAST)
     def factor(n, count, half, eliminates, reach, ab, right, original):
         """Take the first `count` pivots, see `elimination`."""
         return _eliminate(n, count, half, eliminates, reach, ab, right, original)
 
-    return Band(factor, *(_solves(known, case) if known else (_solve_lower, _solve_upper)))
+    return Band(factor, *(_solves(half_width, case) if half_width else (_solve_lower, _solve_upper)))
 
 
 def _solves(known: int, case: str) -> tuple[Routine, Routine]:

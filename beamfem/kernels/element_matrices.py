@@ -15,15 +15,9 @@ def form_matrices(group: Group, system: System, count: int, x: Reals, nodal: Rea
     C = ca B + ck de''/dp + cv de''/dp'; ck, cv, ca: weights of the derivatives with respect to p, p' and p''; x:
     workspace; nodal: rows of the first nodes, those of the next ones `stride` numbers on.
     """
-    call = group.routines
-    nodes, vectors, dependent, parameters, gathered = (
-        group.nodes_per_element,
-        group.vectors,
-        group.dependent,
-        group.parameters,
-        group.curvature,
-    )
-    points, bends, coordinates = group.points, group.bends, group.coordinates
+    call, director = group.routines, group.director
+    nodes, vectors, points, bends = group.nodes_per_element, group.vectors, group.points, group.bends
+    dependent, parameters, gathered, coordinates = group.dependent, group.parameters, group.curvature, group.coordinates
     size, slots_, rows = 2 * vectors, nodes * vectors, nodes * coordinates
     _, _, _, _, t, q, h, z, pair, k, _ = rows_of(nodes, vectors, points, gathered, group.table_rows)
     if points == 1:
@@ -32,51 +26,21 @@ def form_matrices(group: Group, system: System, count: int, x: Reals, nodal: Rea
     ck, linear = system.weight_p, size - dependent
     if group.damped != 0 and system.rated != 0:  # `linear_law.add_viscous` has applied ck and cv at the points
         ck = 1.0 if ck != 0.0 or system.weight_v != 0.0 else 0.0
-    transform, director = at(nodal, group.transform * ROW), group.director
+    transform = at(nodal, group.transform * ROW)
     if ck != 0.0:
         for m in range(nodes):
             for point in range(points):
                 slope = at(t, (group.slope + point * slots_ + m * vectors) * ROW)
                 second = at(t, (group.second + (point * slots_ + m * vectors) * bends) * ROW)
+                factor, own = at(director, point * nodes + m), at(h, 21 * point * ROW)
                 to = at(z, 6 * point * size * ROW)
-                call.columns(
-                    vectors,
-                    bends,
-                    count,
-                    ck,
-                    slope,
-                    second,
-                    at(director, point * nodes + m),
-                    at(h, 21 * point * ROW),
-                    to,
-                )
+                call.columns(vectors, bends, count, ck, slope, second, factor, own, to)
                 if dependent != 0:
                     b_node = at(transform, m * stride)
                     call.combine(6, dependent, parameters, count, b_node, at(to, 6 * linear * ROW), x)
             for n in range(m + 1):
-                slope = at(t, (group.slope + n * vectors) * ROW)
-                second = at(t, (group.second + n * vectors * bends) * ROW)
                 b_node, to = at(transform, n * stride), at(k, (rows * m + n) * coordinates * ROW)
-                done = call.products(
-                    vectors,
-                    bends,
-                    count,
-                    points,
-                    coordinates,
-                    slots_,
-                    6 * size,
-                    dependent,
-                    parameters,
-                    rows,
-                    slope,
-                    second,
-                    at(director, n),
-                    b_node,
-                    z,
-                    pair,
-                    to,
-                )
-                if done == 0:
+                if call.products(vectors, bends, count, group, n, t, b_node, z, pair, to) == 0:
                     call.store(size, dependent, parameters, coordinates, count, rows, b_node, pair, to)
         call.mirror(rows, count, k)
         if group.damped != 0 and system.moving != 0 and system.weight_p != 0.0:
@@ -90,19 +54,8 @@ def form_matrices(group: Group, system: System, count: int, x: Reals, nodal: Rea
             for n in range(nodes):
                 to = at(convective, n * gathered * ROW)
                 call.add_scaled(dependent * parameters, count, ca, at(transform, n * gathered * ROW), to)
-        call.add_mass(
-            nodes,
-            vectors,
-            dependent,
-            parameters,
-            count,
-            gathered,
-            ca,
-            at(t, group.mass * ROW),
-            transform,
-            convective,
-            k,
-        )
+        mass = at(t, group.mass * ROW)
+        call.add_mass(nodes, vectors, dependent, parameters, count, gathered, ca, mass, transform, convective, k)
 
 
 @routine()
@@ -122,19 +75,15 @@ def add_matrices(group: Group, system: System, first: int, count: int, k: Reals)
 def reduce_and_add(group: Group, system: System, first: int, count: int, x: Reals) -> None:
     """Reduce the matrices (columns, rows, ROW) of a batch of stations in its workspace x; add them to the model's."""
     call = group.routines
-    nodes, vectors, dependent, parameters, gathered = (
-        group.nodes_per_element,
-        group.vectors,
-        group.dependent,
-        group.parameters,
-        group.curvature,
-    )
-    size, coordinates, half = 2 * vectors, group.coordinates, group.half_width
+    nodes, vectors, coordinates, half = group.nodes_per_element, group.vectors, group.coordinates, group.half_width
+    dependent, parameters, gathered, size = group.dependent, group.parameters, group.curvature, 2 * vectors
     matrix = system.matrix
     _, e, _, _, _, _, _, _, _, k, _ = rows_of(nodes, vectors, group.points, gathered, group.table_rows)
     transform, k = at(x, (e + group.transform) * ROW), at(x, k * ROW)
     if dependent != 0:
-        call.reduce_columns(nodes, size, dependent, parameters, count, gathered, transform, k, x)
+        for n in range(nodes):
+            of_node = at(k, nodes * size * (n * size + size - dependent) * ROW)
+            call.combine(nodes * size, dependent, parameters, count, at(transform, n * gathered * ROW), of_node, x)
         call.reduce_rows(nodes, size, dependent, parameters, count, gathered, transform, k, x)
     if half >= 0:
         number = at(group.station_number, first)

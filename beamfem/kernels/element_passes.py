@@ -28,17 +28,10 @@ def add_elements(group: Group, system: System) -> None:
         call.rate_nodes(group, system, group.velocity)
     rows = gathered if tangent != 0 or damped else (2 * size if moving != 0 else size)
     body, e, f, g, table, point, h, _, _, k, _ = rows_of(nodes, vectors, group.points, gathered, group.table_rows)
-    chunks, director = group.chunks, group.director
-    place, ordered = group.place, group.ordered
-    copied, f, g, t, q, k = (
-        at(x, e * ROW),
-        at(x, f * ROW),
-        at(x, g * ROW),
-        at(x, table * ROW),
-        at(x, point * ROW),
-        at(x, k * ROW),
-    )
-    body = at(x, body * ROW)
+    chunks, director, place, ordered = group.chunks, group.director, group.place, group.ordered
+    copied, f, g, t = at(x, e * ROW), at(x, f * ROW), at(x, g * ROW), at(x, table * ROW)
+    q, k, body = at(x, point * ROW), at(x, k * ROW), at(x, body * ROW)
+    mass, weights, lengths = at(t, group.mass * ROW), at(t, group.gravity * ROW), at(t, group.length * ROW)
     pairs = measures * (measures + 1) // 2
     first = 0
     while first < elements:
@@ -46,20 +39,9 @@ def add_elements(group: Group, system: System) -> None:
         apart = call.collect(group, system, first, count, rows, changed)
         nodal = copied if apart == 0 else at(chunks, place[first])
         stride = rows * ROW if apart == 0 else apart
+        loaded, uncoupled = system.loaded, group.apart
         call.add_inertia(
-            nodes,
-            vectors,
-            count,
-            stride,
-            system.loaded,
-            moving,
-            group.apart,
-            at(t, group.mass * ROW),
-            at(t, group.gravity * ROW),
-            at(t, group.length * ROW),
-            body,
-            nodal,
-            f,
+            nodes, vectors, count, stride, loaded, moving, uncoupled, mass, weights, lengths, body, nodal, f
         )
         if predicted != 0:
             call.copy_rows(nodes * size, count, f, g)
@@ -72,32 +54,18 @@ def add_elements(group: Group, system: System) -> None:
             call.strains(count, q)
             if given(group.natural):
                 call.release(first, count, group.points, number, measures, group.natural, q)
-            call.law(
-                group,
-                system,
-                first,
-                number,
-                count,
-                1 if stiff else 0,
-                weight,
+            c, reference = (
                 at(t, (group.stiffness + number * pairs) * ROW),
                 at(t, (group.reference + number * measures) * ROW),
-                q,
             )
+            call.law(group, system, first, number, count, 1 if stiff else 0, weight, c, reference, q)
             if damped:
                 rate, velocity = at(q, RATE * ROW), at(nodal, group.velocity * ROW)
                 call.interpolate(nodes, vectors, bends, count, stride, slope, second, factor, velocity, rate)
                 call.rates(count, q)
-                call.add_viscous(
-                    count,
-                    measures,
-                    ck if stiff else 0.0,
-                    cv if stiff else 0.0,
-                    weight,
-                    at(t, (group.stiffness + number * pairs) * ROW),
-                    at(t, group.damping * ROW),
-                    q,
-                )
+                stiffness_factor, rate_factor = ck if stiff else 0.0, cv if stiff else 0.0
+                time = at(t, group.damping * ROW)
+                call.add_viscous(count, measures, stiffness_factor, rate_factor, weight, c, time, q)
             call.forces(count, q)
             call.distribute(nodes, vectors, bends, count, slope, second, factor, at(q, POINT_FORCE * ROW), f)
             if predicted != 0:

@@ -4,9 +4,10 @@ h has 21 rows for each point: the blocks rr (xx, xy, yy), rd, rt (xx, xy, yx, yy
 yy) and tt (xx, xy, yy). A matrix (columns, rows, ROW) has a row of lanes for each entry.
 """
 
-from beamfem.kernels.compiling import routine
+from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.pointers import at
-from beamfem.kernels.record import ROW
+from beamfem.kernels.record import ROW, Group
+from beamfem.kernels.records import Rows
 from beamfem.kernels.simd import WIDTH, zeros
 
 FAST = {"contract", "reassoc", "nsz"}
@@ -67,6 +68,22 @@ def columns(vectors, bends, count, ck, slope, second, director, h, z):
             to[11 * ROW + i] = b * h[17 * ROW + i] + a * h[20 * ROW + i]
 
 
+@inlined
+def multiply(dependent, parameters, count, b, apart, own, to):
+    """Fill the rows of `to` (parameters, ROW) with b^T own; own: `dependent` rows, `apart` rows from each other."""
+    for column in range(parameters):
+        sums = at(to, column * ROW)
+        for part in range(0, dependent, 2):
+            x, y = at(own, part * apart * ROW), at(own, (part + 1) * apart * ROW)
+            c, s = at(b, (part * parameters + column) * ROW), at(b, ((part + 1) * parameters + column) * ROW)
+            if part == 0:
+                for i in range(0, count, WIDTH):
+                    sums[i] = x[i] * c[i] + y[i] * s[i]
+            else:
+                for i in range(0, count, WIDTH):
+                    sums[i] += x[i] * c[i] + y[i] * s[i]
+
+
 @routine("iiiivvv", fastmath=FAST)
 def combine(rows, dependent, parameters, count, b, own, space):
     """Replace the `dependent` columns of own (columns, rows, ROW) by the `parameters` columns own b.
@@ -79,54 +96,30 @@ def combine(rows, dependent, parameters, count, b, own, space):
             for i in range(0, count, WIDTH):
                 x[i] = x[i] * b[i] + y[i] * sine[i]
             continue
-        for column in range(parameters):
-            to = at(space, column * ROW)
-            for part in range(0, dependent, 2):
-                x, y = at(own, (rows * part + row) * ROW), at(own, (rows * (part + 1) + row) * ROW)
-                c, s = at(b, (part * parameters + column) * ROW), at(b, ((part + 1) * parameters + column) * ROW)
-                if part == 0:
-                    for i in range(0, count, WIDTH):
-                        to[i] = x[i] * c[i] + y[i] * s[i]
-                else:
-                    for i in range(0, count, WIDTH):
-                        to[i] += x[i] * c[i] + y[i] * s[i]
+        multiply(dependent, parameters, count, b, rows, at(own, row * ROW), space)
         for column in range(parameters):
             source, to = at(space, column * ROW), at(own, (rows * column + row) * ROW)
             for i in range(0, count, WIDTH):
                 to[i] = source[i]
 
 
-@routine("iiiiiiiiiivvrvvvv", "i", fastmath=FAST)
+@routine(fastmath=FAST)
 def products(
-    vectors,
-    bends,
-    count,
-    points,
-    coordinates,
-    slots,
-    z_stride,
-    dependent,
-    parameters,
-    rows,
-    slope,
-    second,
-    director,
-    b,
-    z,
-    own,
-    k,
-):
-    """Fill the rows of one node in the columns of another one: T^T z, summed over quadrature points.
+    vectors: int, bends: int, count: int, group: Group, n: int, t: Rows, b: Rows, z: Rows, own: Rows, k: Rows
+) -> int:
+    """Fill the rows of node n of an element in the columns of another one: T^T z, summed over quadrature points.
 
-    z (points, z_stride, ROW): 6 rows for each coordinate; slope, second (points, slots, ROW) and director (points,
-    nodes): tables T, from the node of the rows on; b (dependent, parameters, ROW): of this node. Return 1 if its rows
-    of k are done, see `store`, or 0 if own (coordinates, 2 vectors, ROW) has them before their multiplication by b^T.
+    t: tables with T; z (points, 2 vectors, 6, ROW): 6 rows for each coordinate; b (dependent, parameters, ROW): of this
+    node. Return 1 if its rows of k are done, see `store`, or 0 if own (coordinates, 2 vectors, ROW) has them before
+    their multiplication by b^T.
     """
-    last, nodes = vectors - 1, slots // vectors
-    done = dependent == 0 or (dependent == 2 and parameters == 1)
+    nodes, points, coordinates, dependent = group.nodes_per_element, group.points, group.coordinates, group.dependent
+    last, slots, z_stride, director = vectors - 1, nodes * vectors, 12 * vectors, at(group.director, n)
+    slope, second = at(t, (group.slope + n * vectors) * ROW), at(t, (group.second + n * vectors * bends) * ROW)
+    done = dependent == 0 or (dependent == 2 and group.parameters == 1)
     into, size = own, 2 * vectors
     if done:
-        into, size = k, rows
+        into, size = k, nodes * coordinates
     for c in range(coordinates):
         for s in range(vectors):
             for i in range(0, count, WIDTH):
@@ -159,26 +152,14 @@ def store(size, dependent, parameters, coordinates, count, rows, b, own, k):
     from the entry of the first coordinates of both nodes on; rows: number of rows of k.
     """
     linear = size - dependent
-    own_count = linear + parameters
     for c in range(coordinates):
-        for r in range(own_count):
-            source = at(own, (c * size + r) * ROW)
-            to = at(k, (c * rows + r) * ROW)
-            if r < linear:
-                for i in range(0, count, WIDTH):
-                    to[i] = source[i]
-            else:
-                source = at(own, (c * size + linear) * ROW)
-                for part in range(0, dependent, 2):
-                    x, y = at(source, part * ROW), at(source, (part + 1) * ROW)
-                    cosine = at(b, (part * parameters + r - linear) * ROW)
-                    sine = at(b, ((part + 1) * parameters + r - linear) * ROW)
-                    if part == 0:
-                        for i in range(0, count, WIDTH):
-                            to[i] = x[i] * cosine[i] + y[i] * sine[i]
-                    else:
-                        for i in range(0, count, WIDTH):
-                            to[i] += x[i] * cosine[i] + y[i] * sine[i]
+        for row in range(linear):
+            source, to = at(own, (c * size + row) * ROW), at(k, (c * rows + row) * ROW)
+            for i in range(0, count, WIDTH):
+                to[i] = source[i]
+        multiply(
+            dependent, parameters, count, b, 1, at(own, (c * size + linear) * ROW), at(k, (c * rows + linear) * ROW)
+        )
 
 
 @routine("iiv")

@@ -47,66 +47,44 @@ def balance(system: System) -> None:
     add_parts_at_points(system)
 
 
-@routine("iiiiiinrrr", fastmath={"contract", "reassoc", "nsz"})
-def add_node_rates(first, count, linear, dependent, parameters, stride, dof, step, transform, rates):
-    """Fill rates (linear + dependent, ROW) of nodal vectors: those of coordinates, then b times those of the last ones.
+@inlined
+def _add_product(group, first, count, chunk, matrix, rates, change):
+    """Add B, or B', times a change (n,) of the coordinates to the vectors of nodes that depend on them.
 
-    step (n,): rates p'; transform (dependent, parameters, ROW): b, see `reduction`; dof (coordinates, stride).
+    matrix, rates: first rows in the chunk of B (dependent, parameters, ROW) and of all vectors of the nodes.
     """
-    for row in range(linear):
-        dofs, to = at(dof, row * stride + first), at(rates, row * ROW)
-        for i in range(count):
-            to[i] = step[dofs[i]]
-    for part in range(dependent):
-        to = at(rates, (linear + part) * ROW)
-        for i in range(count):
-            to[i] = 0.0
+    linear, parameters = 2 * group.vectors - group.dependent, group.parameters
+    for part in range(group.dependent):
+        to = at(chunk, (rates + linear + part) * ROW)
         for column in range(parameters):
-            dofs, factor = (
-                at(dof, (linear + column) * stride + first),
-                at(transform, (part * parameters + column) * ROW),
-            )
+            dofs = at(group.dof, (linear + column) * group.nodes + first)
+            factor = at(chunk, (matrix + part * parameters + column) * ROW)
             for i in range(count):
                 if dofs[i] >= 0:
-                    to[i] += factor[i] * step[dofs[i]]
+                    to[i] += factor[i] * change[dofs[i]]
 
 
-@routine()
+@routine(fastmath={"contract", "reassoc", "nsz"})
 def rate_nodes(group: Group, system: System, row: int) -> None:
-    """Fill e' = B p' of all nodes of a group into the rows of its chunks from `row` on; p': `COORDINATES_V`."""
-    call, chunks, first = group.routines, group.chunks, 0
+    """Fill e' = B p' of all nodes of a group into the rows of its chunks from `row` on; p': `system.v`."""
+    chunks, step, first, size = group.chunks, system.v, 0, 2 * group.vectors
     while first < group.nodes:
         count, chunk = min(LANES, group.nodes - first), at(chunks, first // LANES * group.node_rows * ROW)
-        call.add_node_rates(
-            first,
-            count,
-            2 * group.vectors - group.dependent,
-            group.dependent,
-            group.parameters,
-            group.nodes,
-            group.dof,
-            system.v,
-            at(chunk, group.transform * ROW),
-            at(chunk, row * ROW),
-        )
+        for vector in range(size):
+            dofs, to = at(group.dof, vector * group.nodes + first), at(chunk, (row + vector) * ROW)
+            for i in range(count):
+                to[i] = step[dofs[i]] if vector < size - group.dependent else 0.0
+        _add_product(group, first, count, chunk, group.transform, row, step)
         first += count
 
 
 @routine()
 def turn_nodes(group: Group, system: System) -> None:
-    """Add B' dp, by which e' changes at constant p', to the rates of all nodes of a group; dp: `COORDINATES_V`."""
-    chunks, first, dp, parameters = group.chunks, 0, system.v, group.parameters
-    linear = 2 * group.vectors - group.dependent
+    """Add B' dp, by which e' changes at constant p', to the rates of all nodes of a group; dp: `system.v`."""
+    chunks, first = group.chunks, 0
     while first < group.nodes:
         count, chunk = min(LANES, group.nodes - first), at(chunks, first // LANES * group.node_rows * ROW)
-        for part in range(group.dependent):
-            to = at(chunk, (group.velocity + linear + part) * ROW)
-            for column in range(parameters):
-                dofs = at(group.dof, (linear + column) * group.nodes + first)
-                factor = at(chunk, (group.turning + part * parameters + column) * ROW)
-                for i in range(count):
-                    if dofs[i] >= 0:
-                        to[i] += factor[i] * dp[dofs[i]]
+        _add_product(group, first, count, chunk, group.turning, group.velocity, system.v)
         first += count
 
 
@@ -119,14 +97,8 @@ def predict_resultants(group: Group, system: System, placed: int) -> None:
     instead of p'', and t C (d eps / de) B (p' + cv dp) is added, with the retardation time t, and its change with p if
     the nodes are placed. placed: whether they were placed at p by a tangent before.
     """
-    call, x, director = group.routines, group.space, group.director
-    nodes, vectors, bends, elements, measures = (
-        group.nodes_per_element,
-        group.vectors,
-        group.bends,
-        group.elements,
-        group.measures,
-    )
+    call, x, director, elements = group.routines, group.space, group.director, group.elements
+    nodes, vectors, bends, measures = group.nodes_per_element, group.vectors, group.bends, group.measures
     size, slots, stress = 2 * vectors, nodes * vectors, group.stress
     damped = group.damped != 0 and system.rated != 0
     cv = system.weight_v if damped else 0.0
@@ -187,17 +159,9 @@ def predict_resultants(group: Group, system: System, placed: int) -> None:
                         strain[i] += time[i] * rate_row[i]
             if given(group.natural):
                 call.release(first, count, group.points, number, measures, group.natural, q)
+            c = at(t, (group.stiffness + number * pairs) * ROW)
             call.law(
-                group,
-                system,
-                first,
-                number,
-                count,
-                0,
-                unit,
-                at(t, (group.stiffness + number * pairs) * ROW),
-                at(t, (group.reference + number * measures) * ROW),
-                q,
+                group, system, first, number, count, 0, unit, c, at(t, (group.reference + number * measures) * ROW), q
             )
             for i in range(count):
                 to = at(stress, ((first + i) * group.points + number) * measures)

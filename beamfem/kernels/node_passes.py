@@ -66,14 +66,7 @@ def place_nodes(group: Group, system: System, moving: int) -> None:
                 else:
                     call.clear(2 * polar, count, at(x, polar * ROW))
                 directions = at(x, 3 * polar * ROW)
-                call.rotate_frame(
-                    count,
-                    at(x, (polar - 1) * ROW),
-                    at(frame, first),
-                    at(frame, stride + first),
-                    at(frame, 2 * stride + first),
-                    directions,
-                )
+                call.rotate_frame(count, stride, at(x, (polar - 1) * ROW), at(frame, first), directions)
                 call.nodes[kind - 1].place(count, x)
                 parts, result = size - linear, at(directions, 3 * ROW)
                 put(parts, count, last, result, at(chunk, linear * ROW))
@@ -113,8 +106,7 @@ def finish_nodes(group: Group, system: System) -> None:
             first, count, size, dependent, parameters, stride, dof, group.transform, group.force, chunk, x, residual
         )
         first += count
-    factor = system.weight_p
-    if system.tangent == 0 or factor == 0.0:
+    if system.tangent == 0 or system.weight_p == 0.0:
         return
     for run in range(group.run_count):
         kind, first, end = _of_run(runs[run])
@@ -129,33 +121,9 @@ def finish_nodes(group: Group, system: System) -> None:
             chunk = at(chunks, first // LANES * group.node_rows * ROW + lane)
             take(first, count, polar, stride, at(source, linear * stride), p, True, x)
             directions, parts = at(x, 3 * polar * ROW), size - linear
-            call.rotate_frame(
-                count,
-                at(x, (polar - 1) * ROW),
-                at(frame, first),
-                at(frame, stride + first),
-                at(frame, 2 * stride + first),
-                directions,
-            )
+            call.rotate_frame(count, stride, at(x, (polar - 1) * ROW), at(frame, first), directions)
             put(parts, count, True, at(chunk, (forces + linear) * ROW), at(directions, 3 * ROW))
             call.nodes[kind - 1].curve(count, x)
             put(polar * polar, count, last, at(directions, (3 + parts) * ROW), at(chunk, group.curvature * ROW))
-            call.add_curvature(
-                first,
-                count,
-                group.nodes_per_element,
-                linear,
-                polar,
-                stride,
-                group.curvature,
-                group.coordinates,
-                dof,
-                group.free,
-                group.home,
-                group.half_width,
-                group.slot,
-                chunk,
-                system.matrix,
-                factor,
-            )
+            call.add_curvature(group, system, first, count, linear, polar, chunk)
             first += count

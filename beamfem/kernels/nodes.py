@@ -71,13 +71,14 @@ def put(rows, count, last, source, to):
                 to[i] = source[i]
 
 
-@routine("ivvvvv", fastmath={"contract"})
-def rotate_frame(count, angle, c, s, length, rows):
-    """Fill rows (3, ROW) with the cosine and sine of the reference angle plus `angle`, and with `length`.
+@routine("iivvv", fastmath={"contract"})
+def rotate_frame(count, stride, angle, frame, rows):
+    """Fill rows (3, ROW) with the cosine and sine of the reference angle plus `angle`, and with |r_x|.
 
-    c, s: cosine and sine of the reference angle.
+    frame (3, stride): cosine and sine of the reference angle, and |r_x|.
     """
     small_code()
+    c, s, length = frame, at(frame, stride), at(frame, 2 * stride)
     for i in range(0, count, WIDTH):
         cosine, sine = cosine_sine(angle[i])
         rows[i] = cosine * c[i] - sine * s[i]

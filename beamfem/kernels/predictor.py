@@ -54,14 +54,8 @@ def predict(solver: MotionSolver) -> None:
     """
     small_code()
     n, rule, state, before, differences = solver.size, solver.rule, solver.state, solver.before, solver.differences
-    h, alpha_m, alpha_f, gamma, beta, order = (
-        rule.time_step,
-        rule.alpha_m,
-        rule.alpha_f,
-        rule.gamma,
-        rule.beta,
-        rule.order,
-    )
+    h, alpha_m, alpha_f = rule.time_step, rule.alpha_m, rule.alpha_f
+    gamma, beta, order = rule.gamma, rule.beta, rule.order
     kept, mean, fraction = 1.0 / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m), (1.0 - alpha_f) / (1.0 - alpha_m)
     length, lanes, now, then = padded(n), as_rows(differences), as_rows(state), as_rows(before)
     whole = n // WIDTH * WIDTH

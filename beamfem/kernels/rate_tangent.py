@@ -66,14 +66,8 @@ def add_rate_tangent(group: Group, system: System, count: int, x: Reals, nodal: 
 
     nodal, stride: see `form_matrices`. G takes the place of second derivatives, which are no longer needed.
     """
-    call = group.routines
-    nodes, vectors, bends, measures, coordinates = (
-        group.nodes_per_element,
-        group.vectors,
-        group.bends,
-        group.measures,
-        group.coordinates,
-    )
+    call, measures, coordinates = group.routines, group.measures, group.coordinates
+    nodes, vectors, bends = group.nodes_per_element, group.vectors, group.bends
     dependent, parameters, slots = group.dependent, group.parameters, nodes * vectors
     linear, columns, pairs = 2 * vectors - dependent, nodes * coordinates, measures * (measures + 1) // 2
     _, _, _, _, t, q, g, _, _, _, _ = rows_of(nodes, vectors, group.points, group.curvature, group.table_rows)
@@ -82,47 +76,40 @@ def add_rate_tangent(group: Group, system: System, count: int, x: Reals, nodal: 
     for i in range(ROW):
         one[i] = 1.0
     for number in range(group.points):
-        slope, second = (
-            at(t, (group.slope + number * slots) * ROW),
-            at(t, (group.second + number * slots * bends) * ROW),
-        )
-        shapes = at(director, number * nodes)
+        slope, shapes = at(t, (group.slope + number * slots) * ROW), at(director, number * nodes)
+        second = at(t, (group.second + number * slots * bends) * ROW)
         call.interpolate(nodes, vectors, bends, count, stride, slope, second, shapes, nodal, q)
         velocity = at(nodal, group.velocity * ROW)
         call.interpolate(nodes, vectors, bends, count, stride, slope, second, shapes, velocity, at(q, VELOCITY * ROW))
+        weight, time = at(t, (group.weight + number) * ROW), at(t, group.damping * ROW)
+        stress, c = at(q, RESULTANT * ROW), at(t, (group.stiffness + number * pairs) * ROW)
         for turn in range(2):  # first G of all coordinates, then G' of one after the other
             for node in range(nodes):
                 w, u = at(slope, node * vectors * ROW), at(second, node * vectors * bends * ROW)
-                for c in range(coordinates):
-                    column = node * coordinates + c
+                for own_column in range(coordinates):
+                    column = node * coordinates + own_column
                     call.clear(6, count, rate)
-                    if c < linear:
-                        call.add_component(c, vectors, bends, count, w, u, shapes[node], one, rate)
-                    for part in range(dependent if c >= linear else 0):
-                        b = at(nodal, (group.transform + part * parameters + c - linear) * ROW + node * stride)
+                    if own_column < linear:
+                        call.add_component(own_column, vectors, bends, count, w, u, shapes[node], one, rate)
+                    for part in range(dependent if own_column >= linear else 0):
+                        b = at(nodal, (group.transform + part * parameters + own_column - linear) * ROW + node * stride)
                         call.add_component(linear + part, vectors, bends, count, w, u, shapes[node], b, rate)
                     if turn == 0:
                         call.rates(count, q)
                         call.copy_rows(measures, count, rate, at(g, column * measures * ROW))
                     else:
                         call.rate_changes(count, q)
-                        if c >= linear:
+                        if own_column >= linear:
                             call.clear(6, count, rate)
                             for part in range(dependent):
-                                b = at(nodal, (group.turning + part * parameters + c - linear) * ROW + node * stride)
+                                b = at(
+                                    nodal,
+                                    (group.turning + part * parameters + own_column - linear) * ROW + node * stride,
+                                )
                                 call.add_component(linear + part, vectors, bends, count, w, u, shapes[node], b, rate)
                             call.rates(count, q)
                             call.add_scaled(measures, count, 1.0, rate, change)
+                        own = at(k, column * columns * ROW)
                         call.add_products(
-                            measures,
-                            columns,
-                            count,
-                            system.weight_p,
-                            at(t, (group.weight + number) * ROW),
-                            at(t, group.damping * ROW),
-                            at(t, (group.stiffness + number * pairs) * ROW),
-                            change,
-                            at(q, RESULTANT * ROW),
-                            g,
-                            at(k, column * columns * ROW),
+                            measures, columns, count, system.weight_p, weight, time, c, change, stress, g, own
                         )

@@ -6,59 +6,27 @@ numbered -1.
 """
 
 from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.element_stiffness import multiply
 from beamfem.kernels.pointers import at
-from beamfem.kernels.record import ROW
+from beamfem.kernels.record import ROW, Group, System
+from beamfem.kernels.records import Reals
 from beamfem.kernels.simd import WIDTH, as_rows
 
 FAST = {"contract", "reassoc", "nsz"}
 
 
 @routine("iiiiiivvv", fastmath=FAST)
-def reduce_columns(nodes, size, dependent, parameters, count, stride, b, k, space):
-    """Replace k (columns, rows, ROW) by k B; b (nodes, stride, ROW), size: components of a node; space (2, ROW)."""
-    rows, linear = nodes * size, size - dependent
-    for n in range(nodes):
-        columns = at(k, rows * (n * size + linear) * ROW)
-        table = at(b, n * stride * ROW)
-        for row in range(rows):
-            for column in range(parameters):
-                to = at(space, column * ROW)
-                for part in range(dependent):
-                    source, factor = (
-                        at(columns, (rows * part + row) * ROW),
-                        at(table, (part * parameters + column) * ROW),
-                    )
-                    if part == 0:
-                        for i in range(0, count, WIDTH):
-                            to[i] = source[i] * factor[i]
-                    else:
-                        for i in range(0, count, WIDTH):
-                            to[i] += source[i] * factor[i]
-            for column in range(parameters):
-                source, to = at(space, column * ROW), at(columns, (rows * column + row) * ROW)
-                for i in range(0, count, WIDTH):
-                    to[i] = source[i]
-
-
-@routine("iiiiiivvv", fastmath=FAST)
 def reduce_rows(nodes, size, dependent, parameters, count, stride, b, k, space):
-    """Replace k B by B^T k B, with the arguments of `reduce_columns`."""
+    """Replace k B (columns, rows, ROW) by B^T k B.
+
+    size: components of a node; b (nodes, stride, ROW); space (parameters, ROW): workspace.
+    """
     rows, linear = nodes * size, size - dependent
     for m in range(nodes):
         for column in range(linear + parameters):
             for n in range(nodes):
                 entries = at(k, (rows * (m * size + column) + n * size + linear) * ROW)
-                table = at(b, n * stride * ROW)
-                for row in range(parameters):
-                    to = at(space, row * ROW)
-                    for part in range(dependent):
-                        source, factor = at(entries, part * ROW), at(table, (part * parameters + row) * ROW)
-                        if part == 0:
-                            for i in range(0, count, WIDTH):
-                                to[i] = source[i] * factor[i]
-                        else:
-                            for i in range(0, count, WIDTH):
-                                to[i] += source[i] * factor[i]
+                multiply(dependent, parameters, count, at(b, n * stride * ROW), 1, entries, space)
                 for row in range(parameters):
                     source, to = at(space, row * ROW), at(entries, row * ROW)
                     for i in range(0, count, WIDTH):
@@ -107,31 +75,17 @@ def add_node_forces(first, count, size, dependent, parameters, stride, dof, rows
                 residual[dofs[i]] += space[i]
 
 
-@routine("iiiiiiiinnnisrrd")
+@routine()
 def add_curvature(
-    first,
-    count,
-    nodes,
-    linear,
-    parameters,
-    stride,
-    row,
-    coordinates,
-    dof,
-    free,
-    home,
-    half,
-    slots,
-    chunk,
-    matrix,
-    factor,
-):
-    """Add a factor times the derivative of B^T f at constant f (parameters, parameters) of nodes to the matrix.
+    group: Group, system: System, first: int, count: int, linear: int, parameters: int, chunk: Reals
+) -> None:
+    """Add ck times the derivative of B^T f at constant f (parameters, parameters) of nodes to the matrix.
 
-    chunk: from the lane of the first of these nodes on; row: where the derivative begins; linear: coordinates of a node
-    before those on which B depends.
+    chunk: from the lane of the first of these nodes on; linear: coordinates of a node before those on which B depends.
     """
-    per = nodes * coordinates
+    coordinates, stride, row, dof = group.coordinates, group.nodes, group.curvature, group.dof
+    free, home, half, slots = group.free, group.home, group.half_width, group.slot
+    matrix, factor, per = system.matrix, system.weight_p, group.nodes_per_element * coordinates
     for j in range(parameters):
         for k in range(parameters):
             value = at(chunk, (row + j * parameters + k) * ROW)

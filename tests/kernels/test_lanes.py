@@ -103,7 +103,7 @@ def test_sections_turn_by_any_angle(most, rng):
     angle, frame, result = rows(1), rows(3), rows(3)
     given = np.concatenate([near, near + 1e-9, near - 1e-9, rng.uniform(-most, most, 29)])
     angle[0, : given.size], frame[:, : given.size] = given, [[1.0], [0.0], [2.5]]
-    nodes.rotate_frame(given.size, angle, frame[0], frame[1], frame[2], result)
+    nodes.rotate_frame(given.size, frame.shape[1], angle, frame, result)
     for found, wanted in zip(result, (np.cos(given), np.sin(given), 2.5), strict=True):
         assert np.abs(found[: given.size] - wanted).max() <= 3e-16
 

@@ -2,8 +2,8 @@
 
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import cast
+from dataclasses import dataclass, field, replace
+from typing import Any, cast
 
 import numpy as np
 
@@ -14,9 +14,12 @@ from beamfem.kernels.record import CONSTANTS
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import jacobians, length_points, reference_axis, scales
 from beamfem.model.beam import Beam, Point
-from beamfem.model.load_base import MovingLoad, PointLoad, forces_of
+from beamfem.model.imposed_strains import ImposedStrain
+from beamfem.model.load_base import MovingLoad, PointLoad, factor, forces_of
 from beamfem.model.model import Model
 from beamfem.physics.stations import DEAD, FOLLOWING, GROUNDED, STRETCHING
+
+_KEPT = 2  # load factors whose loads are cached
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,6 +163,85 @@ class Actions:
         sizes = np.ones((*factors.shape[:-1], factors.shape[-1] + 1))
         sizes[..., :-1] = factors
         return np.asarray(self.unit * sizes[..., self.source, None])
+
+
+@dataclass(frozen=True, eq=False)
+class Loads:
+    """The loads of a model at any time, in statics at any load factor.
+
+    tables: see `System`; known: loads at recent load factors.
+    """
+
+    model: Model
+    static: bool
+    tables: dict[Any, Any]
+    known: dict[float, LoadsAt] = field(default_factory=dict)
+
+    @cached_property
+    def unloaded(self) -> tuple[Actions, ...]:
+        """Stations of each block, where sizes of loads may be those of another model."""
+        if "actions" not in self.tables:
+            built = tuple(build_actions(self.model, number) for number in range(len(self.model.groups)))
+            self.tables.setdefault("actions", built)
+        found: tuple[Actions, ...] = self.tables["actions"]
+        return found
+
+    @cached_property
+    def actions(self) -> tuple[Actions, ...]:
+        """Stations of each block, with the values of loads."""
+        return tuple(actions.of(self.model) for actions in self.unloaded)
+
+    def at(self, time: float) -> LoadsAt:
+        """Return the loads at a time, in statics at a load factor."""
+        if self.varying:
+            return self.of(time, self.factors(time))
+        key = time if self.static else 0.0
+        found = self.known.get(key)
+        if found is None:
+            if len(self.known) >= _KEPT:
+                self.known.clear()
+            found = self.known[key] = self.of(key, self.factors(key))
+        return found
+
+    def factors(self, time: float) -> np.ndarray:
+        """Return the factors (k,) of `model.acting` at a time."""
+        return np.array([factor(load, time, self.static) for load in self.model.acting], dtype=float)
+
+    def of(self, time: float, factors: np.ndarray) -> LoadsAt:
+        """Return the loads at a time with given factors (k,) of `model.acting`."""
+        points = tuple(actions.values(time, factors) for actions in self.actions)
+        return LoadsAt(even_loads(self.model, factors), points, factors[self.imposes])
+
+    def of_rows(self, times: Sequence[float] | np.ndarray) -> LoadsAt:
+        """Return the loads at times, which are the first axis of its arrays."""
+        factors = np.array([self.factors(time) for time in times]).reshape(len(times), -1)
+        points = tuple(actions.values_of_rows(times, factors) for actions in self.actions)
+        return LoadsAt(even_loads(self.model, factors), points, factors[:, self.imposes])
+
+    @cached_property
+    def imposes(self) -> np.ndarray:
+        """Mask (k,) of the loads of `model.acting` that impose strains."""
+        return np.array([isinstance(load, ImposedStrain) for load in self.model.acting], dtype=bool)
+
+    @cached_property
+    def conserves(self) -> np.ndarray:
+        """Mask (k,) of the loads of `model.acting` that belong to loads with a potential while factors are constant."""
+        own = {id(part) for load in self.model.loads if load.conservative for part in load.parts}
+        return np.array([id(load) in own for load in self.model.acting], dtype=bool)
+
+    def imposing(self, time: float) -> np.ndarray:
+        """Return the factors (k,) of the loads that impose strains at a time."""
+        return self.factors(time)[self.imposes] if self.imposes.any() else np.empty(0)
+
+    @cached_property
+    def varying(self) -> bool:
+        """Whether a load has an amplitude, a function of time, or moves."""
+        return any(load.moves or load.amplitude is not None for load in self.model.loads)
+
+    @cached_property
+    def proportional(self) -> bool:
+        """Whether all loads are proportional to the load factor of statics."""
+        return self.static and not self.varying and all(load.scale for load in self.model.loads)
 
 
 @dataclass(frozen=True, eq=False)

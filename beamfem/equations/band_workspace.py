@@ -64,7 +64,7 @@ class BandWorkspace:
         """Return the scratch memory, and keep the workspace for the next solve if it is small."""
         take_back_scratch(self._scratch)
         if self.solver.rows.size <= _KEPT:
-            system.spare.append(self)
+            system.spare(BandWorkspace).append(self)
 
     def take(self, shared: Scratch) -> None:
         """Use shared scratch memory until `return_scratch`."""
@@ -75,7 +75,7 @@ class BandWorkspace:
 def band_workspace(system: System) -> BandWorkspace:
     """Return a workspace that no other solve uses."""
     try:
-        workspace: BandWorkspace = system.spare.pop()
+        workspace: BandWorkspace = system.spare(BandWorkspace).pop()
     except IndexError:
         workspace = BandWorkspace(system)
     workspace.take(lend_scratch(workspace.assembler.scratch))

@@ -102,19 +102,20 @@ def residual_at_rest(system: System, p: np.ndarray, time: float) -> np.ndarray:
 def residual_under(system: System, p: np.ndarray, time: float, factors: np.ndarray) -> np.ndarray:
     """Return the residual (n,) of a state p (n,) at rest in a frame at rest, with factors (k,) of `model.acting`."""
     zeros = np.zeros(len(p))
-    return _residual(system, p, zeros, zeros, time, 0.0, system.loads_of(time, factors))
+    return _residual(system, p, zeros, zeros, time, 0.0, system.loads.of(time, factors))
 
 
 def imposed_forces(system: System, time: float) -> np.ndarray:
     """Return the forces (n,) that would hold the beams in their reference against the strains imposed on them."""
-    return residual_under(system, system.reference, time, np.where(system.imposes, system.factors(time), 0.0))
+    loads = system.loads
+    return residual_under(system, system.reference, time, np.where(loads.imposes, loads.factors(time), 0.0))
 
 
 def _residual(
     system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float, dt: float, loads: LoadsAt | None = None
 ) -> np.ndarray:
     """Return the residual (n,) of a motion at rest, see `residual`."""
-    result, assembler, loads = np.empty(len(p)), _acquired(system), loads or system.loads_at(time)
+    result, assembler, loads = np.empty(len(p)), _acquired(system), loads or system.loads.at(time)
     assembler.take(loads, time)
     assembler.weigh((1.0, 1.0, 1.0), dt)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, _EMPTY, False)
@@ -125,15 +126,16 @@ def _residual(
 def _acquired(system: System) -> Assembler:
     """Return an assembler whose workspace no other evaluation uses: a spare one, or a new one."""
     try:
-        return system.spare_assemblers.pop()
+        assembler: Assembler = system.spare(Assembler).pop()
     except IndexError:
-        return system.assembler()
+        assembler = system.assembler()
+    return assembler
 
 
 def _return_assembler(system: System, assembler: Assembler) -> None:
     """Keep an assembler for the next evaluation if its workspace is small."""
     if assembler.numbers <= _KEPT:
-        system.spare_assemblers.append(assembler)
+        system.spare(Assembler).append(assembler)
 
 
 def _plain(state: np.ndarray) -> np.ndarray:
@@ -201,7 +203,7 @@ def _linearise(
     own = assembler.stresses
     if stresses is not None:
         assembler.take_stresses(stresses)
-    assembler.take(system.loads_at(time), time)
+    assembler.take(system.loads.at(time), time)
     assembler.weigh(coefficients, dt, moving)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, matrix, stresses is not None)
     if equations is None:
@@ -284,7 +286,7 @@ def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float
     if Proven.LOSES_DIGITS in system.proven or system.model.frame is not None or one_sided:
         return linearise_at_rest(system, p, time, predicted_stresses(system, p, step, time))[1]
     matrix, assembler = _entries(system), _acquired(system)
-    assembler.take(system.loads_at(time), time)
+    assembler.take(system.loads.at(time), time)
     assembler.weigh(STATICS)
     assembler.predict(p, step)
     assembler.balance(p, zeros, zeros, np.empty(len(p)), matrix, True)
@@ -370,7 +372,7 @@ def predicted_stresses(
     system; rates: in dynamics, p' (n,) and the weights of p, p' and p'' in the tangent; dt [s]: see `residual`.
     """
     assembler = _acquired(system) if equations is None else Assembler(equations)
-    assembler.impose(system.imposing(time))
+    assembler.impose(system.loads.imposing(time))
     assembler.weigh((0.0, 0.0, 0.0) if rates is None else rates[1], dt)
     assembler.predict(_plain(p), _plain(step), None if rates is None else _plain(rates[0]))
     if equations is not None:

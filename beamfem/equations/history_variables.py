@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.cached_properties import cached_property
+from beamfem.equations.applied_loads import Loads
 from beamfem.equations.connectors import Connectors, Motion
 from beamfem.equations.element_group import ElementGroup
 from beamfem.equations.stress_resultants import free_group, resultants
@@ -18,6 +19,7 @@ class History:
 
     connectors: Connectors
     blocks: tuple[Block, ...]
+    loads: Loads
 
     @cached_property
     def laws(self) -> tuple[tuple[ConstitutiveLaw, Block], ...]:
@@ -43,10 +45,10 @@ class History:
         connectors = (("connectors", item.name) for item in self.connectors.items if len(item.memory))
         return (*connectors, *(("section laws", law.name) for law, _ in self.laws))
 
-    def committed(self, motion: Motion, time: float, imposing: np.ndarray, dt: float = 0.0) -> np.ndarray:
-        """Return p (n,) with the history variables after an accepted step to this state.
+    def committed(self, motion: Motion, time: float, dt: float = 0.0) -> np.ndarray:
+        """Return p (n,) with the history variables after an accepted step to this state. Raises InputError.
 
-        imposing (k,): factors of the loads that impose strains; dt [s]: time step, 0 in statics. Raises InputError.
+        dt [s]: time step, 0 in statics.
         """
         p = motion[0]
         if not len(self.numbers):
@@ -54,18 +56,18 @@ class History:
         result = p.copy()
         result[self.connectors.memory] = self.connectors.remember(motion, time)
         for (law, block), group in zip(self.laws, self.strains, strict=True):
-            strain = resultants(group, np.ascontiguousarray(p), [np.zeros(len(p))], imposing)[0]
+            strain = resultants(group, np.ascontiguousarray(p), [np.zeros(len(p))], self.loads.imposing(time))[0]
             past = p[block.history]
             flat = strain[:, : past.shape[1], :3].reshape(-1, 3)
             result[block.history] = law.remember(flat, past.reshape(len(flat), -1), dt).reshape(past.shape)
         return result
 
-    def in_equilibrium(self, p: np.ndarray, load_factor: float, imposing: np.ndarray) -> np.ndarray:
+    def in_equilibrium(self, p: np.ndarray, load_factor: float) -> np.ndarray:
         """Return p (n,) with the history variables after an accepted load step to this equilibrium."""
         if not len(self.numbers):
             return p
         zeros = np.zeros(len(p))
-        return self.committed((p, zeros, zeros), load_factor, imposing)
+        return self.committed((p, zeros, zeros), load_factor)
 
     @cached_property
     def strains(self) -> tuple[ElementGroup, ...]:

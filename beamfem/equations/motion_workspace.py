@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 
-from beamfem.equations.rotating_vectors import runs_of
+from beamfem.equations.rotating_vectors import rotating_vectors, runs_of
 from beamfem.equations.system import System
 from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 from beamfem.kernels.motion_record import MotionRoutines, MotionSolver
@@ -34,7 +34,7 @@ class MotionWorkspace:
     """Workspace for one motion; residual (n,): of the state reached; stages: of collocation, by method."""
 
     def __init__(self, system: System) -> None:
-        unknowns, pairs = system.unknowns, runs_of(system.rotating)
+        unknowns, pairs = system.unknowns, runs_of(system.table(rotating_vectors))
         self.assembler, free, self.solver = system.assembler(), system.free_dofs, system.table(motion_solver).copy()
         own = self.solver
         own.node_stride = sum(work.record.nodes for work in self.assembler.works)
@@ -75,10 +75,10 @@ class MotionWorkspace:
 def motion_workspace(system: System) -> Iterator[MotionWorkspace]:
     """Lend a workspace that no other motion uses; what motions write into it is arbitrary at first."""
     try:
-        space = system.spare_motions.pop()
+        space = system.spare(MotionWorkspace).pop()
     except IndexError:
         space = MotionWorkspace(system)
     yield space
     if space.solver.rows.size <= _KEPT:
         space.unload()
-        system.spare_motions.append(space)
+        system.spare(MotionWorkspace).append(space)

@@ -1,24 +1,25 @@
 """Nodal vectors that rotate with their section, in runs that compiled code rotates one after the other."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from beamfem.equations.element_group import storage_order, stored
-from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, Block
+from beamfem.equations.system import System
+from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH
 
 _GRADIENTS = (GRADIENTS, ROTATED_GRADIENTS)
 # kinds of nodes that have r, r_x and r_y themselves as coordinates
 _ROTATING = ((*_GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID), (*_GRADIENTS, ROTATION), _GRADIENTS)
 
 
-def rotating_vectors(blocks: Sequence[Block], free: np.ndarray, inclined: np.ndarray) -> np.ndarray:
+def rotating_vectors(system: System) -> np.ndarray:
     """Return equation numbers of x and y, node and number of each nodal vector that is a coordinate (np, 4).
 
-    free (n,): equation number of each coordinate; inclined (nt,): equation number of x of each inclined roller.
+    A tangent that is kept for several steps is rotated with the sections in these components. Nodes are numbered
+    consecutively over all blocks, in storage order. Vectors with a prescribed component or an inclined roller are
+    left out.
     """
-    tables, first = [], 0
-    for numbered in blocks:
+    tables, first, free = [], 0, system.unknowns.free
+    for numbered in system.blocks:
         block = stored(numbered, storage_order(numbered.node, len(numbered.node_kind)))
         vectors = block.scale.shape[1] // block.node.shape[1]
         for slot in range(vectors):
@@ -30,7 +31,7 @@ def rotating_vectors(blocks: Sequence[Block], free: np.ndarray, inclined: np.nda
         first += len(block.dof)
     pairs = np.concatenate(tables)
     _, once = np.unique(pairs[:, 0], return_index=True)
-    return np.ascontiguousarray(pairs[once[~np.isin(pairs[once, 0], inclined)]])
+    return np.ascontiguousarray(pairs[once[~np.isin(pairs[once, 0], system.rotated[0])]])
 
 
 def runs_of(pairs: np.ndarray) -> np.ndarray:

@@ -9,13 +9,7 @@ import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.equations import equation_numbering as layout
-from beamfem.equations.applied_loads import (
-    Actions,
-    LoadsAt,
-    build_actions,
-    even_loads,
-    pressures_have_potential,
-)
+from beamfem.equations.applied_loads import Loads, pressures_have_potential
 from beamfem.equations.assembler import Assembler, Equations
 from beamfem.equations.blocks import build_block
 from beamfem.equations.connection_table import Alike, alike, springs_to_ground
@@ -30,20 +24,16 @@ from beamfem.equations.model_coordinates import (
     stress_free,
 )
 from beamfem.equations.parts_in_python import PartsInPython
-from beamfem.equations.rotating_vectors import rotating_vectors
 from beamfem.equations.strain_rates import StrainRates, strain_rates
 from beamfem.errors import InputError
 from beamfem.kernels.block import Block, Layout, Stations
 from beamfem.kernels.record import Parts
-from beamfem.model.imposed_strains import ImposedStrain
-from beamfem.model.load_base import factor
 from beamfem.model.model import Model
 from beamfem.physics.stations import FOLLOWING
 from beamfem.precision.roundoff_bounds import residual_errors, stress_errors
 from beamfem.validation import shown
 
 _Table = TypeVar("_Table", covariant=True)
-_KEPT_LOADS = 2  # load factors whose loads are cached
 _NO_MOVEMENT = 1e300  # scale of history variables: no change of them counts as movement
 
 
@@ -74,15 +64,14 @@ class System:
     """All data of a model that solvers need; `system_of` creates it once.
 
     Systems of models that differ only in the size of their loads have their tables in common, see `Model.with_loads`.
-    released: whether the coordinates that supports move count as unknown; proven: properties found by earlier solves;
-    known_loads: loads at recent load factors.
+    released: whether the coordinates that supports move count as unknown; proven: properties found by earlier
+    solves.
     """
 
     model: Model
     static: bool
     released: bool = False
     proven: set[Proven] = field(default_factory=set)
-    known_loads: dict[float, LoadsAt] = field(default_factory=dict)
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the model only."""
@@ -101,20 +90,10 @@ class System:
         found: _Table = self.tables[build]
         return found
 
-    @shared_table
-    def spare(self) -> list[Any]:
-        """Unused workspaces of solves."""
-        return []
-
-    @shared_table
-    def spare_motions(self) -> list[Any]:
-        """Unused workspaces of motions."""
-        return []
-
-    @shared_table
-    def spare_assemblers(self) -> list[Assembler]:
-        """Unused workspaces of evaluations."""
-        return []
+    def spare(self, kind: type) -> list[Any]:
+        """Return the unused workspaces of a kind."""
+        spare: list[Any] = self.tables.setdefault(kind, [])
+        return spare
 
     @shared_table
     def reference(self) -> np.ndarray:
@@ -217,73 +196,18 @@ class System:
         return result
 
     @cached_property
-    def actions(self) -> tuple[Actions, ...]:
-        """Stations of each block, with the values of loads."""
-        return tuple(actions.of(self.model) for actions in self._unloaded_actions)
-
-    @shared_table
-    def _unloaded_actions(self) -> tuple[Actions, ...]:
-        """The actions, where sizes of loads may be those of another model."""
-        return tuple(build_actions(self.model, number) for number in range(len(self.model.groups)))
+    def loads(self) -> Loads:
+        return Loads(self.model, self.static, self.tables)
 
     @shared_table
     def stations(self) -> tuple[Stations, ...]:
         """Stations of each block, in the order of `LoadsAt.points`."""
-        return tuple(actions.stations for actions in self._unloaded_actions)
-
-    def loads_at(self, time: float) -> LoadsAt:
-        """Return the loads at a time, in statics at a load factor."""
-        if self.varying:
-            return self._loads_at(time)
-        key = time if self.static else 0.0
-        found = self.known_loads.get(key)
-        if found is None:
-            if len(self.known_loads) >= _KEPT_LOADS:
-                self.known_loads.clear()
-            found = self.known_loads[key] = self._loads_at(key)
-        return found
-
-    def _loads_at(self, time: float) -> LoadsAt:
-        return self.loads_of(time, self.factors(time))
-
-    def factors(self, time: float) -> np.ndarray:
-        """Return the factors (k,) of `model.acting` at a time."""
-        return np.array([factor(load, time, self.static) for load in self.model.acting], dtype=float)
-
-    def loads_of(self, time: float, factors: np.ndarray) -> LoadsAt:
-        """Return the loads at a time with given factors (k,) of `model.acting`."""
-        points = tuple(actions.values(time, factors) for actions in self.actions)
-        return LoadsAt(even_loads(self.model, factors), points, factors[self.imposes])
-
-    @cached_property
-    def imposes(self) -> np.ndarray:
-        """Mask (k,) of the loads of `model.acting` that impose strains."""
-        return np.array([isinstance(load, ImposedStrain) for load in self.model.acting], dtype=bool)
-
-    @cached_property
-    def conserves(self) -> np.ndarray:
-        """Mask (k,) of the loads of `model.acting` that belong to loads with a potential while factors are constant."""
-        own = {id(part) for load in self.model.loads if load.conservative for part in load.parts}
-        return np.array([id(load) in own for load in self.model.acting], dtype=bool)
-
-    def imposing(self, time: float) -> np.ndarray:
-        """Return the factors (k,) of the loads that impose strains at a time."""
-        return self.factors(time)[self.imposes] if self.imposes.any() else np.empty(0)
-
-    @cached_property
-    def varying(self) -> bool:
-        """Whether a load has an amplitude, a function of time, or moves."""
-        return any(load.moves or load.amplitude is not None for load in self.model.loads)
-
-    @cached_property
-    def proportional(self) -> bool:
-        """Whether all loads are proportional to the load factor of statics."""
-        return self.static and not self.varying and all(load.scale for load in self.model.loads)
+        return tuple(actions.stations for actions in self.loads.unloaded)
 
     @property
     def steady(self) -> bool:
         """Whether no function of time or of the load factor acts."""
-        return self.proportional and not self.moved
+        return self.loads.proportional and not self.moved
 
     @shared_table
     def springs(self) -> Alike:
@@ -366,7 +290,7 @@ class System:
     @cached_property
     def history(self) -> History:
         """History variables of connectors and section laws."""
-        return History(self.connectors, self.blocks)
+        return History(self.connectors, self.blocks, self.loads)
 
     @property
     def layouts(self) -> tuple[Layout, ...]:
@@ -383,16 +307,6 @@ class System:
         """Equation number of x (nt,) and unit normal (nt, 2) of each inclined roller."""
         first = np.array([self.unknowns.free[dof] for dof, _ in self.inclined], dtype=np.int64)
         return first, np.array([normal for _, normal in self.inclined], dtype=float).reshape(-1, 2)
-
-    @shared_table
-    def rotating(self) -> np.ndarray:
-        """Equation numbers of x and y, node and number of each nodal vector that is a coordinate (np, 4).
-
-        A tangent that is kept for several steps is rotated with the sections in these components. Nodes are numbered
-        consecutively over all blocks, in storage order. Vectors with a prescribed component or an inclined roller are
-        left out.
-        """
-        return rotating_vectors(self.blocks, self.unknowns.free, self.rotated[0])
 
     def along_free(self, residual: np.ndarray) -> np.ndarray:
         """Return the residual of the unknowns without the reactions of inclined rollers."""
@@ -431,13 +345,6 @@ class System:
         """Change of a coordinate that strains an element by about one (n,): its length for positions [m], else 1."""
         length = min(float(block.weight.sum(axis=1).min()) for block in self.blocks)
         return np.where(self.positions, length, 1.0)
-
-
-def loads_of_rows(system: System, times: Sequence[float] | np.ndarray) -> LoadsAt:
-    """Return the loads at times, which are the first axis of its arrays."""
-    factors = np.array([system.factors(time) for time in times]).reshape(len(times), -1)
-    points = tuple(actions.values_of_rows(times, factors) for actions in system.actions)
-    return LoadsAt(even_loads(system.model, factors), points, factors[:, system.imposes])
 
 
 def system_of(model: Model, static: bool) -> System:

@@ -14,7 +14,7 @@ def viscous_tangent(system: System, p: np.ndarray, v: np.ndarray, time: float, s
 
     For Kelvin and Voigt's law it is step D, with the damping matrix D. None if no section law with history is viscous.
     """
-    total, imposing, unknown = None, system.imposing(time), len(system.free_dofs)
+    total, imposing, unknown = None, system.loads.imposing(time), len(system.free_dofs)
     for (law, block), group in zip(system.history.laws, system.history.strains, strict=True):
         (strain,) = resultants(group, p, [step * v], imposing)
         past = p[block.history]

@@ -173,7 +173,7 @@ def mixed(
     factor: weight of the elastic part; loads (n,), zeros: residual and tangent without the elastic part; plain: the
     complete tangent.
     """
-    tables, imposing = system.strain_rates, system.imposing(time)
+    tables, imposing = system.strain_rates, system.loads.imposing(time)
     rates, strain, flexible_at, positive = zip(*(table.at(p, imposing) for table in tables), strict=True)
     weight = np.concatenate([table.weight for table in tables])
     before = np.cumsum([0, *(len(table.weight) for table in tables)])

@@ -151,7 +151,7 @@ def load_size(system: System, load_factor: float) -> float:
 
     If only imposed strains act, which may cause no forces, the forces that would suppress them count instead.
     """
-    loads = system.loads_at(load_factor)
+    loads = system.loads.at(load_factor)
     force, moment = loads.largest
     largest = max(system.extent * force, moment)
     if largest == 0.0 and loads.imposing.any() and not loads.body.any():
@@ -178,9 +178,9 @@ def _distributed(system: System, p: np.ndarray, unbalanced: np.ndarray, load_fac
 
     Where foundations alone bear them, there is no larger force.
     """
-    if not system.loads_at(load_factor).body.any():
+    if not system.loads.at(load_factor).body.any():
         return 0.0
-    factors = system.factors(load_factor) * [not load.even for load in system.model.acting]
+    factors = system.loads.factors(load_factor) * [not load.even for load in system.model.acting]
     without = residual_under(system, p, load_factor, factors)
     forces = without - unbalanced
     totals = [abs(float(rigid_rates(system, RigidVelocity(way), p) @ forces)) for way in ((1.0, 0.0), (0.0, 1.0))]
@@ -205,7 +205,7 @@ def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: 
         return MOST_DIGITS
     if acting < 10.0**ENOUGH * worst:
         acting = max(acting, _distributed(system, p, unbalanced, load_factor))
-    if not system.loads_at(load_factor).any and acting <= _NOTHING * float(
+    if not system.loads.at(load_factor).any and acting <= _NOTHING * float(
         np.max(row_floors(system, p) * system.scale)
     ):
         return MOST_DIGITS

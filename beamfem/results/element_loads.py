@@ -8,7 +8,7 @@ import numpy as np
 from beamfem.element.fields import cross
 from beamfem.equations.applied_loads import shape_tables
 from beamfem.equations.frame_inertia import seen_from_rest
-from beamfem.equations.system import System, loads_of_rows
+from beamfem.equations.system import System
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import inertia_points, length_points
 from beamfem.physics.compiled_connections import in_python
@@ -56,7 +56,7 @@ def _latest(solution: Solution) -> dict[str, tuple[slice | bytes, Rows]]:
 def _rows_of(solution: Solution, rows: slice | np.ndarray) -> Rows:
     system, at = loading(solution)
     times = at[rows].tolist()
-    p, rates, loads = solution.p[rows], (solution.v[rows], solution.a[rows]), loads_of_rows(system, times)
+    p, rates, loads = solution.p[rows], (solution.v[rows], solution.a[rows]), system.loads.of_rows(times)
     return Rows(system, p, *seen_from_rest(system, p, *rates, at[rows]), loads.body, loads.points, loads.imposing)
 
 
@@ -161,7 +161,7 @@ def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> A
 
 def _distributed(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
     """Return follower and varying loads along beams, and foundation springs, as evaluated by the kernels."""
-    actions = rows.system.actions[mesh.block]
+    actions = rows.system.loads.actions[mesh.block]
     stations, own = actions.stations, mesh.in_block(elements)
     order = np.argsort(own)
     chosen = actions.distributed_on(own[order])

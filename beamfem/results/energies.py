@@ -119,13 +119,13 @@ def _of_loads(solution: Solution) -> np.ndarray:
     """Return the potential (steps,) [J] of loads that keep their direction, and of foundations."""
     system, times = loading(solution)
     model, result = solution.model, np.zeros(len(solution))
-    if not system.conserves.any() and not model.line_supports:
+    if not system.loads.conserves.any() and not model.line_supports:
         return result
-    rows = times if system.static or system.varying else times[:1]  # one row stands for all of them
-    factors = np.array([np.where(system.conserves, system.factors(at), 0.0) for at in rows.tolist()])
+    rows = times if system.static or system.loads.varying else times[:1]  # one row stands for all of them
+    factors = np.array([np.where(system.loads.conserves, system.loads.factors(at), 0.0) for at in rows.tolist()])
     factors = factors.reshape(len(rows), -1)
     body = even_loads(model, factors)
-    for number, (block, actions) in enumerate(zip(system.blocks, system.actions, strict=True)):
+    for number, (block, actions) in enumerate(zip(system.blocks, system.loads.actions, strict=True)):
         at = actions.stations
         if not (body.any() or len(at.element)):
             continue

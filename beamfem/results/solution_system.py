@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.equations.system import System, loads_of_rows, system_of
+from beamfem.equations.system import System, system_of
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.results.solution import Solution
 
@@ -17,7 +17,7 @@ def loading(solution: Solution) -> tuple[System, np.ndarray]:
 def imposing(solution: Solution) -> np.ndarray:
     """Return the factors (steps, k) of the loads that impose strains."""
     system, at = loading(solution)
-    return loads_of_rows(system, at.tolist()).imposing
+    return system.loads.of_rows(at.tolist()).imposing
 
 
 def imposed_measures(solution: Solution, mesh: BeamMesh, rows: slice | np.ndarray = slice(None)) -> np.ndarray | float:

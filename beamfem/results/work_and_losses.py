@@ -62,7 +62,7 @@ def forces_without_potential(solution: Solution) -> Forces:
     system, driving, (rows, size) = system_of(solution.model, static=False), _driving(solution), solution.p.shape
     work, connected, lost = np.zeros((rows, size)), np.zeros((rows, size)), np.zeros(rows)
     moving = [item.dof for item in system.prescribed if callable(item.value)]
-    following = not system.conserves.all()
+    following = not system.loads.conserves.all()
     damped = system.damped or (len(driving.items) < len(system.connectors.items) and system.connectors.damp)
     if not (moving or following or damped or driving.items):
         return Forces(work, connected, lost)
@@ -71,7 +71,7 @@ def forces_without_potential(solution: Solution) -> Forces:
             acting = residual(system, p, v, a, at)
             work[row, moving] = acting[moving]
         if following:
-            left = system.loads_of(at, np.where(system.conserves, system.factors(at), 0.0))
+            left = system.loads.of(at, np.where(system.loads.conserves, system.loads.factors(at), 0.0))
             work[row] += residual(system, p, v, a, at, loads=left) - acting
         driving.add_forces(connected[row], (p, v, a), at)
         if damped:

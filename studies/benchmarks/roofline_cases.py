@@ -42,7 +42,7 @@ def case(form: str, elements: int) -> tuple[System, Case]:
     state[0] = system.reference + 1e-3 / elements * rng.normal(size=system.model.size)
     unknown, width = len(system.free_dofs), 2 * system.layouts[0].half_width + 1
     equations = system.assembler()
-    equations.load(system.loads_at(0.0).body, system.loads_at(0.0).points)
+    equations.load(system.loads.at(0.0).body, system.loads.at(0.0).points)
     equations.weigh((1.0, 2.0 / _STEP, 4.0 / _STEP**2))
     residual, band, right = np.empty(len(state[0])), np.zeros((unknown, width)), rng.normal(size=unknown)
     one = Case(equations, state, residual, band, right, system.unknowns.reach)

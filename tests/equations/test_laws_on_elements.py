@@ -273,6 +273,6 @@ def test_strains_by_which_tangents_are_mixed_are_those_of_the_linear_section(coo
         system = System(bf.Model([bf.Beam(LINE, 2, element, kind(**COUPLED))]), static=True)
         p = system.reference + 0.05 * np.random.default_rng(7).standard_normal(system.model.size)
         table = strain_rates(system.blocks[0], system.unknowns.free)
-        found.append(table.at(p, system.imposing(0.0)).strain)
+        found.append(table.at(p, system.loads.imposing(0.0)).strain)
     assert np.abs(found[0]).max() > 1e-3
     assert found[1] == pytest.approx(found[0], rel=1e-9, abs=1e-12)

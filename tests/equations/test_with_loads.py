@@ -10,6 +10,7 @@ import pytest
 from connectors import SpringDamper
 
 import beamfem as bf
+from beamfem.equations.motion_workspace import MotionWorkspace
 from beamfem.equations.system import Proven, System, shared_table, system_of
 
 STEEL = bf.Material(2.1e11, 0.3, 7850.0, thermal_expansion=1.2e-5)
@@ -214,7 +215,7 @@ def test_what_a_solve_finds_out_is_not_shared():
     one, other = system_of(model, True), system_of(model.with_loads([force(model.beams[1], 3.0)]), True)
     one.proven.add(Proven.KEEPS_DIGITS)
     assert not other.proven
-    assert one.known_loads is not other.known_loads
+    assert one.loads.known is not other.loads.known
 
 
 def test_no_shared_table_depends_on_the_size_of_loads():
@@ -230,11 +231,10 @@ def test_no_shared_table_depends_on_the_size_of_loads():
             np.testing.assert_array_equal(one, other, err_msg=name)
 
 
-# addresses, work spaces, supports, and the unit loads of the first model, which `Actions.of` replaces
+# addresses, and supports
 _WITHOUT_NUMBERS = (
     *("prescribed", "_rotated"),
     *("equations", "without_stiffness", "strain_rates"),
-    *("spare", "spare_motions", "spare_assemblers", "_unloaded_actions"),
 )
 
 
@@ -260,7 +260,7 @@ def test_amplitudes_of_other_models_are_not_kept():
     driven = model.with_loads([force(model.beams[1], amplitude=Amplitude())])
     kept = weakref.ref(driven.loads[0].amplitude)
     bf.simulate(driven, 0.01, 0.001)
-    (space,) = system_of(model, static=False).spare_motions
+    (space,) = system_of(model, static=False).spare(MotionWorkspace)
     assert space.assembler.record.body is None
     assert space.solver.saved is None
     del driven

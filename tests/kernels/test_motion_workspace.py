@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
+from beamfem.equations.motion_workspace import MotionWorkspace
 from beamfem.equations.system import system_of
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
@@ -19,7 +20,7 @@ def swinging(elements, element):
 def test_what_the_matrix_holds_does_not_count(element, elements):
     model = swinging(elements, element)
     expected = bf.simulate(model, 0.01, 5e-4).p
-    (space,) = system_of(model, static=False).spare_motions
+    (space,) = system_of(model, static=False).spare(MotionWorkspace)
     space.solver.rows[:] = np.nan
     np.testing.assert_array_equal(bf.simulate(model, 0.01, 5e-4).p, expected)
-    assert system_of(model, static=False).spare_motions == [space]
+    assert system_of(model, static=False).spare(MotionWorkspace) == [space]

@@ -5,7 +5,7 @@ import pytest
 from conftest import USUAL, beam, identify
 
 import beamfem as bf
-from beamfem.equations.rotating_vectors import runs_of
+from beamfem.equations.rotating_vectors import rotating_vectors, runs_of
 from beamfem.equations.system import system_of
 
 
@@ -18,7 +18,7 @@ def spread(runs):
 @pytest.mark.parametrize("element", USUAL, ids=identify)
 def test_runs_hold_each_vector_of_a_chain_once_and_are_few(element):
     chain = beam(element, 20)
-    pairs = system_of(bf.Model([chain], [bf.Clamp(chain.start)]), False).rotating
+    pairs = system_of(bf.Model([chain], [bf.Clamp(chain.start)]), False).table(rotating_vectors)
     runs = runs_of(pairs)
     np.testing.assert_array_equal(spread(runs), pairs[:, :3])
     vectors = len(np.unique(pairs[:, 3]))
@@ -34,7 +34,7 @@ def test_runs_of_a_frame_with_corners_and_supports_inside_hold_each_vector_once(
     bent, straight = (bf.Beam(curve, 6, element, section, steel) for curve in (angle, strut))
     joints = [bf.Hinge(bent.start, straight.start), bf.Rigid(bent.end, straight.end)]
     supports = [bf.Pin(bent.start), bf.Roller(bent.at(0.5), normal=(1.0, 1.0)), bf.Pin(straight.at(0.5))]
-    pairs = system_of(bf.Model([bent, straight], supports, joints=joints), False).rotating
+    pairs = system_of(bf.Model([bent, straight], supports, joints=joints), False).table(rotating_vectors)
     np.testing.assert_array_equal(spread(runs_of(pairs)), pairs[:, :3])
 
 

@@ -285,7 +285,7 @@ def enriched_row(solution: Solution, number: int) -> Solution:
         p = carried_coordinates(state, model)
         p[memory] = past
         result = _equilibrium(system, p, state)
-        p = system.history.in_equilibrium(result.state, state.at, system.imposing(state.at))
+        p = system.history.in_equilibrium(result.state, state.at)
         past, iterations = p[memory], iterations + result.iterations
     turned = None if state.turned is None else first_turns(model, p, state.turned)[None]
     none = np.zeros((1, model.size))

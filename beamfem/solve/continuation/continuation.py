@@ -283,7 +283,7 @@ def begin(
     (mode,) = plain.softest_modes(factors, 1)
     stiffness = 1.0 / abs(plain.softness(factors, mode)) / float(np.max(np.abs(mode) / plain.scale)) ** 2
     per_load, flat = _reach(plain, p, load_factor, stiffness, 1e-6), False
-    if system.varying or any(callable(item.value) for item in system.prescribed) or per_load == 0.0:
+    if system.loads.varying or any(callable(item.value) for item in system.prescribed) or per_load == 0.0:
         # an amplitude may start with a slope near zero: then its largest effect up to load factor 1 counts
         with suppress(InputError):  # from a function that is not defined so far
             further = max(_reach(plain, p, load_factor, stiffness, width) for width in _WIDTHS)

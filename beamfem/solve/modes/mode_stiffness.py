@@ -47,7 +47,7 @@ def stiffness_of_modes(
     """
     zeros, count = np.zeros(len(p)), len(modes)
     result = np.zeros((count, count))
-    imposing = system.imposing(load_factor)
+    imposing = system.loads.imposing(load_factor)
     for block in system.blocks:
         classes, points, measures, _ = block.stiffness.shape
         unit = np.broadcast_to(np.eye(measures), (classes, points, measures, measures))
@@ -64,7 +64,7 @@ def stiffness_of_modes(
 
 def stresses_of(system: System, p: np.ndarray, correction: np.ndarray, load_factor: float) -> tuple[np.ndarray, ...]:
     """Return the stress resultants of a state in each block (ne, nq, ns); in the reference only imposed ones."""
-    if np.array_equal(p, system.reference) and not system.imposing(load_factor).any():
+    if np.array_equal(p, system.reference) and not system.loads.imposing(load_factor).any():
         return tuple(np.zeros_like(stresses) for stresses in system.assembler().stresses)
     return predicted_stresses(system, p, correction, load_factor)
 

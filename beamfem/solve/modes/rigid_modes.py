@@ -41,7 +41,7 @@ def unresisted(pencil: Pencil) -> tuple[np.ndarray, tuple[str, ...]]:
 def _negligible_force(pencil: Pencil) -> float:
     """Return the force [N] that a unit rotation of the state may cause by round-off and by the residual of Newton."""
     system, p, zeros = pencil.system, pencil.p, np.zeros_like(pencil.p)
-    forces = [*system.loads_at(pencil.load_factor).points, residual_at_rest(system, p, pencil.load_factor)]
+    forces = [*system.loads.at(pencil.load_factor).points, residual_at_rest(system, p, pencil.load_factor)]
     forces += [stresses[..., 0] for stresses in stresses_of(system, p, zeros, pencil.load_factor)]
     largest = max(float(np.abs(values).max(initial=0.0)) for values in forces)
     return _UNBALANCED * largest + round_off_floor(system, p)

@@ -4,7 +4,7 @@ import numpy as np
 
 from beamfem.equations.callbacks import Deferred
 from beamfem.equations.motion_workspace import MotionWorkspace
-from beamfem.equations.system import System, loads_of_rows
+from beamfem.equations.system import System
 from beamfem.kernels.motion_record import MotionLimits, MotionStatistics, Rule
 from beamfem.kernels.time_loop import march
 from beamfem.solve.motion.coupled_stages import CoupledStages, is_weak
@@ -46,7 +46,7 @@ class StepsInCalls:
     def _fill(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> None:
         """Hand a state, what is prescribed and the loads at times, and where rows are saved to compiled code."""
         loads, assembler = (
-            loads_of_rows(self._system, times if self._system.varying else times[:1]),
+            self._system.loads.of_rows(times if self._system.loads.varying else times[:1]),
             self._space.assembler,
         )
         assembler.load(loads.body, loads.points, loads.imposing)
@@ -80,7 +80,7 @@ class StepsInCalls:
             step, here = slice(number, number + 1), saving.after(number)
             if not self._advance(state, prescribed[step], times[step], here):
                 return number
-            state[0] = history.committed((state[0], state[1], state[2]), time, self._system.imposing(time), self._step)
+            state[0] = history.committed((state[0], state[1], state[2]), time, self._step)
             here.keep_state(0, state)
             if self._deferred is not None and self._deferred.interrupted:
                 return number + 1

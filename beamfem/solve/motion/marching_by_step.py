@@ -51,8 +51,7 @@ class OwnSteps:
             if found is None:
                 return number
             self._complete(state, found, prescribed[number], time)
-            motion, imposing = (state[0], state[1], state[2]), system.imposing(time)
-            state[0] = system.history.committed(motion, time, imposing, time - self._time)
+            state[0] = system.history.committed((state[0], state[1], state[2]), time, time - self._time)
             saving.keep(number, before, state)
             self._time = time
         return len(times)

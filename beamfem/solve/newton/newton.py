@@ -371,7 +371,7 @@ class BandProblem(Equilibrium):
     ) -> None:
         self.system, self.start, self.newton, self.keep = system, start, newton, keep
         self.space = space = band_workspace(system)
-        loads, self.state = system.loads_at(load_factor), space.p
+        loads, self.state = system.loads.at(load_factor), space.p
         self.load = load_size(system, load_factor)
         space.begin(loads, load_factor)
         own = space.solver

@@ -383,7 +383,7 @@ def _require_load(system: System) -> None:
     kinks = [kink for function in functions_of_time(system) for kink in function.kinks]
     for at in (0.37, 1.0, *kinks):
         changes = [(system.prescribed_values(at), system.prescribed_values(0.0))]
-        changes += zip(system.loads_at(at).arrays, system.loads_at(0.0).arrays, strict=True)
+        changes += zip(system.loads.at(at).arrays, system.loads.at(0.0).arrays, strict=True)
         if any(not np.array_equal(now, before) for now, before in changes):
             return
     raise InputError(

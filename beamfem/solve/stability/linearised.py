@@ -128,7 +128,9 @@ def _largest_strain(
         plain, stiffness = free_group(block.resisting(unit), len(p)), block.stiffness[block.kind]
         steps = [(0.0, load_factor, -sum(weight for _, weight in differences))]
         steps += [(at - load_factor, at, weight) for at, weight in differences]
-        strains = [weight * resultants(plain, p, [by * slope], system.imposing(at))[0] for by, at, weight in steps]
+        strains = [
+            weight * resultants(plain, p, [by * slope], system.loads.imposing(at))[0] for by, at, weight in steps
+        ]
         strain = np.sum(strains, axis=0)
         square = np.einsum("eqi,eqij,eqj->eq", strain, stiffness, strain) / stiffness[..., 0, 0].max(axis=1)[:, None]
         largest = max(largest, float(square.max(initial=0.0)))

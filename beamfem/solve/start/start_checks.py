@@ -47,8 +47,8 @@ def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
     """Return the largest unbalanced force [N, N m] in the state p (n,); 0 if it is small enough."""
     unbalanced, tangent = linearise_at_rest(system, p, load_factor)
     remaining = np.abs(system.along_free(unbalanced))
-    acting = [float(np.abs(values).max(initial=0.0)) for values in system.loads_at(load_factor).points]
-    if system.imposing(load_factor).any():
+    acting = [float(np.abs(values).max(initial=0.0)) for values in system.loads.at(load_factor).points]
+    if system.loads.imposing(load_factor).any():
         acting.append(load_size(system, load_factor) / system.extent)
     force = max([float(np.abs(unbalanced).max()), *acting])
     reach = max([float(np.abs(p).max()), *(beam.curve.length for beam in system.model.beams)])
@@ -74,7 +74,7 @@ def require_equilibrium(system: System, p: np.ndarray, load_factor: float, use: 
 
 def _sure(system: System, p: np.ndarray, load_factor: float) -> bool:
     """Return whether a state (n,) balances the loads except for its last digits; without loads, all rows count."""
-    if not system.loads_at(load_factor).any:
+    if not system.loads.at(load_factor).any:
         unbalanced = np.abs(system.along_free(residual_at_rest(system, p, load_factor)))
         if np.all(unbalanced <= row_floors(system, p)[system.free_dofs]):
             return True

@@ -205,7 +205,7 @@ def reach(
                 continue
             result, accepted = _attempt(system, done, target, newton)
             if accepted:
-                state = system.history.in_equilibrium(result.state, target, system.imposing(target))
+                state = system.history.in_equilibrium(result.state, target)
                 done.add(target, state, result.negative_pivots, result.ended, result.digits)
                 if target >= refused:
                     cuts = 0
@@ -356,7 +356,7 @@ def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap
     load_factor = float(turn.limit[-1])
     where = f"a limit point at load factor {load_factor:.6g}: beyond it there is no equilibrium nearby"
     if snap == "error":
-        loaded = follower.system.loads_at(1.0).any
+        loaded = follower.system.loads.at(1.0).any
         unstable = [at for at, _, count in done.rows if is_unstable(done.symmetric, count)]
         if unstable:
             where += f"; the path is unstable from load factor {unstable[0]:.6g} on"

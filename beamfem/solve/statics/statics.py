@@ -201,7 +201,7 @@ def solve_through(
         raise ConvergenceError(
             f"no equilibrium under the loads that do not scale: {first.ended.value}", record.solution()
         )
-    state = system.history.in_equilibrium(first.state, 0.0, system.imposing(0.0))
+    state = system.history.in_equilibrium(first.state, 0.0)
     record.add(0.0, state, first.negative_pivots, first.ended, first.digits)
     if unstable == "leave" and is_unstable(system.symmetric, first.negative_pivots):
         raise ConvergenceError(
@@ -305,7 +305,7 @@ def nothing_acts(system: System) -> bool:
     if Proven.NOTHING_ACTS_AT_ZERO not in system.proven:
         # a load below the round-off of stiff rows may still bend the beam
         moved = system.moved and system.prescribed_changes(0.0).any()
-        acts = not system.proportional and system.loads_at(0.0).any
+        acts = not system.loads.proportional and system.loads.at(0.0).any
         if moved or acts:
             return False
         if system.connectors.items or any(block.law is not None for block in system.blocks):  # may have forces there

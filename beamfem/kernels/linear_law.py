@@ -5,14 +5,33 @@ their derivatives from strains. A law with history reads it from the state of th
 row; w: weights.
 """
 
-from beamfem.kernels.compiling import routine
+from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.point import RATE, RESULTANT, STIFFNESS, STRAIN
-from beamfem.kernels.pointers import at, small_code
+from beamfem.kernels.pointers import at
 from beamfem.kernels.record import ROW, Group, System
 from beamfem.kernels.records import Rows
-from beamfem.kernels.simd import WIDTH
+from beamfem.kernels.simd import WIDTH, zeros
 
 FAST = {"contract", "reassoc", "nsz"}
+
+
+@inlined
+def _resultants(measures, count, stiff, w, c, eps0, x):
+    eps, s, pairs = at(x, STRAIN * ROW), at(x, RESULTANT * ROW), measures * (measures + 1) // 2
+    for i in range(0, count, WIDTH):
+        weight = w[i]
+        for row in range(measures):
+            total = zeros()
+            for column in range(measures):
+                first, last = min(row, column), max(row, column)
+                pair = first * measures - first * (first + 1) // 2 + last
+                total += c[pair * ROW + i] * (eps[column * ROW + i] - eps0[column * ROW + i])
+            s[row * ROW + i] = weight * total
+    if stiff != 0:
+        for k in range(pairs):
+            to, entry = at(x, (STIFFNESS + k) * ROW), at(c, k * ROW)
+            for i in range(0, count, WIDTH):
+                to[i] = w[i] * entry[i]
 
 
 @routine(fastmath=FAST)
@@ -20,23 +39,7 @@ def four_resultants(
     group: Group, system: System, first: int, number: int, count: int, stiff: int, w: Rows, c: Rows, eps0: Rows, x: Rows
 ) -> None:
     """Fill the resultants of four measures and, if `stiff`, their stiffness; x: rows of a point, see `point`."""
-    small_code()
-    eps, s = at(x, STRAIN * ROW), at(x, RESULTANT * ROW)
-    for i in range(0, count, WIDTH):
-        weight = w[i]
-        a0, a1 = eps[i] - eps0[i], eps[ROW + i] - eps0[ROW + i]
-        a2, a3 = eps[2 * ROW + i] - eps0[2 * ROW + i], eps[3 * ROW + i] - eps0[3 * ROW + i]
-        c01, c02, c03 = c[ROW + i], c[2 * ROW + i], c[3 * ROW + i]
-        c12, c13, c23 = c[5 * ROW + i], c[6 * ROW + i], c[8 * ROW + i]
-        s[i] = weight * (c[i] * a0 + c01 * a1 + c02 * a2 + c03 * a3)
-        s[ROW + i] = weight * (c01 * a0 + c[4 * ROW + i] * a1 + c12 * a2 + c13 * a3)
-        s[2 * ROW + i] = weight * (c02 * a0 + c12 * a1 + c[7 * ROW + i] * a2 + c23 * a3)
-        s[3 * ROW + i] = weight * (c03 * a0 + c13 * a1 + c23 * a2 + c[9 * ROW + i] * a3)
-    if stiff != 0:
-        for k in range(10):
-            to, entry = at(x, (STIFFNESS + k) * ROW), at(c, k * ROW)
-            for i in range(0, count, WIDTH):
-                to[i] = w[i] * entry[i]
+    _resultants(4, count, stiff, w, c, eps0, x)
 
 
 @routine(fastmath=FAST)
@@ -44,28 +47,7 @@ def six_resultants(
     group: Group, system: System, first: int, number: int, count: int, stiff: int, w: Rows, c: Rows, eps0: Rows, x: Rows
 ) -> None:
     """Do the same as `four_resultants` for six measures."""
-    eps, s = at(x, STRAIN * ROW), at(x, RESULTANT * ROW)
-    for i in range(0, count, WIDTH):
-        weight = w[i]
-        a0, a1 = eps[i] - eps0[i], eps[ROW + i] - eps0[ROW + i]
-        a2, a3 = eps[2 * ROW + i] - eps0[2 * ROW + i], eps[3 * ROW + i] - eps0[3 * ROW + i]
-        a4, a5 = eps[4 * ROW + i] - eps0[4 * ROW + i], eps[5 * ROW + i] - eps0[5 * ROW + i]
-        c01, c02, c03, c04, c05 = c[ROW + i], c[2 * ROW + i], c[3 * ROW + i], c[4 * ROW + i], c[5 * ROW + i]
-        c12, c13, c14, c15 = c[7 * ROW + i], c[8 * ROW + i], c[9 * ROW + i], c[10 * ROW + i]
-        c23, c24, c25 = c[12 * ROW + i], c[13 * ROW + i], c[14 * ROW + i]
-        c34, c35 = c[16 * ROW + i], c[17 * ROW + i]
-        c45 = c[19 * ROW + i]
-        s[i] = weight * (c[i] * a0 + c01 * a1 + c02 * a2 + c03 * a3 + c04 * a4 + c05 * a5)
-        s[ROW + i] = weight * (c01 * a0 + c[6 * ROW + i] * a1 + c12 * a2 + c13 * a3 + c14 * a4 + c15 * a5)
-        s[2 * ROW + i] = weight * (c02 * a0 + c12 * a1 + c[11 * ROW + i] * a2 + c23 * a3 + c24 * a4 + c25 * a5)
-        s[3 * ROW + i] = weight * (c03 * a0 + c13 * a1 + c23 * a2 + c[15 * ROW + i] * a3 + c34 * a4 + c35 * a5)
-        s[4 * ROW + i] = weight * (c04 * a0 + c14 * a1 + c24 * a2 + c34 * a3 + c[18 * ROW + i] * a4 + c45 * a5)
-        s[5 * ROW + i] = weight * (c05 * a0 + c15 * a1 + c25 * a2 + c35 * a3 + c45 * a4 + c[20 * ROW + i] * a5)
-    if stiff != 0:
-        for k in range(21):
-            to, entry = at(x, (STIFFNESS + k) * ROW), at(c, k * ROW)
-            for i in range(0, count, WIDTH):
-                to[i] = w[i] * entry[i]
+    _resultants(6, count, stiff, w, c, eps0, x)
 
 
 @routine("iiddvvvv", fastmath=FAST)

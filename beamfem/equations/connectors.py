@@ -460,10 +460,9 @@ class Connectors:
             result += np.array(load.vector) * factor(load, time, self.static)
         return result
 
-    def add_forces(self, residual: np.ndarray, motion: Motion, time: float, gravity: np.ndarray | None = None) -> None:
-        """Add the forces of all connectors to a residual (n,); gravity (2,): another one than at the time."""
-        if gravity is None:
-            gravity = self.gravity(time) if self.items else np.zeros(2)
+    def add_forces(self, residual: np.ndarray, motion: Motion, time: float) -> None:
+        """Add the forces of all connectors to a residual (n,)."""
+        gravity = self.gravity(time) if self.items else np.zeros(2)
         for item in self.items:
             np.add.at(residual, item.all, item.force_in(motion, time, gravity))
 

@@ -12,7 +12,6 @@ from beamfem.equations import equation_numbering as layout
 from beamfem.equations.applied_loads import Loads, pressures_have_potential
 from beamfem.equations.assembler import Assembler, Equations
 from beamfem.equations.blocks import build_block
-from beamfem.equations.connection_table import Alike, alike, springs_to_ground
 from beamfem.equations.connectors import Connectors, connectors_of
 from beamfem.equations.element_group import make_group
 from beamfem.equations.equation_numbering import Unknowns
@@ -23,7 +22,7 @@ from beamfem.equations.model_coordinates import (
     prescribed_coordinates,
     stress_free,
 )
-from beamfem.equations.parts_in_python import PartsInPython
+from beamfem.equations.parts_at_points import Alike, PartsInPython, alike, springs_to_ground
 from beamfem.equations.strain_rates import StrainRates, strain_rates
 from beamfem.errors import InputError
 from beamfem.kernels.block import Block, Layout, Stations

@@ -1,10 +1,13 @@
 """Residual and tangent of a system in a state: the interface between solvers and kernels."""
 
+from typing import NamedTuple
+
 import numpy as np
 from scipy.sparse import coo_array, csc_array, csr_array, hstack
 
 from beamfem.equations.applied_loads import LoadsAt
 from beamfem.equations.assembler import Assembler, Equations
+from beamfem.equations.connectors import Motion
 from beamfem.equations.differences import differentiated
 from beamfem.equations.frame_inertia import absolute, right_angle, right_angle_of_unknowns, speeds
 from beamfem.equations.system import Proven, System
@@ -18,6 +21,10 @@ INERTIA = (0.0, 0.0, 1.0)
 ROUND_OFF = 4.0 * float(np.finfo(float).eps)  # of a coordinate: each term of a strain is rounded, and so is the sum
 _EMPTY = np.empty(0)
 _KEPT = 200_000  # floats of the largest workspace whose allocation is a noticeable part of an evaluation
+
+
+Weights = tuple[float, float, float]  # ck, cv, ca: of p, p' and p''
+Stresses = tuple[np.ndarray, ...]  # resultants (ne, nq, ns) of each block
 
 
 def residual(
@@ -148,8 +155,8 @@ def linearise(
     v: np.ndarray,
     a: np.ndarray,
     time: float,
-    coefficients: tuple[float, float, float],
-    stresses: tuple[np.ndarray, ...] | None = None,
+    coefficients: Weights,
+    stresses: Stresses | None = None,
     equations: Equations | None = None,
     dt: float = 0.0,
     moving: bool = False,
@@ -162,8 +169,9 @@ def linearise(
     p'' has no weight, which statics lacks; all_active: whether one-sided conditions are all active, and not those that
     the state shows.
     """
-    at = system, p, v, a, time, coefficients, stresses, equations, dt
-    result, tangent = _linearise(*at, moving) if system.model.frame is None else _linearise_turning(*at)
+    asked = _Asked(time, coefficients, stresses, equations, dt, moving)
+    linearised = _linearise if system.model.frame is None else _linearise_turning
+    result, tangent = linearised(system, (p, v, a), asked)
     if len(system.connectors.one_sided) and not all_active:
         inactive = inactive_conditions(system, p, result)
         result = released(system, p, result, system.connectors.gradients(p, time), inactive)
@@ -174,77 +182,59 @@ def linearise(
 
 
 def linearise_at_rest(
-    system: System,
-    p: np.ndarray,
-    time: float,
-    stresses: tuple[np.ndarray, ...] | None = None,
-    equations: Equations | None = None,
+    system: System, p: np.ndarray, time: float, stresses: Stresses | None = None, equations: Equations | None = None
 ) -> tuple[np.ndarray, Tangent]:
     """Return residual (n,) and static tangent of a state p (n,) at rest, see `linearise`."""
     zeros = np.zeros(len(p))
     return linearise(system, p, zeros, zeros, time, STATICS, stresses, equations)
 
 
-def _linearise(
-    system: System,
-    p: np.ndarray,
-    v: np.ndarray,
-    a: np.ndarray,
-    time: float,
-    coefficients: tuple[float, float, float],
-    stresses: tuple[np.ndarray, ...] | None,
-    equations: Equations | None,
-    dt: float,
-    moving: bool,
-) -> tuple[np.ndarray, Tangent]:
+class _Asked(NamedTuple):
+    """What is to be linearised, see `linearise`."""
+
+    time: float
+    coefficients: Weights
+    stresses: Stresses | None
+    equations: Equations | None
+    dt: float
+    moving: bool
+
+
+def _linearise(system: System, motion: Motion, asked: _Asked) -> tuple[np.ndarray, Tangent]:
     """Return residual and tangent of a motion at rest, see `linearise`."""
-    matrix, result = _entries(system), np.empty(len(p))
-    assembler = _acquired(system) if equations is None else Assembler(equations)
+    matrix, result = _entries(system), np.empty(len(motion[0]))
+    assembler = _acquired(system) if asked.equations is None else Assembler(asked.equations)
     own = assembler.stresses
-    if stresses is not None:
-        assembler.take_stresses(stresses)
-    assembler.take(system.loads.at(time), time)
-    assembler.weigh(coefficients, dt, moving)
-    assembler.balance(_plain(p), _plain(v), _plain(a), result, matrix, stresses is not None)
-    if equations is None:
+    if asked.stresses is not None:
+        assembler.take_stresses(asked.stresses)
+    assembler.take(system.loads.at(asked.time), asked.time)
+    assembler.weigh(asked.coefficients, asked.dt, asked.moving)
+    p, v, a = map(_plain, motion)
+    assembler.balance(p, v, a, result, matrix, asked.stresses is not None)
+    if asked.equations is None:
         assembler.take_stresses(own)
         _return_assembler(system, assembler)
     return result, tangent_of(system, matrix)
 
 
-def _linearise_turning(
-    system: System,
-    p: np.ndarray,
-    v: np.ndarray,
-    a: np.ndarray,
-    time: float,
-    coefficients: tuple[float, float, float],
-    stresses: tuple[np.ndarray, ...] | None,
-    equations: Equations | None,
-    dt: float,
-) -> tuple[np.ndarray, Tangent]:
+def _linearise_turning(system: System, motion: Motion, asked: _Asked) -> tuple[np.ndarray, Tangent]:
     """Return residual and tangent in a rotating frame, see `rotating_frame`, by the chain rule.
 
     dR/dp = K + w C J + w^2 M J^2 and dR/dp' = C + 2 w M J with the derivatives K, C and M of the motion at rest.
     """
-    (ck, cv, _), free, unknown = coefficients, system.free_dofs, len(system.free_dofs)
+    (ck, cv, _), time, (p, v, a) = asked.coefficients, asked.time, motion
+    free, unknown = system.free_dofs, len(system.free_dofs)
     taken, turn = right_angle_of_unknowns(system)
     twice = csr_array(right_angle(system)[free] @ right_angle(system)[:, free])
     result, whole = np.zeros(len(p)), csr_array((unknown, unknown))
     for weight, speed in speeds(system, time):
         state = p, *absolute(system, p, v, a, speed)
-        forces, tangent = _linearise(system, *state, time, coefficients, stresses, equations, dt, True)
-        damping, mass = (
-            csr_array(
-                hstack(
-                    [
-                        _linearise(system, *state, time, rate, None, equations, dt, True)[1].sparse(UNROTATED),
-                        _by_rates(system, state, time, taken, rate),
-                    ]
-                )
-            )
-            for rate in ((0.0, 1.0, 0.0), INERTIA)
-        )
+        forces, tangent = _linearise(system, state, asked._replace(moving=True))
+        by_rates = []
+        for rate in ((0.0, 1.0, 0.0), INERTIA):
+            own = _linearise(system, state, asked._replace(coefficients=rate, stresses=None, moving=True))[1]
+            by_rates.append(csr_array(hstack([own.sparse(UNROTATED), _by_rates(system, state, time, taken, rate)])))
+        damping, mass = by_rates
         added = speed * (ck * damping + 2.0 * cv * mass) @ turn + ck * speed**2 * mass[:, :unknown] @ twice
         result, whole = result + weight * forces, whole + weight * (tangent.sparse(UNROTATED) + added)
     # SuperLU needs every entry of the diagonal, zeros included
@@ -255,13 +245,7 @@ def _linearise_turning(
     return result, SaddleTangent(SparseTangent(full), multipliers) if multipliers else SparseTangent(full)
 
 
-def _by_rates(
-    system: System,
-    state: tuple[np.ndarray, np.ndarray, np.ndarray],
-    time: float,
-    dofs: np.ndarray,
-    rate: tuple[float, float, float],
-) -> np.ndarray:
+def _by_rates(system: System, state: Motion, time: float, dofs: np.ndarray, rate: Weights) -> np.ndarray:
     """Return the derivatives (unknown, k) of the residual by p' or p'' of prescribed coordinates (k,).
 
     They are differences, which are exact as the residual is quadratic in p' and linear in p''.
@@ -316,12 +300,7 @@ def tangent_of(system: System, matrix: np.ndarray) -> Tangent:
 
 
 def with_stresses(
-    system: System,
-    state: tuple[np.ndarray, np.ndarray, np.ndarray],
-    time: float,
-    coefficients: tuple[float, float, float],
-    stresses: tuple[np.ndarray, ...] | None,
-    plain: Tangent,
+    system: System, state: Motion, time: float, coefficients: Weights, stresses: Stresses | None, plain: Tangent
 ) -> MixedTangent:
     """Return the mixed form of the tangent `plain` in p, p', p'': with stress resultants as additional unknowns."""
     p = state[0]
@@ -330,7 +309,7 @@ def with_stresses(
     return mixed(system, p, time, coefficients[0], loads[system.free_dofs], zeros, plain)
 
 
-def _sure_stresses(system: System, p: np.ndarray, time: float) -> tuple[np.ndarray, ...]:
+def _sure_stresses(system: System, p: np.ndarray, time: float) -> Stresses:
     """Return the stress resultants (ne, nq, ns) of each block in a state, with those that may be round-off set to zero.
 
     Round-off in a stiff part could otherwise buckle, or stiffen, an adjacent soft part.
@@ -363,9 +342,9 @@ def predicted_stresses(
     step: np.ndarray,
     time: float,
     equations: Equations | None = None,
-    rates: tuple[np.ndarray, tuple[float, float, float]] | None = None,
+    rates: tuple[np.ndarray, Weights] | None = None,
     dt: float = 0.0,
-) -> tuple[np.ndarray, ...]:
+) -> Stresses:
     """Return the stress resultants (ne, nq, ns) of each block after a linearised step (n,) from p (n,).
 
     time: at the end of the step, for imposed strains; equations: those of other blocks, used instead of those of the

@@ -86,13 +86,16 @@ def springs_to_ground(model: Model, unknowns: Unknowns, reference: np.ndarray) -
     return Alike(COORDINATE_SPRING, numbers[:, None], data, none, places[:, None, None])
 
 
-def alike(parts: Iterable[tuple[Connector, np.ndarray]]) -> list[Alike]:
-    """Return compiled parts by kind, each given with the positions (u, u) of its tangent's entries, or -1."""
-    kinds: defaultdict[Connection, list[tuple[Connector, np.ndarray]]] = defaultdict(list)
+def by_kind(parts: Iterable[tuple[Connector, np.ndarray]], size: int) -> "list[Alike | PartsInPython]":
+    """Return parts by kind, each given with the positions (u, u) of its tangent's entries in the matrix, -1 for none.
+
+    size: number of coordinates.
+    """
+    kinds: defaultdict[Connection | None, list[tuple[Connector, np.ndarray]]] = defaultdict(list)
     for item, places in parts:
-        assert item.compiled is not None
         kinds[item.compiled].append((item, places))
-    return [
+    called = kinds.pop(None, [])
+    found: list[Alike | PartsInPython] = [
         Alike(
             connection,
             np.array([item.all for item, _ in some], dtype=np.int64),
@@ -101,7 +104,9 @@ def alike(parts: Iterable[tuple[Connector, np.ndarray]]) -> list[Alike]:
             np.array([places for _, places in some], dtype=np.int64),
         )
         for connection, some in kinds.items()
+        if connection is not None
     ]
+    return [*found, PartsInPython(called, size)] if called else found
 
 
 _MOST = 64  # places in memory of which views are kept, which are most of the cost of a call

@@ -22,11 +22,10 @@ from beamfem.equations.model_coordinates import (
     prescribed_coordinates,
     stress_free,
 )
-from beamfem.equations.parts_at_points import Alike, PartsInPython, alike, springs_to_ground
+from beamfem.equations.parts_at_points import Alike, PartsInPython, by_kind, springs_to_ground
 from beamfem.equations.strain_rates import StrainRates, strain_rates
 from beamfem.errors import InputError
 from beamfem.kernels.block import Block, Layout, Stations
-from beamfem.kernels.record import Parts
 from beamfem.model.model import Model
 from beamfem.physics.stations import FOLLOWING
 from beamfem.precision.roundoff_bounds import residual_errors, stress_errors
@@ -132,22 +131,19 @@ class System:
     def equations_of(self, blocks: Sequence[Block]) -> Equations:
         """Return the equations with other blocks in place of those of the system."""
         groups = [make_group(*parts) for parts in zip(blocks, self.layouts, self.stations, strict=True)]
-        return Equations(groups, self.model.size, self._parts, self.called)
+        return Equations(groups, self.model.size, [each.record for each in self.parts], self.called)
 
     @shared_table
-    def _parts(self) -> list[Parts]:
-        """The parts at points, by kind."""
+    def parts(self) -> tuple[Alike | PartsInPython, ...]:
+        """The parts at points, by kind, as compiled code takes them."""
+        springs = (self.springs,) if len(self.springs.numbers) else ()
         placed = zip(self.connectors.items, self.unknowns.coupled, strict=True)
-        alike_ones = alike(pair for pair in placed if pair[0].compiled is not None)
-        found = [self.springs, *alike_ones] if len(self.springs.numbers) else alike_ones
-        return [each.record for each in (*found, *self.called)]
+        return (*springs, *by_kind(placed, self.model.size))
 
-    @shared_table
+    @property
     def called(self) -> tuple[PartsInPython, ...]:
-        """Those that Python evaluates."""
-        placed = zip(self.connectors.items, self.unknowns.coupled, strict=True)
-        found = [pair for pair in placed if pair[0].compiled is None]
-        return (PartsInPython(found, self.model.size),) if found else ()
+        """Those of them that Python evaluates."""
+        return tuple(each for each in self.parts if isinstance(each, PartsInPython))
 
     def assembler(self, shared: bool = False) -> Assembler:
         """Return the equations with a new workspace; shared: see `Assembler`."""
@@ -239,16 +235,12 @@ class System:
 
     def prescribed_values(self, time: float) -> np.ndarray:
         """Return the values of the prescribed coordinates at a time, in statics at a load factor."""
-        start = self._prescribed_reference
+        start = self.reference[self.prescribed_dofs]
         return start + self.prescribed_changes(time) if self.moved else start
 
     def prescribed_changes(self, time: float) -> np.ndarray:
         """Return the changes (nh,) of the prescribed coordinates from the reference at a time or load factor."""
         return np.array([item.change(time, self.static) for item in self.prescribed], dtype=float)
-
-    @shared_table
-    def _prescribed_reference(self) -> np.ndarray:
-        return self.reference[self.prescribed_dofs]
 
     @shared_table
     def moved(self) -> bool:

@@ -21,7 +21,7 @@ from beamfem.installed_memory import USABLE_FRACTION, in_gib, installed_memory
 from beamfem.kernels.block import GRADIENTS, NO_HISTORY, ROTATED_GRADIENTS, ROTATION, STRETCH
 from beamfem.mesh.beam_grid import Grid, make_grids
 from beamfem.mesh.beam_mesh import BeamMesh, Nodes
-from beamfem.mesh.reference import curvature, reference_angle, reference_axis, sections_at, stations
+from beamfem.mesh.reference import curvature, energy_points, reference_angle, reference_axis, sections_at
 from beamfem.model.along_beam import AlongBeam, functions_along, kinks_along
 from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import prescribed_by, remembered, uses_rotations
@@ -42,7 +42,7 @@ def require_body(grid: Grid, unit: Callable[[str], str]) -> None:
     """
     if grid.straight:
         return
-    element, xi = stations(grid)
+    element, xi, _ = energy_points(grid)
     section = grid.beam.section
     if isinstance(section, CrossSection):
         faces = np.array(_faces(section, grid))

@@ -1,5 +1,6 @@
 """The stress-free reference of a beam: axis, section stiffness and inertia at points of elements."""
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from beamfem.model.beam import Beam
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import of_package, shown
 
-_SHORT, _INSIDE = 1e-4, 1e-6  # of an element: half the interval of a curvature, and its distance from the ends
+_SHORT, _INSIDE = 1e-4, 1e-6  # of an element: distance of the points of a curvature, and of the first from the end
 
 
 def scales(element: Element, lengths: np.ndarray) -> np.ndarray:
@@ -172,16 +173,18 @@ def sections_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> list[CrossSe
 def curvature(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
     """Return the curvature of the curve (n,) [1/m] at points (element, xi), > 0 towards +y.
 
-    It is the rotation of the tangent over a short interval inside the element, since there may be a corner at its end.
+    It is the slope of a parabola through the tangent's angles at three points next to each other inside the element,
+    since there may be a corner at its end.
     """
     if grid.straight:
         return np.zeros(len(element))
     start, end = grid.ends(element)
-    near, inside = _SHORT * (end - start), _INSIDE * (end - start)
+    near, inside = _SHORT * (end - start), (_SHORT + _INSIDE) * (end - start)
     arc = grid.arc_length(element, xi)
-    before, after = np.maximum(arc - near, start + inside), np.minimum(arc + near, end - inside)
-    tangent_before, tangent_after = grid.tangents(element, before), grid.tangents(element, after)
-    return np.arctan2(cross(tangent_before, tangent_after), dot(tangent_before, tangent_after)) / (after - before)
+    middle = np.clip(arc, start + inside, end - inside)
+    tangents = [grid.tangents(element, middle + side * near) for side in (-1, 0, 1)]
+    before, after = (np.arctan2(cross(one, other), dot(one, other)) for one, other in pairwise(tangents))
+    return (0.5 * (before + after) + (arc - middle) / near * (after - before)) / near
 
 
 def inertia_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -262,7 +262,8 @@ class Solution:
         quantity : callable or Point, optional
             A function of a solution of one row that returns a number, or an array of the same shape on every mesh, and
             finds points, beams, supports and connectors by those of this model; or a point, for its displacement [m].
-            By default the largest displacement [m].
+            By default the largest displacement [m]. For largest values along a beam take `SectionForces.peak` and
+            `BeamStress.peak`: a maximum of stations misses what lies between them, on every mesh something else.
         row : int, default -1
             Row of the solution.
 

@@ -110,3 +110,10 @@ def test_an_element_that_turns_by_more_than_half_a_turn_is_refused(element, degr
     modes = bf.solve_modes(model(2), 3)
     assert (modes.growth == 0.0).all()
     assert modes.frequencies[0] > 0.0
+
+
+def test_an_element_whose_sections_overlap_only_in_its_middle_is_refused():
+    """Its stresses are at its ends and its middle, its section forces at two Gauss points: it never converged."""
+    beam = bf.Beam(bf.Arc((0.0, 0.0), 0.3, 0.0, 3.16), 1, bf.ANCF(bf.Structural()), bf.Rectangle(0.02, 0.01), STEEL)
+    with pytest.raises(bf.InputError, match=r"are too long: .* turns by 181 degrees"):
+        bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 1.0))]))

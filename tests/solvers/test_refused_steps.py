@@ -7,6 +7,7 @@ import pytest
 from refused_steps import CASES, ELEMENTS, UNDAMPED, double_pendulum, largest_changes, strip
 
 import beamfem as bf
+from studies.benchmarks.random_motions import case, changes
 
 QUICK = {
     ("double pendulum, 5 ms", "ShearRigid"),
@@ -45,6 +46,16 @@ def test_the_motion_goes_on_to_its_end(name, kind):
     assert rise < 0.02
     if integrator is UNDAMPED:
         assert fall < (0.05 if name == "flying beam" else 0.02)
+
+
+@pytest.mark.parametrize("seed", [4, 45, 55, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(30, 90))])
+def test_random_motions_keep_their_energy(seed):
+    """Also those whose first steps fail, of which too few precede the failure to show how fast the motion varies."""
+    found = case(seed)
+    motion, rise, fall = changes(found)
+    assert motion.status is bf.Status.COMPLETED
+    assert rise < 0.02
+    assert fall < 0.02 or found.rho_inf < 1.0
 
 
 def test_rows_of_cut_steps_do_not_depend_on_which_are_kept():

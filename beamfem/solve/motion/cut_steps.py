@@ -25,8 +25,8 @@ from beamfem.solve.motion.stored_states import Saving
 from beamfem.solve.motion.time_steps import PARTS, Stretch
 
 _CHUNK_SECONDS = 0.25  # of a call of compiled code, which the next call is made to last at least
-_MOST = 6  # cuts of a step, to 1 / 4096
-_JUDGED = 3  # cuts up to which energy refuses small changes
+_MOST = 8  # cuts of a step, to 1 / 65536
+_REFUSED = "changes the energy by more than work and damping explain"
 
 
 class Rows(NamedTuple):
@@ -132,7 +132,7 @@ class StepCutter:
                     if self.stopped:
                         return done
                     if good < count and window is None:
-                        self.why = f"{motion.why}, also with steps of {part.step:.3g} {self.system.model.unit('s')}"
+                        self.why += f", also with steps of {part.step:.3g} {self.system.model.unit('s')}"
                         return done
                     size = self._next_size(size, count, clock.perf_counter() - started, window)
                 self.memory = motion.memory(state)
@@ -184,17 +184,18 @@ class StepCutter:
         loads_at = np.append(part.times[1:-1], part.loads_to)[which]
         saving = Saving(rows.states, 1, 1, self.pairs, rotations, rows.rotations)
         done = motion.advance(state, prescribed[which], loads_at, saving)
-        if motion.broken or level == _MOST:
+        if motion.broken:
             return done, None
-        good = done if done == count else max(done - CHUNK, 0)
-        last = min(good + 2 * CHUNK, count)
+        final = level == _MOST
+        good = done if done == count or final else max(done - CHUNK, 0)
+        last, self.why = min(good + 2 * CHUNK, count), f"did not converge: {motion.why}"
         if self.judge is not None and good > 0:
             times = np.append(part.times[first] if first else part.loads_from, loads_at[:good])
-            judged = self.judge.accept(times, rows.states[: good + 1], level >= _JUDGED)
+            judged = self.judge.accept(times, rows.states[: good + 1], level > 0, good < count, final)
             if judged < good:
-                good, last = judged, min(judged + CHUNK, count)
-        if good == count:
-            return count, None
+                good, last, self.why = judged, min(judged + CHUNK, count), _REFUSED
+        if good == count or final:
+            return good, None
         if good > 0:
             mean = self._mean(part.step, begin[3], rows.states[: good + 1, 2])
             begin = np.concatenate([rows.states[good], mean[None]])

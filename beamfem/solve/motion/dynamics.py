@@ -195,11 +195,7 @@ def simulate(
             failed = march(system, settings.integrator, parts, prescribed, state, record, last, saved)
     solution = found()
     if failed is not None:
-        raise ConvergenceError(
-            f"the iteration of the step from {failed.begin:.6g} {second} to {failed.end:.6g} {second} did not "
-            f"converge: {failed.why}{advice(model, state[0])}",
-            solution,
-        )
+        raise ConvergenceError(f"{failed.sentence(second)}{advice(model, state[0])}", solution)
     if solution is None:
         raise InputError("the motion has ended before the first time of save_at")
     if saved is not None:

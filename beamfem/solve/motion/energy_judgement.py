@@ -17,25 +17,28 @@ _GROWN = 5.0  # times the largest kinetic energy so far, from a chunk to the nex
 _SMOOTH = 1e-6  # as _UNRESOLVED, of motions that grow smoothly from rest
 _SHARE = 0.01  # of the energy exchanged: what steps may change it by in all
 _SHARE_MOVED = 0.1  # the same where supports move, whose kinks excite vibrations at any step
-_COARSE = 0.1  # of that: what short steps may change it by, however little of it is left
+_DIFFERENCES = 3  # steps needed for third differences
 _MOST_DOUBT = 0.1  # of the energy exchanged: in work, which steps that fail do not resolve at all
 _ACCURACY = 1e-14  # of coordinates, that of the iterations
 _FASTER = 1.1  # times the largest speed so far: of a state at which exchanged energies are evaluated anew
 
 
 class EnergyJudge:
-    """Judges chunks of steps; rule: of the scheme; start (3, n): state of the motion at its beginning, a time [s].
+    """Judges chunks of steps; rule: of the scheme; end [s]: of the motion; start (3, n): its state at first.
 
     A chunk is refused if it changes the energy less work by more than half of what is left of the share `_SHARE` of the
-    energy exchanged so far. Numerical damping may also remove up to 1 - rho^2 of the kinetic and strain energy in each
-    step, with the spectral radius rho at infinite frequency. Energies are evaluated only where third differences of
-    velocities, (w h)^3 times those of a vibration w, show that steps h do not resolve vibrations that matter.
+    energy exchanged so far, and by more than its part of that share if it were spread evenly over the motion: so that
+    changes add up to twice the share at most. Numerical damping may also remove up to 1 - rho^2 of the kinetic and
+    strain energy in each step, with the spectral radius rho at infinite frequency. Energies of steps that were not cut
+    are evaluated only where third differences of velocities, (w h)^3 times those of a vibration w, show that steps h do
+    not resolve vibrations that matter, or where the next steps fail.
     """
 
-    def __init__(self, system: System, rule: np.ndarray, time: float, start: np.ndarray) -> None:
+    def __init__(self, system: System, rule: np.ndarray, end: float, start: np.ndarray) -> None:
         self._system, self._masses, self._radius = system, system.table(masses), radius_at_infinity(rule)
+        self._duration = end
         self._damps = self._radius < 1.0 - 1e-6
-        self._first = self._solution(np.array([time]), start[None].copy())
+        self._first = self._solution(np.zeros(1), start[None].copy())
         moved = any(callable(item.value) for item in system.prescribed)
         self._share = _SHARE_MOVED if moved else _SHARE
         self._fastest, self._speed, self._speed_evaluated = self._first, 0.0, 0.0
@@ -62,33 +65,37 @@ class EnergyJudge:
     def _conservative(self) -> bool:
         return not (driven(self._first) or self._system.damped or self._system.history.laws)
 
-    def accept(self, times: np.ndarray, states: np.ndarray, coarse: bool) -> int:
+    def accept(self, times: np.ndarray, states: np.ndarray, cut: bool, failed: bool, final: bool) -> int:
         """Return how many steps between states (m + 1, 3, n) at times (m + 1,) [s] are good.
 
-        coarse: whether a tenth of the share is always left.
+        cut: whether they were cut, so that their energies are evaluated in any case; failed: whether the steps after
+        them have failed, so that the last ones are suspect; final: whether they cannot be cut any more.
         """
         steps = len(times) - 1
-        if steps < 3:
-            return steps
         bounds = np.append(np.arange(0, steps, CHUNK), steps)
-        ends = np.maximum(bounds[1:], 3)
-        now, *before = (states[ends - back, 1] for back in range(4))
-        thirds = now - 3.0 * (before[0] - before[1]) - before[2]
-        speeds, change = np.square(now) @ self._masses, np.square(thirds) @ self._masses
+        ends = bounds[1:]
+        speeds = np.square(states[ends, 1]) @ self._masses
         fastest = np.maximum.accumulate(np.append(self._speed, speeds))
-        grown = (speeds > _GROWN * fastest[:-1]) & (fastest[:-1] > 0.0) & (change > _SMOOTH * speeds)
-        doubtful = ~(change <= _UNRESOLVED * fastest[1:]) | grown
+        doubtful = np.full(len(ends), cut)
+        doubtful[-2:] |= failed
+        if steps < _DIFFERENCES:
+            doubtful |= self._parts.size > 0
+        elif not cut:
+            now, *before = (states[np.maximum(ends, _DIFFERENCES) - back, 1] for back in range(4))
+            change = np.square(now - 3.0 * (before[0] - before[1]) - before[2]) @ self._masses
+            grown = (speeds > _GROWN * fastest[:-1]) & (fastest[:-1] > 0.0) & (change > _SMOOTH * speeds)
+            doubtful |= ~(change <= _UNRESOLVED * fastest[1:]) | grown
         good = steps
         if doubtful.any():
             chunks = [chunk for chunk, judged in zip(pairwise(bounds.tolist()), doubtful, strict=True) if judged]
-            good = self._first_refused(times, states, chunks, coarse)
+            good = self._first_refused(times, states, chunks, final)
         number = int(np.argmax(np.where(ends <= good, speeds, -1.0)))
         if ends[number] <= good and speeds[number] > self._speed:
             self._speed, row = float(speeds[number]), ends[number : number + 1]
             self._fastest = self._solution(times[row], states[row])
         return good
 
-    def _first_refused(self, times: np.ndarray, states: np.ndarray, chunks: list[tuple[int, int]], coarse: bool) -> int:
+    def _first_refused(self, times: np.ndarray, states: np.ndarray, chunks: list[tuple[int, int]], final: bool) -> int:
         """Return where the first chunk of steps begins that is refused, or the number of steps."""
         self._evaluate_exchanged()
         for group in [chunks] if self._conservative else _adjacent(chunks):
@@ -96,11 +103,11 @@ class EnergyJudge:
             found = balance(self._solution(times[rows], states[rows]), _ACCURACY)
             place = {row: i for i, row in enumerate(rows)}
             for first, last in group:
-                if not self._passes(found, place[first], place[last], coarse):
+                if not self._passes(found, place[first], place[last], final):
                     return first
         return len(times) - 1
 
-    def _passes(self, found: Balance, first: int, last: int, coarse: bool) -> bool:
+    def _passes(self, found: Balance, first: int, last: int, final: bool) -> bool:
         """Judge the chunk of steps between two rows of a balance, and take it into account if it is good."""
         energy, rows = found.energy, slice(first, last + 1)
         parts = _extremes(self._parts, energy.kinetic[rows], energy.strain[rows], energy.potential[rows])
@@ -110,15 +117,17 @@ class EnergyJudge:
         rises, losses = found.rise[rows] - found.rise[first], found.loss[rows] - found.loss[first]
         share = self._share * exchanged
         left = max(share - abs(self._drift), 0.0)
-        allowed = max(0.5 * left, _COARSE * share if coarse else 0.0)
+        spent = float(found.time[last] - found.time[first]) / self._duration
+        allowed = max(0.5 * left, spent * share, (2.0 * share - abs(self._drift)) if final else 0.0)
         doubt = float(found.doubt[last] - found.doubt[first])
-        doubt = min(doubt, _MOST_DOUBT * exchanged) if not coarse else doubt
+        doubt = doubt if final else min(doubt, _MOST_DOUBT * exchanged)
         doubt += float(found.unsure[last] - found.unsure[first] + found.unsure[0])
         if self._damps:
             stored = float(energy.kinetic[first] + energy.strain[first])
             losses = losses - (1.0 - self._radius ** (2.0 * np.arange(last - first + 1))) * stored
         change = float(rises[-1]) if rises[-1] > 0.0 else -max(float(np.nan_to_num(losses[-1])), 0.0)
-        within = float(np.nanmax([rises, losses])) <= abs(self._drift) + share + doubt
+        bound = max(1.5 * share, abs(self._drift) + 0.25 * share) + doubt
+        within = float(np.nanmax([rises + self._drift, losses - self._drift])) <= bound
         if not within or (abs(change) > allowed + doubt and abs(self._drift + change) > abs(self._drift)):
             return False
         self._drift += change

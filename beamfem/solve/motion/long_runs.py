@@ -232,11 +232,7 @@ def _run(file: MotionFile, plan: MotionPlan, checkpoint: Checkpoint, saved: Save
         commit()
     if failed is not None:
         unit, solution = plan.system.model.unit("s"), _loaded(file)
-        raise ConvergenceError(
-            f"the iteration of the step from {failed.begin:.6g} {unit} to {failed.end:.6g} {unit} did not converge: "
-            f"{failed.why}{advice(solution.model, solution.p[-1])}",
-            solution,
-        )
+        raise ConvergenceError(f"{failed.sentence(unit)}{advice(solution.model, solution.p[-1])}", solution)
     file.describe(plan.system.model)
     done = _described(plan.settings, False)
     file.commit(saved.take_out(before), _statistics(plan, checkpoint, True), checkpoint.arrays(), done)

@@ -54,11 +54,15 @@ class Last:
 
 @dataclass(frozen=True)
 class Failure:
-    """The step that could not be completed: its beginning and end [s], and why."""
+    """The step that could not be completed: its beginning and end [s], and what happened to it."""
 
     begin: float
     end: float
     why: str
+
+    def sentence(self, second: str) -> str:
+        """Return a sentence that says so; second: name of the unit of time."""
+        return f"the step from {self.begin:.6g} {second} to {self.end:.6g} {second} {self.why}"
 
 
 def march(
@@ -142,7 +146,7 @@ def cutter_of(
     if is_scheme(integrator) or is_collocation(integrator):
         size, largest = max(first_chunk // system.model.size, 1), max(_LARGEST_CHUNK // system.model.size, 1)
     if is_scheme(integrator):
-        judge = EnergyJudge(system, integrator.rule(parts[0].step), 0.0, state[:3])
+        judge = EnergyJudge(system, integrator.rule(parts[0].step), end, state[:3])
     return StepCutter(system, integrator, record.statistics, record.pairs, end, size, largest, judge, relaxed)
 
 

@@ -194,7 +194,7 @@ def test_connectors_may_hold_and_load_a_beam_of_hardly_any_mass(density, step):
     assert motion.displacement(middle)[-1, 1] < 0.0
 
 
-def test_a_force_that_is_undefined_at_an_iterate_is_tried_from_elsewhere(monkeypatch):
+def test_a_force_that_is_undefined_at_an_iterate_is_tried_from_elsewhere(request):
     """A wall that is defined up to some depth: iterates are rejected; if all are, the step fails in a sentence."""
 
     class Shallow(Barrier):
@@ -211,7 +211,7 @@ def test_a_force_that_is_undefined_at_an_iterate_is_tried_from_elsewhere(monkeyp
     bounced = bf.simulate(deep, 1.2, 2e-2)  # with shorter steps
     assert bounced.statistics.cuts > 0
     assert np.isfinite(bounced.p).all()
-    monkeypatch.setattr("beamfem.solve.motion.cut_steps._MOST", 0)
+    request.getfixturevalue("uncut_steps")
     with pytest.raises(bf.ConvergenceError, match="did not converge") as caught:
         bf.simulate(deep, 1.2, 2e-2)
     assert len(caught.value.solution) == 5

@@ -78,11 +78,14 @@ class EnergyJudge:
         fastest = np.maximum.accumulate(np.append(self._speed, speeds))
         doubtful = np.full(len(ends), cut)
         doubtful[-2:] |= failed
+        doubted = self._parts.size > 0
         if steps < _DIFFERENCES:
-            doubtful |= self._parts.size > 0
+            doubtful |= doubted
         elif not cut:
-            now, *before = (states[np.maximum(ends, _DIFFERENCES) - back, 1] for back in range(4))
+            rows = np.maximum(np.arange(1, steps + 1) if doubted else ends, _DIFFERENCES)
+            now, *before = (states[rows - back, 1] for back in range(4))
             change = np.square(now - 3.0 * (before[0] - before[1]) - before[2]) @ self._masses
+            change = np.maximum.reduceat(change, bounds[:-1]) if doubted else change
             grown = (speeds > _GROWN * fastest[:-1]) & (fastest[:-1] > 0.0) & (change > _SMOOTH * speeds)
             doubtful |= ~(change <= _UNRESOLVED * fastest[1:]) | grown
         good = steps

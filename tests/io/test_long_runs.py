@@ -210,6 +210,21 @@ def test_a_motion_is_extended_and_the_same_if_it_was_killed_before(how, short, t
     np.testing.assert_array_equal(resumed.time, longer.time)
 
 
+def test_integrators_of_the_package_are_found_in_files_by_a_process_that_has_used_none(tmp_path):
+    named = (bf.GeneralizedAlpha(0.5), bf.HHT(-0.1), bf.Newmark(0.3025, 0.6), bf.Trapezoidal(), bf.Midpoint(),
+             bf.Gauss(2), bf.Radau(2), bf.EnergyMomentum())  # fmt: skip
+    files = [tmp_path / f"{number}.h5" for number in range(len(named))]
+    for integrator, file in zip(named, files, strict=True):
+        bf.simulate(pendulum(), 0.05, 1e-3, integrator, file=file)
+        shutil.copy(file, file.with_suffix(".copy"))
+        bf.resume(file.with_suffix(".copy"), integrator=integrator, duration=0.1)
+    script = "import sys, beamfem as bf\nfor file in sys.argv[1:]: bf.resume(file, duration=0.1)"
+    subprocess.run([sys.executable, "-c", script, *files], check=True, cwd=ROOT)
+    for file in files:
+        np.testing.assert_array_equal(bf.load(file).p, bf.load(file.with_suffix(".copy")).p)
+        assert bf.load(file).time[-1] == pytest.approx(0.1)
+
+
 def test_an_event_ends_a_motion_in_a_file(short, tmp_path):
     model, path = pendulum(), tmp_path / "swing.h5"
     events = [tip_event(model, rising=True, stop=True)]

@@ -75,6 +75,15 @@ def test_free_flight_keeps_linear_momentum_and_angular_with_the_step(element):
     assert 1.7 < np.log2(drift[0] / drift[1]) < 2.5 or drift[1] < 1e-12
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("rho_inf", [0.9, 1.0])
+def test_free_flight_keeps_linear_momentum_over_a_hundred_thousand_steps(element, rho_inf):
+    model, velocity = bf.Model([beam(element)]), bf.RigidVelocity((1.0, 2.0), angular=3.0, about=(0.2, 0.1))
+    motion = bf.simulate(model, 100.0, 1e-3, bf.GeneralizedAlpha(rho_inf), velocity=velocity, save_every=100)
+    momentum = motion.linear_momentum()
+    assert np.abs(momentum - momentum[0]).max() <= 1e-9 * np.linalg.norm(momentum[0])
+
+
 def test_energy_of_the_pendulum_is_kept(element):
     _, solution = pendulum(element, 6, 1e-3, 0.3)
     energy = solution.energy()

@@ -35,6 +35,7 @@ from beamfem.solve.motion.time_marching import Last, Record, cutter_of, march
 from beamfem.solve.motion.time_steps import SIDE
 from beamfem.solve.start.functions_of_time import name_unresolved
 from beamfem.solve.start.start_state import last_state, start_state, transferred_turns
+from beamfem.validation import flag
 
 
 @returned_on_interrupt
@@ -52,6 +53,7 @@ def simulate(
     events: Sequence[Event] = (),
     file: str | PathLike[str] | None = None,
     accuracy: float | None = None,
+    watch: bool = False,
 ) -> Solution:
     """Integrate the equations of motion over time, with a fixed step, or with steps that follow a tolerance.
 
@@ -93,6 +95,9 @@ def simulate(
         HDF5 file for the rows, which then need no memory while the motion runs; `resume` goes on with it where it was
         interrupted, and `load` reads it at any time. It is for motions of any length: they are divided into sections
         of up to 1000 steps, whose tangents are factorised anew.
+    watch : bool, default False
+        Whether to show the motion while it runs, in a window, or below the cell of a notebook, as often as 5 % of the
+        time allow. Without both nothing is shown.
 
     Returns
     -------
@@ -134,7 +139,7 @@ def simulate(
             raise InputError(
                 "a motion in a file has one mesh; find it first, by model.meshed(simulate(model, ..., accuracy=...))"
             )
-        others: dict[str, Any] = {"tolerance": tolerance, "save_at": save_at, "events": events}
+        others: dict[str, Any] = {"tolerance": tolerance, "save_at": save_at, "events": events, "watch": watch}
 
         def solve(model: Model) -> Solution:
             return simulate(model, duration, step, integrator, None, velocity, save_every, **others)
@@ -143,6 +148,7 @@ def simulate(
             refined = refined_until(model, accuracy, lambda model: motion_attempt(model, solve), MOST_MESHES)
         return _told(refined)
     settings = settings_of(duration, step, integrator, save_every, tolerance, save_at, events)
+    settings = replace(settings, watch=flag("watch", watch))
     plan = planned(model, settings, in_memory=file is None)
     system, times, parts, acting = plan.system, plan.times, plan.parts, plan.acting
     collects = save_at is not None or tolerance is not None or len(settings.events) > 0
@@ -171,8 +177,9 @@ def simulate(
         return into_file(plan, state, turned, file)
     rows, pairs = -(-(len(times) - 1) // every) + 1, model.numbered.rotation_pairs
     table = np.empty((rows, 3, model.size))
-    record = Record(table, every, MotionStatistics(), pairs, np.empty((rows, len(pairs))))
+    record = Record(table, every, MotionStatistics(), pairs, np.empty((rows, len(pairs))), plan.live_view())
     record.states[0], record.rotations[0] = state[:3], turned
+    record.show(0.0, state[:3])
     further = len(plan.ends) - len(times)
     last = Last((0, state[:3].copy(), record.rotations[0].copy()))
     saved = plan.saved_rows() if collects else None

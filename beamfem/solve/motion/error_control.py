@@ -100,6 +100,7 @@ def march_to_tolerance(
                 time, jumps = float(times[-1]), False
                 saved.keep(times, rows)
                 report(time)
+                record.show(time, state[:3])
                 if saved.stopped:
                     return None
                 if rule:

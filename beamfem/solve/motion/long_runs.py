@@ -36,7 +36,7 @@ from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.saved_rows import SavedRows
 from beamfem.solve.motion.start_acceleration import initial_acceleration
 from beamfem.solve.motion.time_marching import Failure, Record, cutter_of
-from beamfem.validation import positive
+from beamfem.validation import flag, positive
 
 _STEPS = 1000  # of a section
 _COORDINATES = 500_000  # times steps of a section, at most
@@ -113,6 +113,7 @@ def resume(
     events: Sequence[Event] = (),
     integrator: Scheme | Integrator | None = None,
     duration: float | None = None,
+    watch: bool = False,
 ) -> Solution:
     """Go on with a motion that `simulate` wrote into a file, up to its end or beyond.
 
@@ -133,6 +134,8 @@ def resume(
         needs methods `memory()`, which returns arrays by name, and `recall(memory)`.
     duration : float, [s], optional
         Time to simulate in all; a longer one than that of the file extends the motion.
+    watch : bool, default False
+        Whether to show the motion while it runs, see `simulate`.
 
     Returns
     -------
@@ -164,7 +167,7 @@ def resume(
     try:
         begun = open_file.settings
         model = open_file.model(model)
-        settings = _settings_in(begun, integrator, events)
+        settings = replace(_settings_in(begun, integrator, events), watch=flag("watch", watch))
         further = settings.duration if duration is None else positive("duration", duration)
         name, unfinished = open_file.path, bool(begun["unfinished"])
         if further < settings.duration:
@@ -205,6 +208,7 @@ def _run(file: MotionFile, plan: MotionPlan, checkpoint: Checkpoint, saved: Save
     end, before = float(plan.times[-1]), int(checkpoint.counts[3]) - len(saved.times)
     failed: Failure | None = None
     begun: dict[str, Any] | None = _described(plan.settings, True)
+    show = plan.live_view()
     written = clock.monotonic()
 
     def commit() -> None:
@@ -226,6 +230,7 @@ def _run(file: MotionFile, plan: MotionPlan, checkpoint: Checkpoint, saved: Save
         while failed is None and checkpoint.reached.time < end and not checkpoint.ended:
             failed, checkpoint = _section(plan, checkpoint, saved, before)
             report(checkpoint.reached.time)
+            show(checkpoint.reached.time, checkpoint.state[:3])
             waiting = 24 * plan.system.model.size * len(saved.times)
             if clock.monotonic() - written > _SECONDS or waiting > _BYTES:
                 commit()

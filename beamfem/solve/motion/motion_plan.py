@@ -1,6 +1,6 @@
 """What a motion is to do: its steps, its rows, and its loads over time."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,6 +33,7 @@ class MotionSettings:
     tolerance: float | None
     save_at: tuple[float, ...] | None
     events: tuple[Event, ...]
+    watch: bool = False
 
 
 @dataclass(frozen=True)
@@ -59,6 +60,15 @@ class MotionPlan:
         settings, pairs = self.settings, self.system.model.numbered.rotation_pairs
         smooth = not is_scheme(settings.integrator)
         return SavedRows(self.system, pairs, self.wanted, Watch(self.system, settings.events), smooth)
+
+    def live_view(self) -> Callable[[float, np.ndarray], None]:
+        """Return what shows states (3, n) at times [s] while the motion runs, if it is to be watched."""
+        return self._opened_view() if self.settings.watch else lambda time, state: None
+
+    def _opened_view(self) -> Callable[[float, np.ndarray], None]:
+        from beamfem.view.live_view import live_view
+
+        return live_view(self.system.model)
 
 
 def settings_of(

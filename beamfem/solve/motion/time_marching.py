@@ -1,5 +1,6 @@
 """Marching through the time steps of a motion: stretches of equal steps, stored states, and failures."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,7 +26,7 @@ class Record:
     """Stored states (rows, 3, n) of every n-th whole step, and of the last one in the row after them.
 
     pairs (m, 2): see `full_turns.rotation_pairs`; rotations (rows, m) [rad]:
-    of the stored states; cuts, further: see `StepCutter`.
+    of the stored states; show: shows states (3, n) at times [s]; cuts, further: see `StepCutter`.
     """
 
     states: np.ndarray
@@ -33,6 +34,7 @@ class Record:
     statistics: MotionStatistics
     pairs: np.ndarray
     rotations: np.ndarray
+    show: Callable[[float, np.ndarray], None] = lambda time, state: None
     cuts: int = 0
     further: int = 0
 
@@ -102,6 +104,7 @@ def march(
                 _store(record, rows, first + done - len(rows.states) + 1)
                 last.reach(first + done, rows.states[-1], rows.rotations[-1])
                 report(float(part.times[done]))
+                record.show(float(part.times[done]), rows.states[-1])
                 return stop
 
             table = Rows(record.states, record.rotations).between(first, first + steps) if direct else None

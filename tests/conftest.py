@@ -1,5 +1,6 @@
 """The elements that every test of all combinations runs over, and a small model of each."""
 
+import os
 from itertools import product
 
 import numpy as np
@@ -23,6 +24,8 @@ settings.register_profile("many", max_examples=300, **_ALWAYS)
 
 
 def pytest_configure(config):
+    for display in ("DISPLAY", "WAYLAND_DISPLAY"):
+        os.environ.pop(display, None)  # plots of tests are not windows
     settings.load_profile("few" if config.option.markexpr == "not slow" else "many")
 
 

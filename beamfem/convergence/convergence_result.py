@@ -18,6 +18,7 @@ from beamfem.results.solution import Solution
 from beamfem.sweeps.workers import Failure
 from beamfem.validation import flag, require_known, shown
 from beamfem.view.html_page import Entry, Part, Table, write_page
+from beamfem.view.notebook_paths import file_to_write
 from beamfem.view.plots import COLOURS, MARKERS, new_figure, save_figure
 
 WORK = "accuracy or elements"  # refinement of studies that compare the work of fixed and adaptive meshes
@@ -192,13 +193,13 @@ class Convergence:
         coordinates = {"curve": [curve.label for curve in self.curves], self.refine: refinement}
         return xarray.Dataset(data, coordinates, {"function": self.function, "quantity": self.quantity})
 
-    def plot(self, path: str | PathLike[str] | None = None, *, against: str | None = None) -> Any:
+    def plot(self, path: str | PathLike[str] | None = None, *, against: str | None = None, ax: Any = None) -> Any:
         """Plot the error against the refinement on logarithmic axes, one line per curve.
 
         against: another number that the function returns, such as that of unknowns, or "seconds", which are the default
         where fixed and adaptive meshes are compared. Hollow markers are errors at round-off, which the fitted order
-        leaves out. path: file to write (PNG, SVG, PDF). Returns the figure. Raises InputError for another suffix or an
-        unknown number, MissingPackageError without matplotlib.
+        leaves out. path: file to write (PNG, SVG, PDF); ax: axes to draw in, see `Solution.plot`. Returns the figure.
+        Raises InputError for another suffix or an unknown number, MissingPackageError without matplotlib.
 
         Examples
         --------
@@ -209,7 +210,7 @@ class Convergence:
         if against is not None:
             names = ["seconds", *(name for curve in self.curves[:1] for name in curve.others)]
             require_known(f"the study has no number {shown(against)}", against, names)
-        figure, axes = new_figure(7.2, 5.0)
+        figure, axes = new_figure(7.2, 5.0, ax, pyplot=path is None)
         axes.set_xscale("log")
         axes.set_yscale("log")
         # one triangle for each whole order, at the lowest curve, where there is room for it
@@ -243,11 +244,13 @@ class Convergence:
             axes.legend(frameon=False, fontsize=9)
         return save_figure(figure, path)
 
-    def to_html(self, path: str | PathLike[str]) -> Path:
+    def to_html(self, path: str | PathLike[str] | None = None) -> Path:
         """Write an HTML page with picture and tables, a single file that works offline, and return its path.
 
-        Raises MissingPackageError without matplotlib.
+        path: by default a temporary file; notebooks display the path that is returned. Raises InputError for another
+        suffix, MissingPackageError without matplotlib.
         """
+        target = file_to_write(path, "a page", ".html", example="convergence.html")
         with TemporaryDirectory() as folder:
             picture = Path(folder) / "errors.svg"
             self.plot(picture)
@@ -260,7 +263,7 @@ class Convergence:
                 rows = [(failure.label, failure.error) for failure in self.failures]
                 tables.append(Table("Failed calls", ("parameters", "error"), rows))
             text = f"{self.function}() called with {self.refine} refined; {len(self.failures)} calls failed."
-            return write_page(path, self.title, [Part("Picture", text, [entry]), Part("Numbers", "", tables=tables)])
+            return write_page(target, self.title, [Part("Picture", text, [entry]), Part("Numbers", "", tables=tables)])
 
 
 def _short(number: float, form: str, before: str = "") -> str:

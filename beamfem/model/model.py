@@ -460,15 +460,15 @@ class Model:
 
         return with_imperfection(self, modes, size, mode)
 
-    def plot(self, path: str | PathLike[str] | None = None) -> Any:
+    def plot(self, path: str | PathLike[str] | None = None, *, ax: Any = None) -> Any:
         """Draw the undeformed model with its supports and loads and return the figure.
 
-        Nothing is solved, so mechanisms and overloaded models can be drawn too. path: file to write (PNG, SVG, PDF).
-        Raises MissingPackageError without matplotlib.
+        Nothing is solved, so mechanisms and overloaded models can be drawn too. path: file to write (PNG, SVG, PDF);
+        ax: axes to draw in, see `Solution.plot`. Raises MissingPackageError without matplotlib.
         """
         from beamfem.view.drawing import plot_model
 
-        return plot_model(self, path)
+        return plot_model(self, path, ax)
 
     def _repr_html_(self) -> str:
         from beamfem.view.summary import model_table

@@ -127,15 +127,15 @@ class Envelope:
         """Return the table as a pandas.DataFrame. Raises MissingPackageError without pandas."""
         return as_pandas(*self.table())
 
-    def plot(self, beam: Beam, name: str = "moment", path: str | PathLike[str] | None = None) -> Any:
+    def plot(self, beam: Beam, name: str = "moment", path: str | PathLike[str] | None = None, *, ax: Any = None) -> Any:
         """Draw the envelope of a quantity along a beam, with the curves of its cases, and return the figure.
 
-        path: file to write (PNG, SVG, PDF). Raises InputError for an unknown quantity or beam, MissingPackageError
-        without matplotlib.
+        path: file to write (PNG, SVG, PDF); ax: axes to draw in, see `Solution.plot`. Raises InputError for an unknown
+        quantity or beam, MissingPackageError without matplotlib.
         """
         from beamfem.view.quantity_curve import plot_envelope
 
-        return plot_envelope(self, beam, name, path)
+        return plot_envelope(self, beam, name, path, ax)
 
 
 def envelope(solutions: Sequence[Solution] | Mapping[str, Solution], every_row: bool = False) -> Envelope:

@@ -547,14 +547,14 @@ class Solution:
         e = postprocess.nodal_vectors(mesh, self.p[number][None])[0]
         return without_removable_knots(spline_through_hermite(mesh.parameter, e[:, 0], mesh.rate * e[:, 1]))
 
-    def to_html(self, path: str | PathLike[str], *, title: str | None = None, frames: int = 60) -> Path:
+    def to_html(self, path: str | PathLike[str] | None = None, *, title: str | None = None, frames: int = 60) -> Path:
         """Write an HTML page with a slider over the steps and return the path; the file works offline.
 
         The body moves with its supports, optionally coloured by a section force [N, N m], a stress [Pa], the
-        utilisation [-], rotation [rad], displacement [m] or speed [m/s]; a curve of the largest displacement and the
-        statistics are shown beside it. The file is smaller than 1 MB: for large models only the axes and fewer steps
-        are drawn. path: file to write, .html; title: heading of the page; frames: largest number of steps. Raises
-        InputError for another suffix.
+        utilisation [-], rotation [rad], displacement [m] or speed [m/s]; a curve of the largest displacement in each
+        row and the statistics are shown beside it. The file is smaller than 1 MB: for large models only the axes and
+        fewer steps are drawn. path: file to write, .html, by default a temporary one; notebooks display the path that
+        is returned. title: heading of the page; frames: largest number of steps. Raises InputError for another suffix.
 
         Examples
         --------
@@ -562,7 +562,7 @@ class Solution:
         """
         from beamfem.view.player import write_player
 
-        return write_player(self, path, title=title, frames=frames)
+        return write_player(self, path, title, frames)
 
     def plot(
         self,
@@ -573,6 +573,7 @@ class Solution:
         undeformed: bool = True,
         supports: bool = True,
         loads: bool = True,
+        ax: Any = None,
     ) -> Any:
         """Draw the deformed body, at several steps later ones darker, and return the figure.
 
@@ -583,8 +584,10 @@ class Solution:
         height), of each section "upper", "lower" (faces), "outer" (the larger of both), "tension", "compression",
         "shear_stress" (extremes); or "utilisation" [-] of the strength, over the height. shapes: number of steps, one
         of them the last; by default the last alone, of motions and paths 9. undeformed, supports, loads: whether to
-        draw the reference axes dashed, and symbols, each load on the shape at which it is largest. Raises InputError
-        for an unknown option or value, MissingPackageError without matplotlib.
+        draw the reference axes dashed, and symbols, each load on the shape at which it is largest. ax: axes of
+        matplotlib to draw in; by default a new figure, which `plt.show()` opens where there is a display, and which
+        notebooks display, if no path is given. Raises InputError for an unknown option or value, MissingPackageError
+        without matplotlib.
 
         Examples
         --------
@@ -592,19 +595,22 @@ class Solution:
         """
         from beamfem.view.drawing import plot_shapes
 
-        return plot_shapes(self, path, colour, shapes, undeformed, supports, loads)
+        return plot_shapes(self, path, colour, shapes, undeformed, supports, loads, ax)
 
     def plot_history(
         self,
         point: Point | Sequence[Point] | None = None,
         quantity: str = "displacement",
         path: str | PathLike[str] | None = None,
+        *,
+        ax: Any = None,
     ) -> Any:
         """Plot a quantity at one or several points against time or load factor and return the figure.
 
         quantity: "displacement", "ux", "uy", "position" [m], "velocity" [m/s], "rotation" [rad]; at supports "force"
-        [N] and "reaction_moment" [N m]; without a point "energy" [J]. path: file to write (PNG, SVG, PDF). Raises
-        InputError for an unknown quantity, or one that needs a point; MissingPackageError without matplotlib.
+        [N] and "reaction_moment" [N m]; without a point "energy" [J]. path: file to write (PNG, SVG, PDF); ax: axes to
+        draw in, see `plot`. Raises InputError for an unknown quantity, or one that needs a point; MissingPackageError
+        without matplotlib.
 
         Examples
         --------
@@ -612,17 +618,17 @@ class Solution:
         """
         from beamfem.view.quantity_curve import plot_history
 
-        return plot_history(self, point, quantity, path)
+        return plot_history(self, point, quantity, path, ax)
 
-    def plot_curve(self, x: Any, y: Any, path: str | PathLike[str] | None = None) -> Any:
+    def plot_curve(self, x: Any, y: Any, path: str | PathLike[str] | None = None, *, ax: Any = None) -> Any:
         """Plot one quantity against another, one point per row, and return the figure.
 
         A quantity is a pair of a name and a point, such as ("uy", beam.end), with the names "ux", "uy", "x", "y" [m],
         "rotation" [rad], "vx", "vy" [m/s], "normal", "shear" [N], "moment" [N m], those of stresses in `plot` [Pa] and,
         at supports, "fx", "fy" [N] and "m" [N m]; or "load_factor" or "time" [s]; or "kinetic", "strain", "potential"
         or "total" energy [J]; or a pair of a label and numbers (steps,); or numbers. Where two elements meet or a load
-        acts, a section is that on the side towards the beam's end. path: file to write (PNG, SVG, PDF). Raises
-        InputError for an unknown quantity, MissingPackageError without matplotlib.
+        acts, a section is that on the side towards the beam's end. path: file to write (PNG, SVG, PDF); ax:
+        axes to draw in, see `plot`. Raises InputError for an unknown quantity, MissingPackageError without matplotlib.
 
         Examples
         --------
@@ -630,16 +636,16 @@ class Solution:
         """
         from beamfem.view.quantity_curve import plot_curve
 
-        return plot_curve(self, x, y, path)
+        return plot_curve(self, x, y, path, ax)
 
     def plot_load_displacement(
-        self, point: Point, quantity: str = "uy", path: str | PathLike[str] | None = None
+        self, point: Point, quantity: str = "uy", path: str | PathLike[str] | None = None, *, ax: Any = None
     ) -> Any:
         """Plot the load factor against "ux", "uy" [m] or "rotation" [rad] of a point and return the figure.
 
         Limit points (circles) and bifurcations (diamonds) of a `Path` are marked, each with its load factor. path: file
-        to write (PNG, SVG, PDF). Raises InputError for another quantity or a motion, MissingPackageError without
-        matplotlib.
+        to write (PNG, SVG, PDF); ax: axes to draw in, see `plot`. Raises InputError for another quantity or a motion,
+        MissingPackageError without matplotlib.
 
         Examples
         --------
@@ -647,11 +653,11 @@ class Solution:
         """
         from beamfem.view.quantity_curve import plot_load_displacement
 
-        return plot_load_displacement(self, point, quantity, path)
+        return plot_load_displacement(self, point, quantity, path, ax)
 
     def animate(
         self,
-        path: str | PathLike[str],
+        path: str | PathLike[str] | None = None,
         *,
         fps: float = 15.0,
         seconds: float = 4.0,
@@ -663,11 +669,11 @@ class Solution:
     ) -> Path:
         """Write an animation as GIF or MP4, according to the suffix of `path`, and return the path.
 
-        About fps * seconds [s] rows are shown, equally spaced in time (in statics by row); with fewer rows each is
-        shown longer. Loads are drawn in each frame with their current amplitude. colour: a field along the beams, see
-        `plot`; undeformed, supports, loads: whether to draw the reference axes dashed and symbols; dpi: pixels per
-        inch, of a frame 4 to 8 inches wide. Raises InputError for another suffix; MissingPackageError without
-        matplotlib, for .mp4 without imageio-ffmpeg.
+        path: by default a temporary GIF; notebooks display the path that is returned. About fps * seconds [s] rows are
+        shown, equally spaced in time (in statics by row); with fewer rows each is shown longer. Loads are drawn in each
+        frame with their current amplitude. colour: a field along the beams, see `plot`; undeformed, supports, loads:
+        whether to draw the reference axes dashed and symbols; dpi: pixels per inch, of a frame 4 to 8 inches wide.
+        Raises InputError for another suffix; MissingPackageError without matplotlib, for .mp4 without imageio-ffmpeg.
 
         Examples
         --------
@@ -681,8 +687,9 @@ class Solution:
         """Open a window with the solid body and a slider over the steps, and wait until it is closed.
 
         colour: a field along the beams, see `plot`; size: width and height in pixels. Returns the plotter of PyVista;
-        without a display, or if VTK cannot render, a matplotlib figure, and a warning is given. Raises InputError for
-        an invalid option.
+        without a display, or if VTK cannot render, a matplotlib figure, and a warning is given. In a notebook, the
+        view is displayed below the cell: by PyVista where trame is installed, else pictures with a slider of ipywidgets
+        where these are installed, else the page of `to_html`. Raises InputError for an invalid option.
         """
         from beamfem.view.solid_pyvista import show
 
@@ -690,7 +697,7 @@ class Solution:
 
     def picture(
         self,
-        path: str | PathLike[str],
+        path: str | PathLike[str] | None = None,
         *,
         colour: str | None = None,
         size: tuple[int, int] = (1400, 900),
@@ -698,13 +705,14 @@ class Solution:
     ) -> Path:
         """Write a picture (.png) of the solid body in a row without opening a window, and return the path.
 
-        colour: a field along the beams, see `plot`; size: width and height in pixels. Rendering is tried in a child
-        process first; if VTK cannot render, matplotlib draws the same row in the plane and a warning is given. Raises
-        InputError for another suffix or an invalid option.
+        path: by default a temporary file; notebooks display the path that is returned. colour: a field along the beams,
+        see `plot`; size: width and height in pixels. Rendering is tried in a child process first; if VTK cannot render,
+        matplotlib draws the same row in the plane and a warning is given. Raises InputError for another suffix or an
+        invalid option.
         """
         from beamfem.view.solid_pyvista import picture
 
-        return picture(self, path, colour=colour, size=size, row=row)
+        return picture(self, path, row, colour, size)
 
     def to_vtk(
         self,

@@ -14,7 +14,7 @@ from beamfem.reprs import brief
 from beamfem.results.solution import Solution
 from beamfem.sweeps.workers import Failure
 from beamfem.validation import require_known, shown
-from beamfem.view.plots import COLOURS, MARKERS, new_figure, save_figure
+from beamfem.view.plots import COLOURS, MARKERS, legend_over, new_figure, save_figure
 
 _ROWS_REPORTED = 40
 _ROWS_PRINTED = 6
@@ -192,12 +192,19 @@ class Sweep:
                 data[name] = ((*names, *dimensions), values.reshape(*self.shape, *values.shape[1:]))
         return xarray.Dataset(data, coordinates)
 
-    def plot(self, value: str | None = None, over: str | None = None, path: str | PathLike[str] | None = None) -> Any:
+    def plot(
+        self,
+        value: str | None = None,
+        over: str | None = None,
+        path: str | PathLike[str] | None = None,
+        *,
+        ax: Any = None,
+    ) -> Any:
         """Plot a result against a parameter, one curve for each combination of the others, without points that failed.
 
         value: name of the result; over: name of a varied numeric parameter; by default the first of each; path: file to
-        write (PNG, SVG, PDF). Returns the figure. Raises InputError for an unknown name, or if there are no numbers to
-        plot; MissingPackageError without matplotlib.
+        write (PNG, SVG, PDF); ax: axes to draw in, see `Solution.plot`. Returns the figure. Raises InputError for an
+        unknown name, or if there are no numbers to plot; MissingPackageError without matplotlib.
 
         Examples
         --------
@@ -222,7 +229,8 @@ class Sweep:
         named = 1 < len(curves) <= _NAMED
         # a legend of few short names stands above the axes, a longer one beside them in a wider figure
         legend_beside = named and sum(map(len, curves)) > _ABOVE
-        figure, axes = new_figure(6.4 + (_WIDEST * min(1.0, max(map(len, curves)) / _CUT) if legend_beside else 0.0))
+        width = 6.4 + (_WIDEST * min(1.0, max(map(len, curves)) / _CUT) if legend_beside else 0.0)
+        figure, axes = new_figure(width, ax=ax, pyplot=path is None)
         for number, (label, points) in enumerate(curves.items()):
             x, y = np.array(sorted(points)).T
             colour, marker = COLOURS[number % len(COLOURS)], MARKERS[number % len(MARKERS)]
@@ -232,9 +240,9 @@ class Sweep:
         axes.set_ylabel(value)
         axes.margins(0.04)
         if legend_beside:
-            figure.legend(frameon=False, fontsize=9, loc="outside right upper")
+            axes.legend(frameon=False, fontsize=9, loc="upper left", bbox_to_anchor=(1.0, 1.0))
         elif named:
-            figure.legend(frameon=False, fontsize=9, loc="outside upper left", ncols=len(curves))
+            legend_over(axes, len(curves))
         return save_figure(figure, path)
 
     def to_csv(self, path: str | PathLike[str]) -> None:

@@ -1,13 +1,14 @@
 """Moving pictures: GIF by Pillow, MP4 by the ffmpeg of imageio-ffmpeg; no window, small files."""
 
 from collections.abc import Iterator
+from io import BytesIO
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from beamfem.atomic_write import path_ending, whole
+from beamfem.atomic_write import whole
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
 from beamfem.results.solution import Solution
@@ -16,17 +17,18 @@ from beamfem.view.deformed_shapes import FIELD_COLOURS, Shapes, draw_undeformed,
 from beamfem.view.drawing import LINE, bar, equal_axes, legend_above
 from beamfem.view.frames import moment_of, spread_rows
 from beamfem.view.load_drawing import FORCE, draw_loads
-from beamfem.view.notebook_paths import WrittenFile
+from beamfem.view.notebook_paths import file_to_write
 from beamfem.view.support_symbols import PRESCRIBED, draw_joints, supports_of
 
 _POINTS = 600  # of all beams; what moves in a small picture needs no more
+_PICTURES = 50  # of a slider
 _FINEST = 1000  # pixels an inch: pictures of some inches have a hundred million
 _LONGEST_FRAME = 0.5  # [s], for a solution of few rows
 
 
 def animate(
     solution: Solution,
-    path: str | PathLike[str],
+    path: str | PathLike[str] | None = None,
     fps: float = 15.0,
     seconds: float = 4.0,
     colour: str | None = None,
@@ -36,7 +38,7 @@ def animate(
     dpi: int = 100,
 ) -> Path:
     """Write an animation of the body to a .gif or .mp4 file and return its path, see `Solution.animate`."""
-    target = path_ending(path, "an animation", ".gif", ".mp4", example="motion.gif")
+    target = file_to_write(path, "an animation", ".gif", ".mp4", example="motion.gif")
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to animate")
     for name, value in (("undeformed", undeformed), ("supports", supports), ("loads", loads)):
@@ -52,7 +54,24 @@ def animate(
     frames = _frames(shapes, undeformed, supports, loads, dpi)
     with whole(target) as partial:
         write(partial, frames, duration)
-    return WrittenFile(target)
+    return target
+
+
+def slider(solution: Solution, colour: str | None = None) -> Any:
+    """Return pictures of the body with a slider of ipywidgets over the load factor or time."""
+    import ipywidgets
+    from PIL import Image
+
+    shapes, pictures = Shapes(solution, spread_rows(solution, _PICTURES), colour, _POINTS), []
+    frames = _frames(shapes, undeformed=True, supports=True, loads=True, dpi=100)
+    for row, frame in zip(shapes.rows, frames, strict=True):
+        data = BytesIO()
+        Image.fromarray(frame).save(data, format="png")
+        pictures.append((moment_of(solution, int(row)), data.getvalue()))
+    moment = ipywidgets.SelectionSlider(options=pictures, index=len(pictures) - 1, layout={"width": "100%"})
+    picture = ipywidgets.Image(value=moment.value, format="png", layout={"object_fit": "contain"})
+    moment.observe(lambda change: setattr(picture, "value", change.new), "value")
+    return ipywidgets.VBox([moment, picture])
 
 
 def _frames(shapes: Shapes, undeformed: bool, supports: bool, loads: bool, dpi: int) -> Iterator[np.ndarray]:
@@ -67,9 +86,9 @@ def _frames(shapes: Shapes, undeformed: bool, supports: bool, loads: bool, dpi: 
     size = np.ceil(figure.get_size_inches() * dpi / 2.0) * 2.0
     figure.set_size_inches(size / dpi)
     if undeformed:
-        legend_above(figure, axes, [draw_undeformed(axes, shapes.points)])
+        legend_above(axes, [draw_undeformed(axes, shapes.points)])
     if shapes.quantity is not None:
-        bar(figure, axes, shapes)
+        bar(axes, shapes)
     title = axes.set_title(" ", fontsize=10, pad=72.0 * LINE if undeformed else 6.0)
     canvas = figure.canvas
     canvas.draw()

@@ -21,7 +21,7 @@ from beamfem.view.deformed_shapes import FIELD_COLOURS, ORIGINAL, Shapes, draw_u
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
 from beamfem.view.labels import place
 from beamfem.view.load_drawing import draw_loads
-from beamfem.view.plots import empty_figure, quiet, save_figure
+from beamfem.view.plots import empty_figure, given_axes, quiet, save_figure
 from beamfem.view.support_symbols import draw_joints, supports_of
 
 _COLOUR = "#CC3311"
@@ -95,6 +95,8 @@ def plot_shapes(
     undeformed: bool = True,
     supports: bool = True,
     loads: bool = True,
+    ax: Any = None,
+    title: str | None = None,
 ) -> Any:
     """Draw the deformed body at one or several steps, later ones darker; return the figure. See `Solution.plot`."""
     if len(solution) == 0:
@@ -113,7 +115,11 @@ def plot_shapes(
     barred = extreme is not None or (crowded and len(rows) > 1)
     lines = 2 if extreme is not None and _wide([*dashed, f"{extreme.value} {extreme.where}"]) > width else 1
     above = 0.0 if extreme is None else LINE + (lines - 1) * _FURTHER
-    figure, axes = equal_axes(drawn.box, barred, solution.model.unit("m"), above)
+    if ax is None:
+        figure, axes = equal_axes(drawn.box, barred, solution.model.unit("m"), above, pyplot=path is None)
+    else:
+        axes = _equal_scale(given_axes(ax)[0], drawn.box, solution.model.unit("m"))
+        figure = axes.figure.figure
     entries = [draw_undeformed(axes, drawn.points)] if undeformed else []
     for order in range(len(rows)):
         drawn.draw(axes, order, (order + 1) / len(rows))
@@ -123,30 +129,41 @@ def plot_shapes(
     if loads:
         draw_loads(axes, solution, rows)
     if extreme is not None:
-        bar(figure, axes, drawn)
+        bar(axes, drawn, ax is None)
         entries.append(extreme.draw(axes, lines))
     elif barred:
-        _bar_of_rows(figure, axes, solution, rows)
+        _bar_of_rows(axes, solution, rows, ax is None)
     elif len(rows) > 1 or undeformed:
         entries += [entry((order + 1) / len(rows), name) for order, name in enumerate(names)]
-    legend_above(figure, axes, entries)
+    legend_above(axes, entries, ax is None)
     if extreme is not None or not (entries or barred):
-        axes.set_title(_span(solution, rows), fontsize=10, pad=max(6.0, 72.0 * above))
+        axes.set_title(title or _span(solution, rows), fontsize=10, pad=max(6.0, 72.0 * above))
     return save_figure(figure, path)
 
 
-def equal_axes(box: np.ndarray, with_bar: bool, unit: str = "m", above: float = 0.0) -> tuple[Any, Any]:
+def equal_axes(
+    box: np.ndarray, with_bar: bool, unit: str = "m", above: float = 0.0, pyplot: bool = False
+) -> tuple[Any, Any]:
     """Return a figure and axes [unit] of equal scale around a box (2, 2) [m], with room for symbols around it.
 
-    above: room above a title or a legend [inch].
+    above: room above a title or a legend [inch]; pyplot: see `empty_figure`.
     """
     scale, inches = _LONGER_SIDE / _extent(box), _inches(box)
     right = _BAR if with_bar else _RIGHT
-    figure = empty_figure(inches[0] + _LEFT + right, inches[1] + _BOTTOM + _TOP + above, layout=None)
+    figure = empty_figure(inches[0] + _LEFT + right, inches[1] + _BOTTOM + _TOP + above, None, pyplot)
     width, height = figure.get_size_inches()
     axes = figure.add_axes((_LEFT / width, _BOTTOM / height, inches[0] / width, inches[1] / height))
     frame(axes, box.mean(axis=0), inches / scale, inches, unit)
     return figure, axes
+
+
+def _equal_scale(axes: Any, box: np.ndarray, unit: str) -> Any:
+    """Return the axes of a user with equal scale around a box (2, 2) [m]."""
+    inches = axes.get_window_extent().size / axes.figure.dpi
+    size = box[1] - box[0]
+    scale = np.min(np.maximum(inches - 2.0 * _ROOM, 0.5 * inches) / np.where(size > 0.0, size, 1e-3 * _extent(box)))
+    frame(axes, box.mean(axis=0), inches / scale, inches, unit)
+    return axes
 
 
 def _inches(box: np.ndarray) -> np.ndarray:
@@ -171,16 +188,16 @@ def frame(axes: Any, middle: np.ndarray, size: np.ndarray, inches: np.ndarray, u
     axes.set_ylabel(f"y [{unit}]")
 
 
-def bar(figure: Any, axes: Any, shapes: Shapes) -> None:
-    """Draw the colour bar of a field."""
+def bar(axes: Any, shapes: Shapes, own: bool = True) -> None:
+    """Draw the colour bar of a field, in the margin of a figure of our own."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
     assert shapes.quantity is not None
-    _add_bar(figure, axes, ScalarMappable(Normalize(*shapes.limits), FIELD_COLOURS), shapes.label)
+    _add_bar(axes, ScalarMappable(Normalize(*shapes.limits), FIELD_COLOURS), shapes.label, own)
 
 
-def _bar_of_rows(figure: Any, axes: Any, solution: Solution, rows: np.ndarray) -> None:
+def _bar_of_rows(axes: Any, solution: Solution, rows: np.ndarray, own: bool) -> None:
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import BoundaryNorm, ListedColormap
 
@@ -188,7 +205,7 @@ def _bar_of_rows(figure: Any, axes: Any, solution: Solution, rows: np.ndarray) -
     name, unit = axis_of_rows(solution)
     colours = [shade((order + 1) / len(rows)) for order in range(len(rows))]
     norm = BoundaryNorm(np.arange(len(rows) + 1) - 0.5, len(rows))
-    colour_bar = _add_bar(figure, axes, ScalarMappable(norm, ListedColormap(colours)), f"{name} [{unit}]")
+    colour_bar = _add_bar(axes, ScalarMappable(norm, ListedColormap(colours)), f"{name} [{unit}]", own)
     colour_bar.set_ticks(np.arange(len(rows)), labels=[f"{value:.3g}" for value in values])
     colour_bar.ax.tick_params(length=0)
 
@@ -205,19 +222,21 @@ def entry(fraction: float, label: str) -> Any:
     return Line2D([], [], color=shade(fraction), linewidth=3, label=label)
 
 
-def legend_above(figure: Any, axes: Any, entries: list[Any]) -> None:
-    """Write a legend in a line above the axes, if there is anything to explain."""
+def legend_above(axes: Any, entries: list[Any], own: bool = True) -> None:
+    """Write a legend in a line above the axes, if there is anything to explain; centred on a figure of our own."""
     if entries:
-        top = axes.get_position().y1
         options = {"ncols": len(entries), "frameon": False, "borderaxespad": 0.1, "fontsize": _SMALL}
-        figure.legend(handles=entries, loc="lower center", bbox_to_anchor=(0.5, top), **options)
+        legend, top = (axes.figure.legend, axes.get_position().y1) if own else (axes.legend, 1.0)
+        legend(handles=entries, loc="lower center", bbox_to_anchor=(0.5, top), **options)
 
 
-def _add_bar(figure: Any, axes: Any, colours: Any, label: str) -> Any:
-    width = figure.get_size_inches()[0]
-    left, bottom, across, height = axes.get_position().bounds
-    bar_axes = figure.add_axes((left + across + 0.12 / width, bottom, 0.16 / width, height))
-    colour_bar = figure.colorbar(colours, cax=bar_axes, label=label)
+def _add_bar(axes: Any, colours: Any, label: str, own: bool) -> Any:
+    figure, place = axes.figure, {"ax": axes}
+    if own:
+        width = figure.get_size_inches()[0]
+        left, bottom, across, height = axes.get_position().bounds
+        place = {"cax": figure.add_axes((left + across + 0.12 / width, bottom, 0.16 / width, height))}
+    colour_bar = figure.colorbar(colours, label=label, **place)
     colour_bar.outline.set_visible(False)
     return colour_bar
 
@@ -230,7 +249,7 @@ def _span(solution: Solution, rows: np.ndarray) -> str:
     return f"{name} {first} to {last}" + (f" {unit}" if unit != "-" else "")
 
 
-def plot_model(model: Model, path: str | PathLike[str] | None = None) -> Any:
+def plot_model(model: Model, path: str | PathLike[str] | None = None, ax: Any = None) -> Any:
     """Draw the undeformed bodies of a model with supports, joints and full loads; return the figure.
 
     path: file to write (PNG, SVG, PDF; folders are created). Nothing is solved, so models that are mechanisms or are
@@ -239,6 +258,4 @@ def plot_model(model: Model, path: str | PathLike[str] | None = None) -> Any:
     p = system_of(model, static=True).reference[None]
     rates = np.zeros_like(p)
     at_rest = Solution(model, True, np.ones(1), p, rates, rates, Statistics(0, 0, 0, "the model without stress"))
-    figure = plot_shapes(at_rest, undeformed=False)
-    figure.axes[0].set_title("reference shape, full loads", fontsize=10)
-    return save_figure(figure, path)
+    return plot_shapes(at_rest, path, undeformed=False, ax=ax, title="reference shape, full loads")

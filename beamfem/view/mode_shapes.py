@@ -11,7 +11,7 @@ from beamfem.results.solution import Solution
 from beamfem.validation import count
 from beamfem.view.deformed_shapes import Shapes, draw_undeformed
 from beamfem.view.drawing import entry, frame
-from beamfem.view.plots import empty_figure, save_figure
+from beamfem.view.plots import empty_figure, given_axes, save_figure
 from beamfem.view.support_symbols import draw_joints, supports_of
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ _MOST = 6
 _WIDTH, _LEAST_HEIGHT = 3.6, 0.9  # of one picture [inch]
 
 
-def plot_modes(modes: "Modes", path: str | PathLike[str] | None = None, most: int = _MOST) -> Any:
+def plot_modes(modes: "Modes", path: str | PathLike[str] | None = None, most: int = _MOST, ax: Any = None) -> Any:
     """Draw the first `most` vibration modes, each with its frequency [Hz]; return the figure. See `Modes.plot`."""
 
     def title(mode: int) -> str:
@@ -37,10 +37,12 @@ def plot_modes(modes: "Modes", path: str | PathLike[str] | None = None, most: in
     def rows(mode: int, solution: Solution) -> np.ndarray:
         return np.array([len(solution) - 1] if mode < len(modes.rigid) else [len(solution) // 2, 0])
 
-    return _plot(modes, title, rows, ("half a period later", "at its largest"), path, most)
+    return _plot(modes, title, rows, ("half a period later", "at its largest"), path, most, ax)
 
 
-def plot_buckling(buckling: "Buckling", path: str | PathLike[str] | None = None, most: int = _MOST) -> Any:
+def plot_buckling(
+    buckling: "Buckling", path: str | PathLike[str] | None = None, most: int = _MOST, ax: Any = None
+) -> Any:
     """Draw the first `most` buckling modes, each with its critical load factor; return the figure: `Buckling.plot`."""
 
     def title(mode: int) -> str:
@@ -50,7 +52,7 @@ def plot_buckling(buckling: "Buckling", path: str | PathLike[str] | None = None,
     def rows(mode: int, solution: Solution) -> np.ndarray:
         return np.array([0, 1])
 
-    return _plot(buckling, title, rows, ("critical state", "with the mode"), path, most)
+    return _plot(buckling, title, rows, ("critical state", "with the mode"), path, most, ax)
 
 
 def _plot(
@@ -60,6 +62,7 @@ def _plot(
     names: tuple[str, str],
     path: str | PathLike[str] | None,
     most: int,
+    ax: Any,
 ) -> Any:
     number = min(len(modes), count("most", most))
     if number == 0:
@@ -72,9 +75,12 @@ def _plot(
     lines = -(-number // columns)
     height = np.clip(_WIDTH * size[1] / size[0] if size[0] > 0.0 else np.inf, _LEAST_HEIGHT, 1.4 * _WIDTH) + 0.7
     width = np.clip((height - 0.7) * size[0] / max(size[1], 1e-12), 2.2, _WIDTH)
-    figure = empty_figure(columns * width + 0.6, lines * height + 0.7)
-    grid = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True)
-    for mode, (axes, item) in enumerate(zip(grid.flat, shapes, strict=False)):
+    if ax is None:
+        figure = empty_figure(columns * width + 0.6, lines * height + 0.7, pyplot=path is None)
+        grid = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True).ravel().tolist()
+    else:
+        grid = given_axes(ax, number)
+    for mode, (axes, item) in enumerate(zip(grid, shapes, strict=False)):
         original = draw_undeformed(axes, item.points)
         for order in range(len(item.rows)):
             item.draw(axes, order, (order + 1) / len(item.rows))
@@ -82,9 +88,11 @@ def _plot(
         draw_joints(axes, item.solution, int(item.rows[-1]))
         frame(axes, box.mean(axis=0), size * 1.06 + 0.08 * size.max(), np.array([width, height - 0.7]), unit)
         axes.set_title(title(mode), fontsize=10)
-        axes.label_outer()
-    for axes in grid.flat[number:]:
+        if ax is None:
+            axes.label_outer()
+    for axes in grid[number:]:
         axes.set_visible(False)
-    entries = [original, *(entry(0.5 * (order + 1), name) for order, name in enumerate(names))]
-    figure.legend(handles=entries, loc="outside lower center", ncols=len(entries), frameon=False, fontsize=9)
-    return save_figure(figure, path)
+    if ax is None:
+        entries = [original, *(entry(0.5 * (order + 1), name) for order, name in enumerate(names))]
+        figure.legend(handles=entries, loc="outside lower center", ncols=len(entries), frameon=False, fontsize=9)
+    return save_figure(grid[0].figure.figure, path)

@@ -1,8 +1,13 @@
 """Files that were written, as paths that notebooks show."""
 
+import atexit
 from base64 import b64encode
 from html import escape
+from os import PathLike
 from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from beamfem.atomic_write import path_ending
 
 _HEIGHT = 640  # of a page in a cell [pixels]
 _KINDS = {".png": "image/png", ".gif": "image/gif", ".mp4": "video/mp4"}
@@ -25,3 +30,15 @@ class WrittenFile(type(Path())):  # type: ignore[misc]
         if kind == ".mp4":
             return f'<video controls loop src="{data}" style="max-width: 100%"></video>'
         return f'<img src="{data}" style="max-width: 100%">'
+
+
+def file_to_write(path: str | PathLike[str] | None, kind: str, *suffixes: str, example: str) -> WrittenFile:
+    """Return the path of a file of a kind; without one, of a file that is deleted when Python ends.
+
+    Raises InputError for another suffix.
+    """
+    if path is None:
+        folder = TemporaryDirectory(prefix="beamfem-")
+        atexit.register(folder.cleanup)
+        path = Path(folder.name) / example
+    return WrittenFile(path_ending(path, kind, *suffixes, example=example))

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.atomic_write import path_ending, whole
+from beamfem.atomic_write import whole
 from beamfem.errors import InputError
 from beamfem.mesh.joined_mesh import join
 from beamfem.model.beam import Beam
@@ -25,9 +25,9 @@ from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
 from beamfem.validation import count, optional, text
 from beamfem.view.deformed_shapes import Shapes, limits
-from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
+from beamfem.view.frames import axis_of_rows, axis_points, moment_of, spread_rows
 from beamfem.view.load_drawing import PlacedLoads, PlacedRow
-from beamfem.view.notebook_paths import WrittenFile
+from beamfem.view.notebook_paths import file_to_write
 from beamfem.view.summary import model_rows, solution_rows
 from beamfem.view.support_symbols import joints_of, supports_of
 
@@ -133,17 +133,20 @@ def _arrow(place: np.ndarray, vector: np.ndarray, tip: bool) -> list[float]:
     return [*_short(place), *(round(float(part), 1) for part in vector), int(tip)]
 
 
-def _short(values: np.ndarray) -> list[float]:
-    return [float(f"{value:.6g}") for value in values]
+def _short(values: np.ndarray, digits: int = 6) -> list[float]:
+    return [float(f"{value:.{digits}g}") for value in values]
 
 
 _BYTES = 560_000  # of numbers in a page; as text they grow by a third
 _LEVELS = 65534  # into which the box of all shapes is cut
+_CURVE, _AT_ONCE = 500, 500_000  # points of the axes, and parts of the curve; points in one array
 
 
-def write_player(solution: Solution, path: str | PathLike[str], title: str | None = None, frames: int = 60) -> Path:
+def write_player(
+    solution: Solution, path: str | PathLike[str] | None = None, title: str | None = None, frames: int = 60
+) -> Path:
     """Write a self-contained page with a slider over up to `frames` steps and return its path: `Solution.to_html`."""
-    target = path_ending(path, "a page", ".html", example="steps.html")
+    target = file_to_write(path, "a page", ".html", example="steps.html")
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to show")
     heading = optional(text)("title", title) or (target.stem.replace("_", " ").replace("-", " ") or "Solution")
@@ -155,7 +158,7 @@ def write_player(solution: Solution, path: str | PathLike[str], title: str | Non
     page = template.replace("@TITLE@", escape(heading)).replace("@TABLE@", table).replace("@DATA@", data)
     with whole(target) as partial:
         partial.write_text(page, encoding="utf-8")
-    return WrittenFile(target)
+    return target
 
 
 def _data(solution: Solution, frames: int) -> dict[str, Any]:
@@ -167,11 +170,8 @@ def _data(solution: Solution, frames: int) -> dict[str, Any]:
     def levels(places: np.ndarray) -> str:
         return as_text(np.round((places - low) / size * _LEVELS - 0.5 * _LEVELS).astype("<i2"))
 
-    moved = [
-        np.linalg.norm(axis - points.reference, axis=-1)
-        for axis, points in zip(shapes.axis, shapes.points, strict=True)
-    ]
     rows = [int(row) for row in shapes.rows]
+    moved, chosen = _largest_moves(solution)
     name, unit = axis_of_rows(solution)
     outlines, places = _supports(shapes)
     return {
@@ -183,10 +183,11 @@ def _data(solution: Solution, frames: int) -> dict[str, Any]:
         "beams": [len(points.xi) for points in shapes.points],
         "pieces": [points.pieces for points in shapes.points],
         "labels": [moment_of(solution, row) for row in rows],
-        "at": [float(f"{solution.at[row]:.7g}") for row in rows],
+        "at": _short(solution.at[rows], 7),
         "axis": f"{name} [{unit}]",
         "length": solution.model.unit("m"),
-        "moved": [float(f"{value:.5g}") for value in np.concatenate(moved, axis=1).max(axis=1)],
+        "moved": _short(moved[rows]),
+        "curve": [_short(solution.at[chosen], 7), _short(moved[chosen])],
         "points": levels(np.concatenate(sides, axis=1)),  # (rows, points, sides, 2)
         "reference": levels(np.concatenate([points.reference for points in shapes.points])),
         "loads": loads_of(shapes),
@@ -194,6 +195,20 @@ def _data(solution: Solution, frames: int) -> dict[str, Any]:
         "places": places,
         "fields": fields_of(shapes, names),
     }
+
+
+def _largest_moves(solution: Solution) -> tuple[np.ndarray, np.ndarray]:
+    """Return the largest displacement of each row (rows,) [m], and the rows of a curve that keeps its peaks."""
+    moved = np.zeros(len(solution))
+    for points in axis_points(solution, _CURVE):
+        chunk = max(1, _AT_ONCE // len(points.xi))
+        for first in range(0, len(moved), chunk):
+            own = points.positions(solution.p[first : first + chunk])[0] - points.reference
+            here = moved[first : first + chunk]
+            np.maximum(here, np.linalg.norm(own, axis=-1).max(axis=1), out=here)
+    groups = np.array_split(np.arange(len(moved)), min(len(moved), _CURVE))
+    peaks = [(group[0], group[moved[group].argmin()], group[moved[group].argmax()], group[-1]) for group in groups]
+    return moved, np.unique(peaks)
 
 
 def _sized(solution: Solution, frames: int) -> tuple[Shapes, bool, tuple[str, ...]]:

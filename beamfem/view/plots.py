@@ -1,12 +1,18 @@
-"""Figures of matplotlib without a window, and how they are saved; see `quantity_curve` and `drawing` for plots."""
+"""Figures and axes of matplotlib, and how they are saved; see `quantity_curve` and `drawing` for plots."""
 
 from os import PathLike
+from threading import current_thread, main_thread
 from typing import Any
+
+import numpy as np
 
 from beamfem.atomic_write import path_of, whole
 from beamfem.equations.callbacks import uninterrupted
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
+from beamfem.progress import in_notebook
+from beamfem.validation import shown
+from beamfem.view.rendering import has_display
 
 # Paul Tol's bright palette: told apart by the colour-blind and in grey print
 COLOURS = ("#4477AA", "#EE6677", "#228833", "#CCBB44", "#66CCEE", "#AA3377", "#BBBBBB")
@@ -14,23 +20,48 @@ MARKERS = "osD^vP*X<>"  # in grey print, and where there are more curves than co
 _DOTS_PER_INCH = 160
 
 
-def empty_figure(width: float, height: float, layout: Any = "constrained") -> Any:
-    """Return a figure [inch], by default one that lays itself out. Raises MissingPackageError without matplotlib."""
+def empty_figure(width: float, height: float, layout: Any = "constrained", pyplot: bool = False) -> Any:
+    """Return a figure [inch], by default one that lays itself out. Raises MissingPackageError without matplotlib.
+
+    pyplot: whether `plt.show()` opens it where there is a display, and a notebook displays it after the cell.
+    """
     with needed_for("a picture"):
         from matplotlib.backends.backend_agg import FigureCanvasAgg
 
         from beamfem.view.notebook_figure import ShownFigure
-    figure = ShownFigure(figsize=(width, height), layout=layout, dpi=100)
+    options = {"figsize": (width, height), "layout": layout, "dpi": 100}
+    if pyplot and (in_notebook() or has_display()) and current_thread() is main_thread():  # as windows demand
+        from matplotlib import pyplot as plt
+
+        return plt.figure(FigureClass=ShownFigure, **options)
+    figure = ShownFigure(**options)
     FigureCanvasAgg(figure)
     return figure
 
 
-def new_figure(width: float = 6.4, height: float = 4.2) -> tuple[Any, Any]:
-    """Return a figure [inch] and its axes with quiet spines and a light grid."""
-    figure = empty_figure(width, height)
-    axes = figure.subplots()
+def new_figure(width: float = 6.4, height: float = 4.2, ax: Any = None, pyplot: bool = False) -> tuple[Any, Any]:
+    """Return a figure [inch] and its axes with quiet spines and a light grid; those of the user where `ax` is given."""
+    axes = empty_figure(width, height, pyplot=pyplot).subplots() if ax is None else given_axes(ax)[0]
     quiet(axes)
-    return figure, axes
+    return axes.figure.figure, axes
+
+
+def given_axes(ax: Any, number: int = 1) -> list[Any]:
+    """Return the axes that a user gave. Raises InputError if they are not as many as needed."""
+    with needed_for("a picture"):
+        from matplotlib.axes import Axes
+
+    found = np.ravel(np.asarray(ax, dtype=object)).tolist()
+    if len(found) != number or not all(isinstance(axes, Axes) for axes in found):
+        needed = "one axes, such as plt.gca()" if number == 1 else f"{number} axes, such as plt.subplots({number})[1]"
+        got = f"{len(found)} axes" if all(isinstance(axes, Axes) for axes in found) else shown(ax)
+        raise InputError(f"ax: this picture needs {needed}, got {got}")
+    return found
+
+
+def legend_over(axes: Any, columns: int) -> None:
+    """Write a legend without a frame above the axes."""
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=columns, frameon=False)
 
 
 def quiet(axes: Any) -> None:

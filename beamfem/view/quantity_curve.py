@@ -19,7 +19,7 @@ from beamfem.solve.linear.linear_model import QUANTITIES as LINEAR
 from beamfem.validation import items, one_of, require_known, shown
 from beamfem.view.frames import axis_of_rows
 from beamfem.view.labels import place, write_labels
-from beamfem.view.plots import COLOURS, empty_figure, new_figure, quiet, save_figure
+from beamfem.view.plots import COLOURS, empty_figure, given_axes, legend_over, new_figure, quiet, save_figure
 
 if TYPE_CHECKING:
     from beamfem.solve.linear.frequency_response import FrequencyResponse
@@ -54,6 +54,7 @@ def plot_history(
     point: Point | Sequence[Point] | None = None,
     quantity: str = "displacement",
     path: str | PathLike[str] | None = None,
+    ax: Any = None,
 ) -> Any:
     """Plot a quantity at points against time [s] or load factor; return the figure. See `Solution.plot_history`."""
     if isinstance(quantity, str) and quantity == "energy":
@@ -72,7 +73,7 @@ def plot_history(
                 {f"{name} at {place(solution.model, item.reference)}": curve for name, curve in part.items()}
                 for item, part in zip(points, parts, strict=True)
             ]
-    figure, axes = new_figure()
+    figure, axes = new_figure(ax=ax, pyplot=path is None)
     several = sum(len(part) for part in parts) > 1
     for number, part in enumerate(parts):
         for order, (name, curve) in enumerate(part.items()):
@@ -85,17 +86,17 @@ def plot_history(
     axes.set_ylabel(f"{label} [{solution.model.unit(unit)}]")
     axes.margins(x=0.02)
     if several:
-        figure.legend(loc="outside upper center", ncols=4 if len(parts) == 1 else 2, frameon=False)
+        legend_over(axes, 4 if len(parts) == 1 else 2)
     return save_figure(figure, path)
 
 
 def plot_load_displacement(
-    solution: Solution, point: Point, quantity: str = "uy", path: str | PathLike[str] | None = None
+    solution: Solution, point: Point, quantity: str = "uy", path: str | PathLike[str] | None = None, ax: Any = None
 ) -> Any:
     """Plot the load factor against a motion of a point; return the figure. See `Solution.plot_load_displacement`."""
     one_of("what the load is drawn over", quantity, ("ux", "uy", "rotation"))
     load, (label, curve) = solution.load_factor, _taken(solution, "x", (quantity, point))
-    figure, axes = new_figure()
+    figure, axes = new_figure(ax=ax, pyplot=path is None)
     axes.axhline(0.0, color="0.6", linewidth=0.8)
     marker = "." if len(solution) <= 200 else None
     axes.plot(curve, load, color=COLOURS[0], linewidth=1.6, marker=marker, markersize=4, zorder=2)
@@ -115,7 +116,7 @@ def plot_load_displacement(
             marked += zip(x.tolist(), alone.at.tolist(), strict=True)
             colours += len(states) * [colour]
         if solution.limit_points or solution.bifurcations:
-            figure.legend(loc="outside upper center", ncols=2, frameon=False)
+            legend_over(axes, 2)
     axes.set_xlabel(label)
     axes.set_ylabel("load factor [-]")
     axes.margins(0.06, 0.1)
@@ -124,11 +125,13 @@ def plot_load_displacement(
     return save_figure(figure, path)
 
 
-def plot_envelope(envelope: Envelope, beam: Beam, name: str, path: str | PathLike[str] | None = None) -> Any:
+def plot_envelope(
+    envelope: Envelope, beam: Beam, name: str, path: str | PathLike[str] | None = None, ax: Any = None
+) -> Any:
     """Draw the envelope of a quantity along a beam and return the figure. See `Envelope.plot`."""
     curve, model = envelope.along(beam, name), next(iter(envelope.cases.values())).model
     drawn = quantity_along(name)
-    figure, axes = new_figure()
+    figure, axes = new_figure(ax=ax, pyplot=path is None)
     axes.axhline(0.0, color="0.6", linewidth=0.8)
     axes.fill_between(curve.arc_length, curve.smallest, curve.largest, color="0.88", label="envelope")
     for number, (case, sides) in enumerate(curve.cases.items()):
@@ -137,7 +140,7 @@ def plot_envelope(envelope: Envelope, beam: Beam, name: str, path: str | PathLik
     axes.set_xlabel(f"arc length [{model.unit('m')}]")
     axes.set_ylabel(f"{drawn.label} [{model.unit(drawn.unit)}]")
     axes.margins(x=0.02)
-    figure.legend(loc="outside upper center", ncols=4, frameon=False)
+    legend_over(axes, 4)
     return save_figure(figure, path)
 
 
@@ -158,10 +161,10 @@ OF_SECTION = (
 ENERGIES = ("kinetic", "strain", "potential", "total")
 
 
-def plot_curve(solution: Solution, x: Drawn, y: Drawn, path: str | PathLike[str] | None = None) -> Any:
+def plot_curve(solution: Solution, x: Drawn, y: Drawn, path: str | PathLike[str] | None = None, ax: Any = None) -> Any:
     """Plot one quantity against another, one point per row; return the figure. See `Solution.plot_curve`."""
     (across, horizontal), (up, vertical) = (_taken(solution, *pair) for pair in (("x", x), ("y", y)))
-    figure, axes = new_figure()
+    figure, axes = new_figure(ax=ax, pyplot=path is None)
     marker = "." if len(solution) <= _MARKED else None
     axes.plot(horizontal, vertical, color=COLOURS[0], linewidth=1.6, marker=marker, markersize=4)
     axes.set_xlabel(across)
@@ -211,13 +214,16 @@ def _of_section(solution: Solution, quantity: Quantity, point: Point) -> tuple[s
     return quantity.label, quantity.unit, values
 
 
-def plot_response(response: "FrequencyResponse", path: str | PathLike[str] | None = None) -> Any:
+def plot_response(response: "FrequencyResponse", path: str | PathLike[str] | None = None, ax: Any = None) -> Any:
     """Draw amplitude, on a logarithmic axis, and phase [deg] against frequency [Hz]; return the matplotlib figure.
 
-    Raises MissingPackageError without matplotlib.
+    ax: axes of the amplitude and of the phase. Raises MissingPackageError without matplotlib.
     """
-    figure = empty_figure(6.4, 5.4)
-    amplitude, phase = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+    if ax is None:
+        figure = empty_figure(6.4, 5.4, pyplot=path is None)
+        amplitude, phase = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+    else:
+        amplitude, phase = given_axes(ax, 2)
     model, (name, point) = response.model, response.quantity
     label, unit = LINEAR[name]
     order = np.argsort(response.frequencies, kind="stable")
@@ -231,4 +237,4 @@ def plot_response(response: "FrequencyResponse", path: str | PathLike[str] | Non
     phase.set_yticks([-180, -90, 0, 90, 180])
     phase.set_xlabel(f"frequency [{model.unit('Hz')}]")
     phase.margins(x=0.02)
-    return save_figure(figure, path)
+    return save_figure(phase.figure.figure, path)

@@ -1,23 +1,27 @@
 """The solid body with PyVista: a picture without a window, or a window with a slider over the steps."""
 
 from collections.abc import Sequence
+from importlib.util import find_spec
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from beamfem.atomic_write import path_ending, whole
+from beamfem.atomic_write import whole
 from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError, warn
 from beamfem.mesh.reference import sections_at
+from beamfem.progress import in_notebook
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.solution import Solution
 from beamfem.validation import count, items, number_below, shown
+from beamfem.view.animation import slider
 from beamfem.view.deformed_shapes import FIELD_COLOURS, Shapes
 from beamfem.view.drawing import plot_shapes
 from beamfem.view.frames import moment_of, spread_rows
-from beamfem.view.notebook_paths import WrittenFile
+from beamfem.view.notebook_paths import file_to_write
+from beamfem.view.player import write_player
 from beamfem.view.rendering import ADVICE, can_render, has_display, no_display_needed
 
 _POINTS = 6000  # of all beams
@@ -29,26 +33,26 @@ _STRONG, _PALE = (0x66, 0x99, 0xBB), (0xC4, 0xD6, 0xE3)  # of layers in turn
 
 def picture(
     solution: Solution,
-    path: str | PathLike[str],
+    path: str | PathLike[str] | None = None,
     row: int = -1,
     colour: str | None = None,
     size: tuple[int, int] = (1400, 900),
 ) -> Path:
     """Write a picture (.png) of the solid body in a row, off screen; return its path, see `Solution.picture`."""
-    target = path_ending(path, "a picture of the body", ".png", example="body.png")
+    target = file_to_write(path, "a picture of the body", ".png", example="body.png")
     number = number_below("row", row, len(solution), -len(solution)) % len(solution)
     _require_size(size)
     if not can_render():
         warn(f"VTK cannot render here, so {target} is drawn flat by matplotlib; {ADVICE}")
         plot_shapes(solution[number : number + 1], target, colour)
-        return WrittenFile(target)
+        return target
     scene = _Scene(Shapes(solution, np.array([number]), colour, _POINTS), off_screen=True, size=size)
     scene.show_row(0)
     scene.look()
     with whole(target) as partial:
         scene.plotter.screenshot(str(partial))
     scene.plotter.close()
-    return WrittenFile(target)
+    return target
 
 
 def show(solution: Solution, colour: str | None = None, size: tuple[int, int] = (1400, 900)) -> Any:
@@ -56,6 +60,8 @@ def show(solution: Solution, colour: str | None = None, size: tuple[int, int] = 
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to show")
     _require_size(size)
+    if in_notebook():
+        return _below_cell(solution, colour, size)
     reason = "there is no display" if not has_display() else "" if can_render() else f"VTK cannot render; {ADVICE}"
     if reason:
         warn(f"no window can be opened: {reason}. A figure is returned; to_html writes a page with a slider")
@@ -63,6 +69,19 @@ def show(solution: Solution, colour: str | None = None, size: tuple[int, int] = 
     plotter = slider_scene(solution, colour, size, off_screen=False)
     plotter.show()
     return plotter
+
+
+def _below_cell(solution: Solution, colour: str | None, size: tuple[int, int]) -> Any:
+    """Return a view for a notebook: of PyVista, pictures with a slider of ipywidgets, or a page with a slider."""
+    if find_spec("pyvista"):
+        import pyvista
+
+        # since version 0.48, the backend is a package of its own
+        backend = "trame_pyvista" if hasattr(pyvista, "register_jupyter_backend") else "trame_vtk"
+        if find_spec(backend) and can_render():
+            scene = slider_scene(solution, colour, size, off_screen=True)
+            return scene.show(jupyter_backend="server", return_viewer=True)
+    return slider(solution, colour) if find_spec("ipywidgets") else write_player(solution)
 
 
 def slider_scene(solution: Solution, colour: str | None, size: tuple[int, int], off_screen: bool) -> Any:

@@ -9,6 +9,7 @@ from drawn import arch, cantilever, frame, pendulum
 
 import beamfem as bf
 from beamfem.io.table import arrays
+from beamfem.view import solid_pyvista
 
 
 def rows_of(table):
@@ -99,6 +100,21 @@ def test_what_is_written_shows_itself(tmp_path):
     film.unlink()
     assert film._repr_html_() is None
     assert (page.parent / "other.txt")._repr_html_() is None
+
+
+def test_without_a_path_the_file_is_a_temporary_one():
+    solution = cantilever()
+    assert solution.animate(seconds=0.2)._repr_html_().startswith('<img src="data:image/gif;base64,')
+    assert "<iframe srcdoc=" in solution.to_html()._repr_html_()
+    study = bf.converge(lambda n: 1.0 + 1.0 / n**2, refine="n", n=[1, 2, 4])
+    assert "<iframe srcdoc=" in study.to_html()._repr_html_()
+    assert solution.to_html() != solution.to_html()
+
+
+def test_show_in_a_notebook_is_a_page_with_a_slider_where_nothing_else_is_installed(monkeypatch):
+    monkeypatch.setattr(solid_pyvista, "in_notebook", lambda: True)
+    monkeypatch.setattr(solid_pyvista, "find_spec", lambda name: None)
+    assert "<iframe srcdoc=" in cantilever().show()._repr_html_()
 
 
 def test_modes_and_critical_loads_are_tables():

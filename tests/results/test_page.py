@@ -11,6 +11,7 @@ import pytest
 from drawn import arch, cantilever, frame, pendulum
 
 import beamfem as bf
+from beamfem.view import player
 
 
 def data_of(path):
@@ -38,6 +39,21 @@ def test_steps_and_positions_are_those_of_the_solution(falling, tmp_path):
     end = falling.model.beams[0].end
     np.testing.assert_allclose(tip, falling.position(end)[-1], atol=data["size"] / data["levels"])
     assert data["moved"][-1] == pytest.approx(np.linalg.norm(falling.displacement(end)[-1]), rel=1e-4)
+
+
+def test_the_curve_has_peaks_between_the_steps_shown(falling, tmp_path, monkeypatch):
+    data = data_of(falling.to_html(tmp_path / "fall.html", frames=3))
+    at, moved = np.array(data["curve"])
+    (beam,) = falling.model.beams
+    each = [np.linalg.norm(falling.displacement(beam.at(x)), axis=1) for x in np.linspace(0.0, 1.0, 37)]
+    np.testing.assert_allclose(at, falling.time, rtol=1e-6)
+    np.testing.assert_allclose(moved, np.max(each, axis=0), rtol=1e-5, atol=1e-12)
+    monkeypatch.setattr(player, "_CURVE", 5)
+    swing = bf.solve_modes(falling.model, 2).solution(1, amplitude=0.1, frames=41)
+    at, moved = np.array(data_of(swing.to_html(tmp_path / "swing.html", frames=4))["curve"])
+    assert len(at) < 20
+    assert at[[0, -1]] == pytest.approx(swing.time[[0, -1]])
+    assert max(moved) == pytest.approx(0.1, rel=0.05)
 
 
 def test_fields_have_their_limits_and_units(tmp_path):

@@ -62,10 +62,11 @@ class FrequencyResponse:
         """Phases of the response [rad], (m,), from -pi to pi; negative where it lags behind the load."""
         return np.angle(self.values)
 
-    def plot(self, path: str | PathLike[str] | None = None) -> Any:
+    def plot(self, path: str | PathLike[str] | None = None, *, ax: Any = None) -> Any:
         """Draw amplitude and phase against frequency and return the figure.
 
-        path: file to write (PNG, SVG, PDF). Raises MissingPackageError without matplotlib.
+        path: file to write (PNG, SVG, PDF); ax: two axes to draw in, see `Solution.plot`. Raises InputError for another
+        number of axes, MissingPackageError without matplotlib.
 
         Examples
         --------
@@ -75,7 +76,7 @@ class FrequencyResponse:
         """
         from beamfem.view.quantity_curve import plot_response
 
-        return plot_response(self, path)
+        return plot_response(self, path, ax)
 
 
 def frequency_response(

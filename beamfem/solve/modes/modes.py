@@ -290,15 +290,16 @@ class Modes:
 
         return modes_to_xarray(self, beam)
 
-    def plot(self, path: str | PathLike[str] | None = None, *, most: int = 6) -> Any:
+    def plot(self, path: str | PathLike[str] | None = None, *, most: int = 6, ax: Any = None) -> Any:
         """Draw at most `most` modes, each with its frequency, and return the figure.
 
         Dark: the mode at its largest; pale: half a period later; dashed: the reference. path: file to write (PNG, SVG,
-        PDF). Raises InputError if there are no modes to draw, MissingPackageError without matplotlib.
+        PDF); ax: as many axes as modes are drawn, see `Solution.plot`. Raises InputError if there are no modes to draw,
+        or for another number of axes; MissingPackageError without matplotlib.
         """
         from beamfem.view.mode_shapes import plot_modes
 
-        return plot_modes(self, path, most=most)
+        return plot_modes(self, path, most, ax)
 
 
 def solve_modes(

@@ -196,15 +196,16 @@ class Buckling:
 
         return buckling_to_xarray(self, beam)
 
-    def plot(self, path: str | PathLike[str] | None = None, *, most: int = 6) -> Any:
+    def plot(self, path: str | PathLike[str] | None = None, *, most: int = 6, ax: Any = None) -> Any:
         """Draw at most `most` modes, each with its load factor, and return the figure.
 
         Pale: the critical state; dark: the same state plus the mode; dashed: the reference. path: file to write (PNG,
-        SVG, PDF). Raises InputError if there are no modes to draw, MissingPackageError without matplotlib.
+        SVG, PDF); ax: as many axes as modes are drawn, see `Solution.plot`. Raises InputError if there are no modes to
+        draw, or for another number of axes; MissingPackageError without matplotlib.
         """
         from beamfem.view.mode_shapes import plot_buckling
 
-        return plot_buckling(self, path, most=most)
+        return plot_buckling(self, path, most, ax)
 
 
 def solve_buckling(

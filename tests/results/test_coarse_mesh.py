@@ -70,6 +70,17 @@ def test_a_filter_silences_it_and_the_result_still_says_it():
         assert "too coarse" in bf.solve_static(model).warnings[0]
 
 
+def test_rows_that_are_back_where_they_began_are_not_off():
+    """Their displacements are nothing, and so is nearly all of their error."""
+    steel, section = bf.Material(2e11, 0.3, 7800.0), bf.Rectangle(0.01, 0.01)
+    beam = bf.Beam(bf.Arc((0, 0), 1.0, 0.0, 1.5), 3, bf.CRBF(2), section, steel)
+    out_and_back = bf.Interpolated([(0.0, 0.0), (0.5, 1.0), (1.0, 0.0)])
+    load = bf.PointForce(beam.end, (0.0, -20.0), amplitude=out_and_back)
+    solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [load]), steps=4)
+    assert abs(solution.displacement(beam.end)[-1]).max() < 1e-12
+    assert solution.warnings == ()
+
+
 def test_elements_that_lock_are_warned_of_as_such_only():
     _, model = cantilever(bf.ANCF(), 4, lambda beam: [bf.PointForce(beam.end, (0.0, 5.0 * EI))])
     with pytest.warns(bf.LockingWarning) as caught:

@@ -159,7 +159,7 @@ def _found(solution: Solution) -> Finding | None:
     except InputError:  # a part of the user's own that takes no other mesh
         return None
     state = solution[last]
-    moved = _largest_displacement(model, state.p)
+    moved = max(_largest_displacement(model, p) for p in solution.p)  # the last row may be back where it began
     error = largest_displacement_error(state, finer) / moved if moved > 0.0 else 0.0
     if error <= _WARNED:
         return None

@@ -9,6 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+from scipy.linalg import eigh
+from scipy.optimize import fsolve
 from scipy.special import ellipk
 
 import beamfem as bf
@@ -44,7 +47,7 @@ def numbers(line):
 
 
 def test_examples_are_short():
-    assert len(NAMES) == 13
+    assert len(NAMES) == 17
     assert all(len((FOLDER / f"{name}.py").read_text().splitlines()) < 40 for name in NAMES)
 
 
@@ -164,6 +167,96 @@ def test_the_guide_is_as_stiff_as_two_leaf_springs(printed):
     assert numbers(lines[0])[0] == pytest.approx(2.0 * 12.0 * rigidity.bending / 50.0**3 / softer, rel=1e-3)
     assert numbers(lines[1])[0] == pytest.approx(0.6 * 1.0**2 / 50.0, rel=1e-3)
     assert abs(numbers(lines[2])[0]) < 1e-5
+    assert numbers(lines[3])[0] == pytest.approx(1200.0 / (3.0 * 2.0e5 * 0.2 / 50.0**2), rel=1e-2)
+
+
+def test_the_tapered_leaf_is_an_elastica_of_variable_stiffness(printed):
+    """Shot from its tip, at which it turns by an angle and carries no moment; the clamp may not turn."""
+    lines, _ = printed("tapered_leaf")
+
+    def clamp(force, tip):
+        def along(s, state):
+            angle, away, _ = state
+            stiffness = 2.06e5 * (60.0 - 0.135 * (400.0 - s)) * 6.0**3 / 12.0
+            return force * away / stiffness, np.cos(angle), np.sin(angle)
+
+        return solve_ivp(along, (0.0, 400.0), (tip, 0.0, 0.0), rtol=1e-10, atol=1e-10).y[:, -1]
+
+    force, _ = fsolve(lambda at: (clamp(*at) - (0.0, 0.0, -120.0))[[0, 2]], (1000.0, -0.45))
+    assert numbers(lines[0])[0] == pytest.approx(force, rel=1e-3)
+
+
+def test_the_leaf_pack_shares_its_load_as_linear_beams_do(printed):
+    """Forces between the tips of cantilevers and the leaves above them, by their flexibilities."""
+    lines, _ = printed("leaf_pack")
+    lengths, stiffness = np.array([600.0, 450.0, 300.0, 150.0]), 2.06e5 * 60.0 * 8.0**3 / 12.0
+
+    def flexibility(at, where):
+        near, far = min(at, where), max(at, where)
+        return near**2 * (3.0 * far - near) / (6.0 * stiffness)
+
+    # leaf i deflects at the tip of leaf i + 1 as far as that does
+    matrix, right = np.zeros((3, 3)), np.zeros(3)
+    for pad in range(3):
+        at = lengths[pad + 1]
+        matrix[pad, pad] = 2.0 * flexibility(at, at)
+        if pad < 2:
+            matrix[pad, pad + 1] = -flexibility(at, lengths[pad + 2])
+        if pad > 0:
+            matrix[pad, pad - 1] = -flexibility(at, lengths[pad])
+        else:
+            right[pad] = 300.0 * flexibility(at, lengths[0])
+    forces = np.linalg.solve(matrix, right)
+    tip = 300.0 * flexibility(600.0, 600.0) - forces[0] * flexibility(600.0, 450.0)
+    assert numbers(lines[0])[0] == pytest.approx(tip, rel=3e-3)
+    assert numbers(lines[1]) == pytest.approx(forces, rel=3e-3)
+
+
+def test_the_arch_takes_what_its_snaps_release(printed):
+    """At a snap the force does more work than the arch stores; elsewhere the work of the loop adds up to nothing."""
+    lines, folder = printed("arch_loop")
+    with contextlib.chdir(folder.parents[1]), contextlib.redirect_stdout(io.StringIO()):
+        made = runpy.run_path(str(FOLDER / "arch_loop.py"))
+    loop, force, middle = made["loop"], made["force"], made["arch"].at(0.5)
+    way, stored = loop.displacement(middle)[:, 1], loop.energy().strain
+    snaps = np.flatnonzero(np.abs(np.diff(way)) > 0.02)
+    assert len(snaps) == 2
+    released = sum(force[i : i + 2].mean() * np.diff(way[i : i + 2]) - np.diff(stored[i : i + 2]) for i in snaps)
+    assert numbers(lines[0])[0] == pytest.approx(released[0], rel=0.02)
+    assert abs(way[-1]) < 1e-8
+
+
+def test_the_footbridge_swings_as_a_ritz_model_of_its_deck_and_mast(printed):
+    """Forty sines of the deck and the top of the mast, with the stiffness of the stays, their tension and the thrust
+    that they cause in the deck, which does not shorten; horizontal forces of the stays balance at the mast."""
+    lines, _ = printed("footbridge")
+    length, height, mass, terms = 36.0, 12.0, 500.0 * 0.36, np.arange(1, 41)
+    tensions, feet = np.array(numbers(lines[0])), (12.0, 24.0, None)
+    wave = terms * np.pi / length
+    x = np.linspace(0.0, length, 3601)
+    slopes = wave[:, None] * np.cos(np.outer(wave, x))
+    stiffness, inertia = np.zeros((41, 41)), 0.5 * mass * length * np.eye(41)
+    stiffness[:40, :40] = np.diag(1.2e10 * 2.0 * 0.18**3 / 12.0 * wave**4 * length / 2.0)
+    steel = bf.Material(2.1e11, 0.3, 7850.0)
+    column = bf.Profile("HEB 300")
+    stiffness[40, 40] = 3.0 * column.rigidity(steel).bending / height**3
+    inertia[40, 40] = 33.0 / 140.0 * column.inertia(steel).mass * height
+    pull = []
+    for tension, foot, spring in zip(tensions, feet, (1e7, 1e7, 2e7), strict=True):
+        way = np.array([12.0 if foot is None else -foot, height])
+        away = np.hypot(*way)
+        unit = way / away
+        pull.append(tension * unit[0])
+        moves = np.zeros((2, 41))
+        moves[0, 40] = 1.0
+        if foot is not None:
+            moves[1, :40] = -np.sin(wave * foot)
+            stiffness[:40, :40] += np.trapezoid(slopes[:, None] * slopes * np.where(x < foot, pull[-1], 0.0), x)
+        across = np.eye(2) - np.outer(unit, unit)
+        stiffness += moves.T @ (spring * np.outer(unit, unit) + tension / away * across) @ moves
+    found = np.sqrt(eigh(stiffness, inertia, eigvals_only=True)[:3]) / (2.0 * np.pi)
+    assert numbers(lines[1]) == pytest.approx(found, rel=0.025)
+    assert sum(pull) == pytest.approx(0.0, abs=0.01 * pull[-1])
 
 
 def test_the_strip_is_rolled_up_into_two_circles(printed):

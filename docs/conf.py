@@ -12,12 +12,11 @@ from plain_docstrings import as_markup, without_constants
 project = "beamfem"
 version = release = installed("beamfem")
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax", "sphinx-mathjax-offline"]
-extensions += ["sphinx_design"]  # the cards of the start page
+extensions += ["sphinx_design", "sphinx_copybutton", "sphinx.ext.viewcode"]  # cards, copy buttons, links to the source
+exclude_patterns = ["_pictures"]  # notebooks to download
 myst_enable_extensions = ["amsmath", "deflist", "dollarmath"]
 myst_heading_anchors = 3
-nb_execution_mode = "force"
-nb_execution_raise_on_error = True
-nb_execution_timeout = 300
+nb_execution_mode = "off"  # tutorials have their outputs
 html_theme = "furo"
 html_title = "beamfem"
 html_static_path = ["_static"]

@@ -1,10 +1,12 @@
-"""Pictures of a page, drawn by its own code while Sphinx builds, behind the blocks that draw them.
+"""Pictures of a page, drawn by its own code while Sphinx builds, and its code as a script and a notebook.
 
 Blocks of a page run one after the other; an example that a page includes runs on its own, and its time is told.
 """
 
+import ast
 import contextlib
 import io
+import json
 import logging
 import re
 import runpy
@@ -14,10 +16,12 @@ import tempfile
 import time
 from pathlib import Path
 
-from page_code import run
+from page_code import blocks_of, run
 
 _DRAWS = re.compile(r'"out/\w+\.(?:png|gif)"')
+_KINDS = (("script", ".py"), ("notebook", ".ipynb"))
 _EXAMPLE = re.compile(r"^```\{literalinclude\} (\S+\.py)\n```$", re.M)
+_HEADING = re.compile(r"^# .*\n", re.M)
 _PICTURES = "_pictures"  # beside the pages, as Sphinx wants it; not in the repository
 
 
@@ -56,7 +60,24 @@ def _of_blocks(page: Path, text: str, keep: Path) -> list[tuple[int, str]]:
         for block, _ in run(page, text):
             found += [(block.end, shown) for shown in _pictures(Path("out"), keep, known)]
         sys.path.remove(folder)
-    return found
+    title = _HEADING.search(text)
+    codes = [block.code.strip() for block in blocks_of(text)]
+    script = keep / f"{page.stem}.py"
+    script.write_text("\n\n\n".join(codes) + "\n", encoding="utf-8")
+    script.with_suffix(".ipynb").write_text(_notebook(title[0], codes), encoding="utf-8")
+    below = f"/{_PICTURES}/{keep.relative_to(keep.parents[len(keep.parts) - keep.parts.index(_PICTURES) - 2])}"
+    links = [f"{{download}}`{kind} <{below}/{page.stem}{suffix}>`" for kind, suffix in _KINDS]
+    return [(title.end(), f"Code of this page: {', '.join(links)}"), *found]
+
+
+def _notebook(heading: str, codes: list[str]) -> str:
+    """Return a notebook with a heading and a cell for each piece of code."""
+    cells = [{"cell_type": "markdown", "id": "heading", "metadata": {}, "source": heading.strip()}]
+    for number, code in enumerate(codes):
+        cell = {"cell_type": "code", "id": f"code-{number}", "metadata": {}, "source": code}
+        cells.append({**cell, "execution_count": None, "outputs": []})
+    kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
+    return json.dumps({"cells": cells, "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 5})
 
 
 def _of_examples(page: Path, text: str, keep: Path) -> list[tuple[int, str]]:
@@ -73,6 +94,11 @@ def _of_examples(page: Path, text: str, keep: Path) -> list[tuple[int, str]]:
             words = f"It prints, in {took} with all files:\n\n```text\n{printed.getvalue()}```"
             shown = [words, *_pictures(Path("out/examples"), keep, set())]
             found += [(example.end(), own) for own in shown]
+        script = page.parent / example[1]
+        code = script.read_text(encoding="utf-8")
+        heading, rest = ast.get_docstring(ast.parse(code)), code.split('"""', 2)[2]
+        pieces = re.split(r"\n\n+(?=\S)", rest.strip())
+        (keep / f"{script.stem}.ipynb").write_text(_notebook(heading, pieces), encoding="utf-8")
     return found
 
 

@@ -16,13 +16,25 @@ def test_there_are_tutorials():
     assert [path.stem for path in NOTEBOOKS] == ["bending", "falling", "snapping"]
 
 
+def printed(cell):
+    """Return what a cell prints without its numbers, and the numbers."""
+    text = "".join(output.text for output in cell.outputs if output.get("name") == "stdout")
+    number = r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?"
+    return re.sub(number, "", text), [float(found) for found in re.findall(number, text)]
+
+
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_tutorial_runs_and_shows_its_pictures(path, tmp_path):
+    """It has its outputs in the file, which say the same as those of a run."""
     notebook = nbformat.read(path, 4)
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
-    assert not any(cell.outputs for cell in cells), "kept without outputs: they are of one machine on one day"
+    stored = [printed(cell) for cell in cells]
+    assert all(cell.outputs for cell in cells), "kept with outputs: documentation and repositories show them"
     kernel = {"metadata": {"path": str(tmp_path)}}
     nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3", resources=kernel).execute()
+    for cell, (words, numbers) in zip(cells, stored, strict=True):
+        assert printed(cell)[0] == words
+        assert printed(cell)[1] == pytest.approx(numbers, rel=2e-2, abs=1e-8)
     for cell in cells:
         last = cell.source.rstrip().splitlines()[-1]
         kinds = {kind for output in cell.outputs for kind in output.get("data", {})}

@@ -51,7 +51,7 @@ def timed(folder: str) -> tuple[Part, float]:
     """Return a part of the page and the seconds that it took."""
     begun = time.perf_counter()
     with warnings.catch_warnings():  # the paper's elements lock, and its pendulum strains: that is what the page shows
-        for category in (bf.LockingWarning, bf.LargeStrainWarning):
+        for category in (bf.LockingWarning, bf.LargeStrainWarning, bf.CoarseMeshWarning):
             warnings.simplefilter("ignore", category)
         return PARTS[folder](OUT / folder), time.perf_counter() - begun
 

@@ -63,7 +63,7 @@ def write_page(path: str | PathLike[str], title: str, parts: Sequence[Part]) -> 
     contents = f"<nav><ul>{''.join(links)}</ul></nav>" if len(parts) > 1 else ""
     body = contents + "".join(
         f"<h2 id='part{number}'>{escape(part.heading)}</h2><p>{escape(part.text)}</p>"
-        f"{''.join(map(_table, part.tables))}{''.join(map(_entry, part.entries))}"
+        f"{''.join(map(_entry, part.entries))}{''.join(map(_table, part.tables))}"
         for number, part in enumerate(parts)
     )
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(title)}</title>'

@@ -204,7 +204,7 @@ def main(intervals: int = 24, thinness: tuple[int, ...] = (10, 100, 1000)) -> Cu
 
 
 def _draw(result: Curved, path: Path) -> None:
-    canvas, axes = new_figure(7.0, 4.6)
+    canvas, axes = new_figure(5.6, 4.0)
     styles = dict(zip(curves(), ("-", "--", ":"), strict=True))
     for (curve, name), found in result.quarter.items():
         i = CONVERGING.index(name)

@@ -219,7 +219,7 @@ def _drawn() -> dict[str, tuple[bf.Element, tuple[int, ...]]]:
 
 def draw(folder: Path, slenderness: int = 100) -> Path:
     """Draw the error over the number of coordinates for structural forces; return the picture."""
-    canvas, axes = new_figure(7.0, 4.6)
+    canvas, axes = new_figure(5.6, 4.0)
     for i, (label, (element, meshes)) in enumerate(_drawn().items()):
         found = limit(element, slenderness)
         assert found is not None

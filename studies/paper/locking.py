@@ -214,7 +214,7 @@ def stresses(elements: int = 4, integration: str = "reduced", points: int = 41) 
 
 
 def _draw_bending(result: Locking, path: Path) -> None:
-    canvas, axes = new_figure(6.0, 4.0)
+    canvas, axes = new_figure(5.2, 3.7)
     fine = np.linspace(0.0, max(result.ratios), 100)
     for i, (forces, factors) in enumerate(result.bending.items()):
         axes.plot(fine, [expected_factor(forces, ratio) for ratio in fine], color=COLOURS[i], linewidth=1.2)
@@ -229,7 +229,7 @@ def _draw_bending(result: Locking, path: Path) -> None:
 
 
 def _draw_shear(result: Locking, elements: int, path: Path) -> None:
-    canvas, axes = new_figure(6.0, 4.0)
+    canvas, axes = new_figure(5.2, 3.7)
     fine = np.geomspace(min(result.slenderness), max(result.slenderness), 100)
     axes.semilogx(fine, [locked(elements, x) for x in fine], color="0.4", linewidth=1.2, label="closed form")
     for i, (name, values) in enumerate(result.deflection.items()):
@@ -242,7 +242,7 @@ def _draw_shear(result: Locking, elements: int, path: Path) -> None:
 
 
 def _draw_stresses(found: Stresses, path: Path) -> None:
-    canvas, axes = new_figure(6.0, 4.0)
+    canvas, axes = new_figure(5.2, 3.7)
     for i, (name, values, exact) in enumerate(
         (("y = 0", found.axis, np.full_like(found.axis, found.exact_axis)), ("y = h/2", found.face, found.exact_face))
     ):

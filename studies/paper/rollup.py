@@ -177,7 +177,7 @@ def main(
 
 def _draw(path: Path) -> None:
     """Draw the beam at quarters of the moment, and 12 bilinear elements beside the circle."""
-    canvas, axes = new_figure(6.4, 4.6)
+    canvas, axes = new_figure(5.2, 4.0)
     fractions = np.linspace(0.0, 1.0, 97)
     for i, share in enumerate((0.25, 0.5, 0.75, 1.0)):
         axis = _axis(bf.CRBF(4), 8, share, fractions)

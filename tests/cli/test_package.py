@@ -115,7 +115,7 @@ def test_pendulum_study_draws_every_figure(tmp_path):
     runs = pendulum.main(duration=0.1, step=1e-2, meshes=(6, 12, 24, 100))
     entries = [pendulum_figures.draw(figure, runs, tmp_path) for figure in pendulum_figures.FIGURES]
     assert [figure.number for figure in pendulum_figures.FIGURES] == list(range(3, 16))
-    table = pendulum_figures.table_of_times(runs)
+    table = pendulum_figures.table_of_times(runs, "printed")
     page = write_page(tmp_path / "index.html", "title", [Part("part", "text", entries, [table])])
     assert page.read_text().count("data:image/svg+xml") == 13
 
@@ -126,7 +126,7 @@ def test_the_motion_for_paraview_takes_few_files(tmp_path, monkeypatch):
     monkeypatch.setattr(pendulum, "main", lambda second_moment: runs)
     monkeypatch.setattr(pendulum_page, "FIGURES", pendulum_figures.FIGURES[:2])
     part = pendulum_page.part("printed", tmp_path)
-    assert [len(part.entries), len(part.tables)] == [2, 1]
+    assert [len(part.entries), len(part.tables)] == [3, 1]
     files = [path for path in (tmp_path / "paraview").rglob("*") if path.is_file()]
     kinds = [path.suffix for path in files]
     assert (kinds.count(".vtkhdf"), kinds.count(".pvd"), kinds.count(".vtu")) == (9, 9, 9 * 2)

@@ -1,8 +1,8 @@
-"""Solutions in HDF5 files: the model described in JSON, the states in rows."""
+"""Solutions in HDF5 files: the model described in JSON, the states in rows, and axes of beams named as in netCDF."""
 
 import json
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, replace
 from importlib.metadata import version
 from math import prod
@@ -27,12 +27,135 @@ from beamfem.io.hdf5 import (
     write_hdf5,
     write_label,
 )
-from beamfem.io.hdf5_arrays import AXES, load_factors, load_path, save_axes, save_critical
 from beamfem.io.paged_file import being_written, opened_once_written, replay
+from beamfem.results.axis_fields import QUANTITIES, section_forces
+from beamfem.results.axis_points import AxisPoints
+from beamfem.results.batched_beams import VALUES, LikeBeams, equal_beams
+from beamfem.results.full_turns import rotation
 from beamfem.results.motion_state import Occurrence
+from beamfem.results.path import Bifurcation, PathState
 from beamfem.results.path import Path as EquilibriumPath
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics, Status
+
+AXES = "beams"
+_MOST = 100_000  # elements times rows whose section forces are written, in a second or two
+_FORCES = ("normal", "shear", "moment")
+
+
+def save_axes(file: Any, solution: Solution, require_written: Callable[[], None]) -> None:
+    """Write groups beams/0, beams/1, ...: positions of element ends, rotations of sections and forces in them there.
+
+    x, y [m] and rotation [rad] (rows, stations) over the dimension scales `time` [s] or `load_factor` (rows,) and
+    `arc_length` [m] (stations,); normal, shear [N] and moment [N m] (rows, 2 elements) over `element_end` [m], where
+    each element has ends of its own, since forces jump at loads; long motions of large models have no forces, which
+    would take longer than the solve. All have the attributes `units`, those of the model, and `long_name`; a group has
+    the `name` of its beam, where it has one.
+    """
+    meshes = solution.model.meshes
+    small = len(solution) * sum(mesh.elements for mesh in meshes) <= _MOST
+    for group in equal_beams(solution.model, [AxisPoints.spaced(mesh, 1) for mesh in meshes], len(solution)):
+        beams = zip(group.numbers, group.single, strict=True)
+        axes = [_begin_axis(file, solution, number, points, small) for number, points in beams]
+        for rows, parts in _tables(solution, group, small):
+            for axis, table in zip(axes, parts, strict=True):
+                for (array, places), values in zip(axis, table, strict=True):
+                    array[rows] = values[:, places]
+                require_written()
+
+
+def _tables(solution: Solution, group: LikeBeams, forces: bool) -> Iterator[tuple[slice, list[np.ndarray]]]:
+    """Yield x, y and rotation, and section forces if wanted (3 or 6, rows, points) of each beam, with their rows."""
+    points, block = group.points, max(VALUES // sum(group.counts), 1)
+    for first in range(0, len(solution), block):
+        rows = slice(first, min(first + block, len(solution)))
+        r = points.positions(solution.p[rows])[0]
+        values = [r[..., 0], r[..., 1], rotation(points, solution, rows)]
+        if forces:
+            found = section_forces(points, solution, rows)
+            values += [found[name] for name in _FORCES]
+        yield rows, group.parted(np.stack(values), 2)
+
+
+def _begin_axis(
+    file: Any, solution: Solution, number: int, points: AxisPoints, forces: bool
+) -> list[tuple[Any, np.ndarray]]:
+    """Make the group of one beam in the file; return the arrays of what is in `_tables`, each with its points."""
+    unit, mesh, arc = solution.model.unit, points.mesh, points.arc_length
+    each, ends = np.arange(len(arc)), np.append(np.arange(0, 2 * mesh.elements, 2), 2 * mesh.elements - 1)
+    group = file.create_group(f"{AXES}/{number}", track_order=True)
+    group.attrs["curve"], group.attrs["element"] = type(mesh.beam.curve).__name__, mesh.beam.element.name
+    if mesh.beam.name is not None:
+        group.attrs["name"] = mesh.beam.name
+
+    def array(name: str, meaning: str, units: str, over: Any) -> Any:
+        """Return an array over dimension scales, or a scale with values (n,)."""
+        scales = over if isinstance(over, tuple) else ()
+        made = group.create_dataset(name, tuple(map(len, scales or (over,))), float)
+        made.attrs["long_name"], made.attrs["units"] = meaning, units
+        for dimension, scale in zip(made.dims, scales, strict=False):
+            dimension.attach_scale(scale)
+        if not scales:
+            made[...] = over
+            made.make_scale(name)
+        return made
+
+    name, of_rows = ("load_factor", "1") if solution.static else ("time", unit("s"))
+    at = array(name, name.replace("_", " "), of_rows, solution.at)
+    along = array("arc_length", "arc length in the reference", unit("m"), arc[ends])
+    acting: list[tuple[Any, np.ndarray]] = []
+    if forces:
+        beside = array("element_end", "arc length of the ends of each element", unit("m"), arc)
+        about = ((name, QUANTITIES[name].label, unit(QUANTITIES[name].unit)) for name in _FORCES)
+        acting = [(array(*words, (at, beside)), each) for words in about]
+    moved = (("x", "position x", unit("m")), ("y", "position y", unit("m")))
+    turned = ("rotation", "rotation of the section", "rad")
+    return [*((array(*words, (at, along)), ends) for words in (*moved, turned)), *acting]
+
+
+_STATE = ("at", "p")
+_CROSSING = ("at", "p", "mode", "tangent")
+
+
+def load_factors(path: EquilibriumPath) -> np.ndarray:
+    """Return the load factors of the critical points of a path (m,), at which its functions are evaluated too."""
+    return np.array([state.at for state in (*path.limit_points, *path.bifurcations)])
+
+
+def save_critical(file: Any, path: EquilibriumPath) -> None:
+    """Write the critical points of a path, one per row."""
+    for name, parts in (("limit_points", _STATE), ("bifurcations", _CROSSING)):
+        group, states = file.create_group(name), getattr(path, name)
+        for part in parts:
+            write_checked(group, part, np.array([getattr(state, part) for state in states]))
+        turned = [state.turned for state in states if state.turned is not None]
+        if turned and turned[0].size:
+            write_checked(group, "turned", np.array(turned))
+
+
+def load_path(file: Any, rows: Solution) -> Solution:
+    """Return the rows as the saved path with its critical points, or unchanged if no path was saved."""
+    if "limit_points" not in file:
+        return rows
+    model, zeros = rows.model, np.zeros(rows.model.size)
+
+    def states(name: str, kind: type[PathState], parts: tuple[str, ...]) -> tuple[Any, ...]:
+        rows = _rows(file[name], parts)
+        return tuple(
+            kind(p, zeros, zeros, float(at), model, *more, stability=False, turned=turned)
+            for at, p, *more, turned in rows
+        )
+
+    members = {name: getattr(rows, name) for name in Solution.__dataclass_fields__}
+    limits, crossings = states("limit_points", PathState, _STATE), states("bifurcations", Bifurcation, _CROSSING)
+    return EquilibriumPath(**members, limit_points=limits, bifurcations=crossings)
+
+
+def _rows(group: Any, parts: tuple[str, ...]) -> Any:
+    """Return the members of each state and its counted rotations, None if no beam needs them or the file is older."""
+    turned = read_checked(group, "turned") if "turned" in group else [None] * len(group["at"])
+    return zip(*(read_checked(group, part) for part in parts), turned, strict=True)
+
 
 _FORMAT = "beamfem solution"
 _FORMAT_VERSION = 1

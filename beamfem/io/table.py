@@ -1,5 +1,6 @@
 """Quantities along beams over the steps, and shapes of modes, as labelled arrays."""
 
+from collections.abc import Callable
 from dataclasses import asdict
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -14,7 +15,6 @@ from beamfem.results.axis_fields import QUANTITIES, section_forces
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import LikeBeams, equal_beams
 from beamfem.results.beam_stress import stress_at
-from beamfem.results.energies import Energy
 from beamfem.results.solution import Solution
 from beamfem.validation import flag
 
@@ -46,43 +46,37 @@ def arrays(solution: Solution, beam: Beam | None, errors: bool = False) -> tuple
     [m], x0, y0 [m] of the reference (station,). errors: whether there is error_share [-] of the elements along beams.
     Adjacent elements each have a station at their common end, where section forces may jump.
     """
-    energy = solution.energy()
-    groups = groups_of(solution.model, beam, len(solution))
-    names = _ALONG + ("error_share",) * flag("errors", errors)
-    return side_by_side([_of_group(solution, group, energy, names) for group in groups])
+    over, names, about = (
+        _over(solution),
+        _ALONG + ("error_share",) * flag("errors", errors),
+        partial(named, solution.model),
+    )
+    groups, energy = groups_of(solution.model, beam, len(solution)), solution.energy()
+    data = side_by_side(groups, lambda group: _along(solution, group.points, names))
+    data = {name: each for name, each in data.items() if not name.startswith("stress_") or np.isfinite(each[1]).any()}
+    for name in ("kinetic", "strain", "potential"):
+        data[f"{name}_energy"] = (over,), getattr(energy, name), about(f"{name} energy of the model", "J")
+    at = about(over.replace("_", " "), "1" if solution.static else "s")
+    return data, {over: ((over,), solution.at, at), **stations(solution.model, groups)}
 
 
-def _of_group(
-    solution: Solution, group: LikeBeams, energy: Energy, names: tuple[str, ...]
-) -> tuple[Variables, Variables]:
-    """Return the `arrays` of like beams."""
-    points, about = group.points, partial(named, solution.model)
-    along_beam = stations(solution.model, group)
-    rows = slice(None)
-    at = ("load_factor", "load factor", "1") if solution.static else ("time", "time", "s")
-    over = (at[0],)
-    along = (*over, "station")
+def _along(solution: Solution, points: AxisPoints, names: tuple[str, ...]) -> Variables:
+    """Return what `arrays` has along beams, at points of them."""
+    along, about, rows = (_over(solution), "station"), partial(named, solution.model), slice(None)
     r = points.positions(solution.p)[0]
-    moved = r - points.reference
+    vectors = {"": ("position", "m", r), "u": ("displacement", "m", r - points.reference)}
+    if not solution.static:
+        vectors["v"] = "velocity", "m/s", points.velocities(solution.p, solution.v)
     data: Variables = {}
-    for axis, name in enumerate("xy"):
-        data[name] = along, r[..., axis], about(f"position {name}", "m")
-        data[f"u{name}"] = along, moved[..., axis], about(f"displacement {name}", "m")
-        if not solution.static:
-            rate = points.velocities(solution.p, solution.v)[..., axis]
-            data[f"v{name}"] = along, rate, about(f"velocity {name}", "m/s")
-    forces = section_forces(points, solution, rows)
+    for axis, letter in enumerate("xy"):
+        for short, (name, unit, values) in vectors.items():
+            data[short + letter] = along, values[..., axis], about(f"{name} {letter}", unit)
+    forces, stresses = section_forces(points, solution, rows), stress_at(solution, points, rows)
     for name in names:
         quantity = QUANTITIES[name]
-        values = forces[name] if name in forces else quantity.values(points, solution, rows)
-        data[name] = along, values, about(quantity.label, quantity.unit)
-    stresses = stress_at(solution, points, rows)
-    for name, label in _STRESSES.items():
-        if np.isfinite(stresses[name]).any():
-            data[f"stress_{name}"] = along, stresses[name], about(label, "Pa")
-    for name in ("kinetic", "strain", "potential"):
-        data[f"{name}_energy"] = over, getattr(energy, name), about(f"{name} energy of the model", "J")
-    return data, {at[0]: (over, solution.at, about(at[1], at[2])), **along_beam}
+        own = forces[name] if name in forces else quantity.values(points, solution, rows)
+        data[name] = along, own, about(quantity.label, quantity.unit)
+    return data | {f"stress_{name}": (along, stresses[name], about(label, "Pa")) for name, label in _STRESSES.items()}
 
 
 def groups_of(model: Model, beam: Beam | None, rows: int) -> list[LikeBeams]:
@@ -93,17 +87,34 @@ def groups_of(model: Model, beam: Beam | None, rows: int) -> list[LikeBeams]:
     return [LikeBeams([number], [AxisPoints.spaced(model.meshes[number], _PIECES)])]
 
 
-def stations(model: Model, group: LikeBeams) -> Variables:
-    """Return the coordinates of the stations of like beams by name, see `arrays`."""
-    points, about = group.points, partial(named, model)
-    attributes = {"names": ", ".join(names(model.beams))} if any(one.name for one in model.beams) else {}
-    coordinates = {
-        "beam": (np.repeat(group.numbers, group.counts), about("number of the beam", "1") | attributes),
-        "arc_length": (points.arc_length, about("arc length in the reference", "m")),
-        "x0": (points.reference[:, 0], about("reference x", "m")),
-        "y0": (points.reference[:, 1], about("reference y", "m")),
+def stations(model: Model, groups: list[LikeBeams]) -> Variables:
+    """Return the coordinates of the stations of beams by name, see `arrays`."""
+    about = partial(named, model)
+    called = {"names": ", ".join(names(model.beams))} if any(beam.name for beam in model.beams) else {}
+
+    def of_group(group: LikeBeams) -> Variables:
+        number, points = np.repeat(group.numbers, group.counts), group.points
+        coordinates = {
+            "beam": (number, about("number of the beam", "1") | called),
+            "arc_length": (points.arc_length, about("arc length in the reference", "m")),
+            "x0": (points.reference[:, 0], about("reference x", "m")),
+            "y0": (points.reference[:, 1], about("reference y", "m")),
+        }
+        return {name: (("station",), *variable) for name, variable in coordinates.items()}
+
+    return side_by_side(groups, of_group)
+
+
+def side_by_side(groups: list[LikeBeams], of_group: Callable[[LikeBeams], Variables]) -> Variables:
+    """Return variables of groups of beams joined along their stations, in the order of the beams."""
+    parts = [of_group(group) for group in groups]
+    if len(parts) == 1:
+        return parts[0]
+    order = np.argsort(np.concatenate([np.repeat(group.numbers, group.counts) for group in groups]), kind="stable")
+    return {
+        name: (over, np.concatenate([part[name][1] for part in parts], axis=-1)[..., order], about)
+        for name, (over, _, about) in parts[0].items()
     }
-    return {name: (("station",), *variable) for name, variable in coordinates.items()}
 
 
 def to_xarray(solution: Solution, beam: Beam | None = None, errors: bool = False) -> Any:
@@ -167,26 +178,6 @@ def told_apart(values: np.ndarray) -> np.ndarray:
     return np.where(before, np.nextafter(values, -np.inf), values)
 
 
-def side_by_side(parts: list[tuple[Variables, Variables]]) -> tuple[Variables, Variables]:
-    """Return data and coordinates of groups of beams joined along their stations, in the order of the beams."""
-    if len(parts) == 1:
-        return parts[0]
-    order = np.argsort(np.concatenate([coordinates["beam"][1] for _, coordinates in parts]), kind="stable")
-    return _joined([data for data, _ in parts], order), _joined([coordinates for _, coordinates in parts], order)
-
-
-def _joined(parts: list[Variables], order: np.ndarray) -> Variables:
-    """Return the variables of groups of beams joined along their stations; nan where a group has none of a name."""
-    joined = {name: variable for part in parts for name, variable in part.items()}
-    counts = [next(values.shape[-1] for over, values, _ in part.values() if "station" in over) for part in parts]
-    for name, (over, values, about) in joined.items():
-        if "station" in over:
-            missing = [np.full((*values.shape[:-1], count), np.nan) for count in counts]
-            filled = [part[name][1] if name in part else empty for part, empty in zip(parts, missing, strict=True)]
-            joined[name] = over, np.concatenate(filled, axis=-1)[..., order], about
-    return joined
-
-
 def named(model: Model, name: str, unit: str) -> dict[str, str]:
     """Return the attributes of a variable: its name in words, and its unit in that of the model."""
     return {"long_name": name, "units": "1" if unit in ("-", "1") else model.unit(unit)}
@@ -225,12 +216,16 @@ def buckling_to_xarray(buckling: "Buckling", beam: Beam | None = None) -> Any:
 
 def _with_shapes(model: Model, p: np.ndarray, shapes: np.ndarray, beam: Beam | None, data: Variables) -> Any:
     """Return the data with ux, uy of shapes (modes, n) about states p (modes, n) along one beam or all."""
-    parts = []
-    for group in groups_of(model, beam, len(shapes)):
+    groups = groups_of(model, beam, len(shapes))
+
+    def of_group(group: LikeBeams) -> Variables:
         rates = group.points.velocities(p, shapes)
-        about = [{"long_name": f"shape {axis}"} for axis in "xy"]
-        both: Variables = {f"u{name}": (("mode", "station"), rates[..., i], about[i]) for i, name in enumerate("xy")}
-        parts.append((both, stations(model, group)))
-    moved, places = side_by_side(parts)
+        return {
+            f"u{axis}": (("mode", "station"), rates[..., i], {"long_name": f"shape {axis}"})
+            for i, axis in enumerate("xy")
+        }
+
     number: Variables = {"mode": (("mode",), np.arange(len(shapes)), {"long_name": "number of the mode"})}
-    return as_dataset(data | moved, number | places, {}, single=beam is not None)
+    return as_dataset(
+        data | side_by_side(groups, of_group), number | stations(model, groups), {}, single=beam is not None
+    )

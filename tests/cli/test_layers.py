@@ -35,7 +35,6 @@ LAYERS = (
     "io/motion_file",
     "io/results_hdf5",
     "io/paged_file",
-    "io/hdf5_arrays",
     "io/hdf5",
     "io/description",
     "results",

@@ -118,6 +118,6 @@ def test_results_files_have_section_forces_for_xarray(tmp_path, monkeypatch):
     assert one.element_end.values.tolist() == [0.0, 50.0, 50.0, 100.0]
     # the clamp turns the beam by its moment, which is minus that in the section beside it
     assert one.moment.values[-1, 0] == pytest.approx(-solution.reaction(arm.start)[-1, 2])
-    monkeypatch.setattr("beamfem.io.hdf5_arrays._MOST", 3)
+    monkeypatch.setattr("beamfem.io.results_hdf5._MOST", 3)
     solution.save(tmp_path / "a.h5")
     assert set(opened("beams/0")) == {"x", "y", "rotation"}

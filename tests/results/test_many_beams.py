@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.io import hdf5_arrays
+from beamfem.io import results_hdf5
 from beamfem.io.vtk_cells import Cells
 from beamfem.results import axis_fields as along
 from beamfem.results import batched_beams as many_beams
@@ -93,7 +93,7 @@ def test_files_and_tables_are_the_same_beam_by_beam(solutions, monkeypatch, tmp_
     joined = solution.to_pandas(), Cells(solution.model, True).arrays(solution, slice(None))
     solution.save(tmp_path / "together.h5")
     monkeypatch.setattr(many_beams, "VALUES", 0)
-    monkeypatch.setattr(hdf5_arrays, "VALUES", 0)  # row by row
+    monkeypatch.setattr(results_hdf5, "VALUES", 0)  # row by row
     points = [AxisPoints.spaced(mesh, 1) for mesh in solution.model.meshes]
     assert len(equal_beams(solution.model, points, 1)) == len(points)
     each = solution.to_pandas(), Cells(solution.model, True).arrays(solution, slice(None))

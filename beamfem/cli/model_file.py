@@ -12,8 +12,7 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, ValidationInfo
 
-from beamfem.cli.analyses import ANALYSES, CRITICAL, Analysis, Found
-from beamfem.cli.outputs import Output
+from beamfem.cli.analyses import ANALYSES, CRITICAL, Analysis, Found, Output
 from beamfem.cli.part_kinds import ACTING, NAMED, TYPES, in_keys
 from beamfem.cli.report import print_table, summary
 from beamfem.cli.schema import Keyed, KeyFault, Kinds, Names, build, fault_at, part, reader, require_table, shown

@@ -9,7 +9,7 @@ import beamfem as bf
 from beamfem.equations.equations import INERTIA, STATICS, linearise
 from beamfem.equations.system import system_of
 from beamfem.solve.modes.pencil import UNROTATED
-from beamfem.solve.statics import snap_through as snap
+from beamfem.solve.statics import load_path as snap
 
 SECTION, STEEL = bf.Rectangle(0.05, 0.05), bf.Material(2e11, 0.3, 7800.0)
 BENDING = 2e11 * SECTION.second_moment

@@ -11,7 +11,7 @@ from beamfem.solve.continuation.continuation import begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 from beamfem.solve.continuation.steps import take_step
 from beamfem.solve.newton.newton import NewtonResult, Termination
-from beamfem.solve.statics import snap_through as snap
+from beamfem.solve.statics import load_path as snap
 
 
 def toggle(load, element=None, turn=0.0):

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.sweeps.keys import canonical, point_key
 from beamfem.sweeps.parameters import labels
+from beamfem.sweeps.result_cache import canonical, point_key
 
 TWO_PROCESSES = partial(ProcessPoolExecutor, 2)
 TWO_THREADS = partial(ThreadPoolExecutor, 2)
@@ -188,7 +188,7 @@ def test_keys_tell_values_apart():
 
 
 def test_keys_are_the_same_in_another_process():
-    code = "import beamfem as bf; from beamfem.sweeps.keys import point_key; "
+    code = "import beamfem as bf; from beamfem.sweeps.result_cache import point_key; "
     code += "print(point_key('f', {'b': bf.CRBF(2), 'a': {'z': 0.1, 'y': (1, 'x')}}))"
     there = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip()
     assert there == point_key("f", {"a": {"y": (1, "x"), "z": 0.1}, "b": bf.CRBF(2)})

@@ -11,7 +11,7 @@ from functools import partial
 import pytest
 
 import beamfem as bf
-from beamfem.sweeps.keys import code_digests
+from beamfem.sweeps.result_cache import code_digests
 
 SCRIPT = """
 import importlib

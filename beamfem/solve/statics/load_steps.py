@@ -17,13 +17,16 @@ from beamfem.solve.continuation.steps import leaves_arc
 from beamfem.solve.newton.newton import Newton, NewtonResult, Termination, largest_change, solve_equilibrium
 from beamfem.solve.start.mechanisms import free_when_open
 from beamfem.solve.statics.load_path import (
+    BESIDE,
     BifurcatesError,
     OutOfReachError,
     PathFollower,
     PathLostError,
     TurnsBackError,
+    leave,
+    rest_state,
+    same_point,
 )
-from beamfem.solve.statics.snap_through import BESIDE, leave, rest_state, same_point
 from beamfem.solve.statics.static_record import StaticRecord, is_unstable
 
 # of the lesser rise of the load per movement at the ends of a step: with less in between it may fall there

@@ -66,7 +66,10 @@ def write_vtk(
         grids["_boundary"] = boundary
     for name, cells in grids.items():
         target, chunk = path.with_stem(path.stem + name), max(1, VALUES_IN_MEMORY // cells.points)
-        (_write_series if suffix == ".pvd" else write_vtkhdf)(solution, target, cells, chunk)
+        if suffix == ".pvd":
+            _write_series(solution, target, cells, chunk)
+        else:
+            write_hdf5(target, partial(_fill, solution, cells, chunk))
 
 
 def _write_series(solution: Solution, path: Path, cells: Cells | Boundary, chunk: int) -> None:
@@ -155,17 +158,10 @@ def _texts(name: str, texts: Sequence[str]) -> vtkStringArray:
 _CHUNK_BYTES = 2**16
 
 
-def write_vtkhdf(solution: Solution, path: Path, cells: Cells | Boundary, chunk: int) -> None:
-    """Write the cells of a solution, `chunk` rows at a time; readers see the old file or the whole new one.
-
-    Cells are stored once, points and point data for every step. Raises MissingPackageError without h5py.
-    """
-    write_hdf5(path, partial(_fill, solution, cells, chunk))
-
-
 def _fill(
     solution: Solution, cells: Cells | Boundary, chunk: int, file: Any, require_written: Callable[[], None]
 ) -> None:
+    """Write the cells, which are stored once, and points and point data of every step, `chunk` rows at a time."""
     root = file.create_group("VTKHDF", track_order=True)
     root.attrs["Version"] = np.array([2, 6])
     # a string of fixed length, as the format demands

@@ -71,7 +71,9 @@ def _supports(model: Model) -> Iterator[_Vertices]:
         kind = " + ".join(dict.fromkeys(type(of_loads.get(id(each), each)).__name__ for each in supports))
         fixed = _fixed(supports)
         points = _at(model, supports[0].point)
-        yield _Vertices(kind, _SUPPORT, (*_ACTION, *fixed), points, partial(_reaction, supports, fixed))
+        yield _Vertices(
+            kind, _SUPPORT, (*_ACTION, *fixed), points, partial(_acting, partial(reaction_of, own=supports), fixed)
+        )
     for foundation in model.line_supports:
         kind, points = type(foundation).__name__, _along(model, foundation.beam)
         yield _Vertices(kind, _SUPPORT, ("line_force",), points, partial(_of_foundation, foundation, points))
@@ -89,11 +91,6 @@ def _fixed(supports: list[PointSupport]) -> _Values:
         for name, value in support.springs().items():
             stiffness[DIRECTIONS.index(name)] += value
     return {name: array for name, array in (("prescribed", prescribed), ("stiffness", stiffness)) if array.any()}
-
-
-def _reaction(supports: list[PointSupport], fixed: _Values, part: Solution) -> _Values:
-    constant = {name: np.tile(array, (len(part), 1, 1)) for name, array in fixed.items()}
-    return {**_force_and_moment(reaction_of(part, supports)[:, None]), **constant}
 
 
 def _of_foundation(foundation: LineSupport, points: AxisPoints, part: Solution) -> _Values:
@@ -134,29 +131,31 @@ def _connectors(model: Model) -> Iterator[_Vertices]:
         along = isinstance(connector, PartAlongBeam)  # of one that slides along a beam, what acts on its point
         points = list(enumerate(connector.points))
         for number, point in points[1 if connector.unknowns else 2 :] if along else points:
-            values = partial(_of_connector, connector, number)
-            yield _Vertices(kind, _CONNECTOR, _ACTION, _at(model, point), values)
+
+            def force(part: Solution, connector: Contribution = connector, number: int = number) -> np.ndarray:
+                return part.connector_force(connector)[:, number]
+
+            yield _Vertices(kind, _CONNECTOR, _ACTION, _at(model, point), partial(_acting, force, {}))
 
 
 def _joints(model: Model, joints: Iterable[Joint]) -> Iterator[_Vertices]:
     """Yield the vertices of joints at which beams share coordinates."""
     for joint in joints:
-        force = partial(joint_force, joint=joint)
+        on_b = partial(joint_force, joint=joint)
         for sign, point in ((-1.0, joint.a), (1.0, joint.b)) if is_determined(model, joint) else ():
-            values = partial(_of_joint, force, sign)
+
+            def force(part: Solution, sign: float = sign, on_b: Callable[[Solution], np.ndarray] = on_b) -> np.ndarray:
+                return sign * part.computed(on_b)
+
+            values = partial(_acting, force, {})
             yield _Vertices(type(joint).__name__, _CONNECTOR, _ACTION, _at(model, point), values)
 
 
-def _of_connector(connector: Contribution, number: int, part: Solution) -> _Values:
-    return _force_and_moment(part.connector_force(connector)[:, number : number + 1])
-
-
-def _of_joint(force: Callable[[Solution], np.ndarray], sign: float, part: Solution) -> _Values:
-    return _force_and_moment(sign * part.computed(force)[:, None])
-
-
-def _force_and_moment(forces: np.ndarray) -> _Values:
-    return {"force": _flat(forces[..., :2]), "moment": forces[..., 2:]}
+def _acting(forces: Callable[[Solution], np.ndarray], besides: _Values, part: Solution) -> _Values:
+    """Return force and moment of forces (steps, 3), and values (3,) that are the same in each step."""
+    both = forces(part)[:, None]
+    constant = {name: np.tile(values, (len(part), 1, 1)) for name, values in besides.items()}
+    return {"force": _flat(both[..., :2]), "moment": both[..., 2:], **constant}
 
 
 def points_of_forces(model: Model) -> list[_Vertices]:
@@ -208,12 +207,8 @@ class Boundary:
         names = [name for name in chosen if name in _COMPONENTS]
         values = [group.values(part) for group in self.groups] if names else []
         for name in names:
-            result[name] = self._table(name, values, len(part))
+            sizes, shape = zip(values, self._sizes, strict=True), (len(part), _COMPONENTS[name])
+            parts = [own[name] if name in own else np.zeros((shape[0], size, shape[1])) for own, size in sizes]
+            table = np.concatenate(parts, axis=1)
+            result[name] = table if shape[1] == 3 else table[..., 0]
         return self.content.finished({name: result[name] for name in ("points", *chosen)}, at_rest[None])
-
-    def _table(self, name: str, values: list[dict[str, np.ndarray]], steps: int) -> np.ndarray:
-        components = _COMPONENTS[name]
-        sizes = zip(values, self._sizes, strict=True)
-        parts = [fields[name] if name in fields else np.zeros((steps, size, components)) for fields, size in sizes]
-        table = np.concatenate(parts, axis=1)
-        return table if components == 3 else table[..., 0]

@@ -10,25 +10,28 @@ from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import interpolate
 
 
-def nodal_vectors(mesh: BeamMesh, p: np.ndarray, some: np.ndarray | None = None) -> np.ndarray:
-    """Return the nodal vectors e (steps, nodes, vectors per node, 2) of states p (steps, n), of some nodes or all."""
+def nodal_vectors(
+    mesh: BeamMesh, p: np.ndarray, some: np.ndarray | None = None, v: np.ndarray | None = None
+) -> np.ndarray:
+    """Return the nodal vectors e (steps, nodes, vectors per node, 2) of states p (steps, n), of some nodes or all.
+
+    v (steps, n): rates p', for the rates e' = B p' in place of e.
+    """
     dof, frame, kinds = _nodes(mesh, some)
     table = p[:, dof]
     result = np.empty((*table.shape[:2], len(mesh.vectors), 2))
     for node_kind, nodes in kinds:
-        result[:, nodes] = coordinates.nodal_vectors(node_kind, mesh.vectors, table[:, nodes], frame[nodes])
+        own = node_kind, mesh.vectors, table[:, nodes]
+        if v is None:
+            result[:, nodes] = coordinates.nodal_vectors(*own, frame[nodes])
+        else:
+            result[:, nodes] = coordinates.nodal_rates(*own, v[:, dof[nodes]], frame[nodes])
     return result
 
 
-def nodal_velocities(mesh: BeamMesh, p: np.ndarray, v: np.ndarray, some: np.ndarray | None = None) -> np.ndarray:
-    """Return their rates e' = B p' (steps, nodes, vectors per node, 2)."""
-    dof, frame, kinds = _nodes(mesh, some)
-    table, rates = p[:, dof], v[:, dof]
-    result = np.empty((*table.shape[:2], len(mesh.vectors), 2))
-    for node_kind, nodes in kinds:
-        own = table[:, nodes], rates[:, nodes]
-        result[:, nodes] = coordinates.nodal_rates(node_kind, mesh.vectors, *own, frame[nodes])
-    return result
+def nodal_velocities(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return the rates e' = B p' (steps, nodes, vectors per node, 2) of the nodal vectors."""
+    return nodal_vectors(mesh, p, None, v)
 
 
 def _nodes(mesh: BeamMesh, some: np.ndarray | None) -> tuple[np.ndarray, np.ndarray, Sequence[tuple[int, np.ndarray]]]:
@@ -47,25 +50,18 @@ def axis(mesh: BeamMesh, vectors: np.ndarray, element: np.ndarray, xi: np.ndarra
     return interpolate(mesh, local, element, xi)
 
 
-def axis_at(mesh: BeamMesh, p: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:
-    """Return the axis in states p (steps, n) at points (element, xi), both (points,)."""
+def axis_at(mesh: BeamMesh, p: np.ndarray, element: np.ndarray, xi: np.ndarray, v: np.ndarray | None = None) -> Axis:
+    """Return the axis in states p (steps, n), or its rate for v, at points (element, xi), both (points,)."""
     some = mesh.node[element].ravel()
     if len(some) >= mesh.nodes:
-        return axis(mesh, nodal_vectors(mesh, p), element, xi)
-    return _around(mesh, nodal_vectors(mesh, p, some), element, xi)
+        return axis(mesh, nodal_vectors(mesh, p, None, v), element, xi)
+    vectors = nodal_vectors(mesh, p, some, v)
+    return interpolate(mesh, vectors.reshape(len(vectors), len(element), -1, 2), element, xi)
 
 
 def rate_at(mesh: BeamMesh, p: np.ndarray, v: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:
     """Return the rate of the axis at points (element, xi), likewise."""
-    some = mesh.node[element].ravel()
-    if len(some) >= mesh.nodes:
-        return axis(mesh, nodal_velocities(mesh, p, v), element, xi)
-    return _around(mesh, nodal_velocities(mesh, p, v, some), element, xi)
-
-
-def _around(mesh: BeamMesh, vectors: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:
-    """Interpolate the nodal vectors (steps, points nn, vectors, 2) of the element of each point."""
-    return interpolate(mesh, vectors.reshape(len(vectors), len(element), -1, 2), element, xi)
+    return axis_at(mesh, p, element, xi, v)
 
 
 def has_angles(mesh: BeamMesh) -> bool:

@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.material import Material
-from beamfem.quadrature import gauss_between
 from beamfem.reprs import brief
 from beamfem.section.outline import Part, RectangleOutline
 from beamfem.section.protocol import Inertia, Rigidity
@@ -124,10 +124,9 @@ class Layered:
 
     def moments(self, material: Material | None = None) -> list[tuple[Material, np.ndarray]]:
         """Return the material of each layer with its area moments, see `CrossSection.moments`."""
-        edges = self._edges
         return [
-            (layer.material, self.width * np.array([(high**n - low**n) / n for n in range(1, 6)]))
-            for layer, low, high in zip(self.layers, edges[:-1], edges[1:], strict=True)
+            (own, self.width * np.array([(shape.high**n - shape.low**n) / n for n in range(1, 6)]))
+            for own, shape in self._rectangles
         ]
 
     def materials_at(self, y: np.ndarray, material: Material | None = None) -> list[tuple[Material, np.ndarray]]:
@@ -140,19 +139,16 @@ class Layered:
 
     def strips(self, material: Material | None = None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
         """Return a Gauss rule over the height of each layer, see `CrossSection.strips`."""
-        result = []
-        for layer, low, high in zip(self.layers, self._edges[:-1], self._edges[1:], strict=True):
-            heights, weights = gauss_between(low, high, _STRIPS)
-            result.append((layer.material, heights, self.width * weights))
-        return result
+        return [(own, *shape.quadrature(_STRIPS)) for own, shape in self._rectangles]
 
     def parts(self, material: Material | None = None) -> tuple[Part, ...]:
         """Return each layer as a rectangle with its Young's modulus [Pa], from the bottom up."""
-        edges = self._edges.tolist()
-        return tuple(
-            Part(layer.material.youngs_modulus, RectangleOutline(self.width, low, high))
-            for layer, low, high in zip(self.layers, edges[:-1], edges[1:], strict=True)
-        )
+        return tuple(Part(own.youngs_modulus, shape) for own, shape in self._rectangles)
+
+    @property
+    def _rectangles(self) -> list[tuple[Material, RectangleOutline]]:
+        places = zip(self.layers, pairwise(self._edges.tolist()), strict=True)
+        return [(layer.material, RectangleOutline(self.width, low, high)) for layer, (low, high) in places]
 
     @property
     def _edges(self) -> np.ndarray:

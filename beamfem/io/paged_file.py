@@ -47,7 +47,7 @@ class Journal:
 
     def replay(self) -> None:
         """Write what a killed process left behind. Raises FileError."""
-        data = _all_of(self._file)
+        data = self._path.read_bytes()
         if len(data) < _HEAD.size or not self._of.is_file():
             return
         mark, inode, size, length, found = _HEAD.unpack_from(data)
@@ -225,14 +225,6 @@ def opened_once_written(h5py: Any, path: Path) -> Any:
         except BlockingIOError:
             time.sleep(_PAUSE)
     return h5py.File(path, "r")
-
-
-def _all_of(file: int) -> bytes:
-    os.lseek(file, 0, os.SEEK_SET)
-    size, parts = os.fstat(file).st_size, b""
-    while len(parts) < size and (part := os.read(file, size - len(parts))):
-        parts += part
-    return parts
 
 
 def _put(file: int, data: bytes | memoryview, at: int) -> None:

@@ -8,18 +8,18 @@ LOCKED, STRAINED = 1, 2
 NUMBERS, FACTORS = 8, 10  # of a pair
 
 
-@routine("nii", "i")
-def exceeds(table, rows, times):
+@routine("nrii", "i")
+def exceeds(table, p, rows, times):
     """Return LOCKED if weighted angles between neighbouring nodes exceed 1, plus STRAINED if those for strains do.
 
-    table: size of a state, number of pairs, STRAINED if that is known already, addresses of the states p (rows, size),
-    of numbers and of factors. numbers (pairs, NUMBERS): of the coordinates x1, y1, x2, y2 of the nodes, then for each
-    its angle and -1, or x and y of its r_y. factors (pairs, FACTORS): inverse of the chord and of both r_y in the
-    reference, as complex numbers; for locking, a factor of the angle, multiplied by `times`, and a constant; for
+    table: size of a state, number of pairs, STRAINED if that is known already, addresses of numbers and of factors;
+    p (rows, size): the states. numbers (pairs, NUMBERS): of the coordinates x1, y1, x2, y2 of the nodes, then
+    for each its angle and -1, or x and y of its r_y. factors (pairs, FACTORS): inverse of the chord and of both r_y in
+    the reference, as complex numbers; for locking, a factor of the angle, multiplied by `times`, and a constant; for
     strains, factors of the stretch and the angle.
     """
     size, pairs, strained = table[0], table[1], table[2]
-    p, numbers, factors = reals(table[3]), wholes(table[4]), reals(table[5])
+    numbers, factors = wholes(table[3]), reals(table[4])
     locked = 0
     for row in range(rows):
         q = at(p, row * size)

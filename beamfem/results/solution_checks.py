@@ -23,7 +23,7 @@ from beamfem.model.model import Model
 from beamfem.results import locking
 from beamfem.results.beam_stress import peak_stress
 from beamfem.results.energy_balance import energy_warnings
-from beamfem.results.locking import ROWS, heights, pairs, rows_looked_at
+from beamfem.results.locking import heights, pairs, rows_looked_at
 from beamfem.results.nodal import axis_at, nodal_vectors
 from beamfem.results.postprocess import nodal_rotations
 from beamfem.results.solution import Solution
@@ -251,36 +251,22 @@ def warn_of(found: Iterable[Finding]) -> None:
             warn(finding.sentence, finding.kind)
 
 
-class _Bounds:
-    """Bounds below which no strains are large, and no result changes by 1 % without locking; states: to be compared."""
+def _bounds(system: System) -> tuple[np.ndarray, ...]:
+    """Return the table of `exceeds` and the arrays that it has the addresses of.
 
-    def __init__(self, system: System) -> None:
-        neighbours, size = system.table(pairs), system.model.size
-        weights = np.vstack([locking.weights(system), strain_weights(system)])
-        factors = np.hstack([neighbours.at_rest.view(float), weights.T])
-        self.states = np.empty((ROWS, size))
-        self._arrays = self.states, neighbours.numbers, factors
-        known = STRAINED if hindered(system) else 0
-        self._table = np.array([size, len(factors), known, *map(address_of, self._arrays)], dtype=np.int64)
-        self.table = address_of(self._table)
-
-
-def _unused(system: System) -> list[_Bounds]:
-    """Return a list of bounds, which no other thread uses while they are not in it."""
-    return [_Bounds(system)]
+    Within its bounds no strains are large, and no result changes by 1 % without locking.
+    """
+    neighbours, known = system.table(pairs), STRAINED if hindered(system) else 0
+    weights = np.vstack([locking.weights(system), strain_weights(system)])
+    arrays = neighbours.numbers, np.hstack([neighbours.at_rest.view(float), weights.T])
+    table = [system.model.size, len(arrays[1]), known, *map(address_of, arrays)]
+    return np.array(table, dtype=np.int64), *arrays
 
 
 def _found(system: System, p: np.ndarray, times: int = 1) -> int:
     """Return what may be wrong with states p (rows, n), see `exceeds`; times: factor of angles for locking."""
-    unused = system.table(_unused)
-    try:
-        bounds = unused.pop()
-    except IndexError:
-        bounds = _Bounds(system)
-    bounds.states[: len(p)] = p
-    found: int = exceeds.compiled(bounds.table, len(p), times)
-    unused.append(bounds)
-    return found
+    states = np.array(p)  # those of a solution cannot be written to, which makes addresses slow
+    return int(exceeds.compiled(address_of(system.table(_bounds)[0]), address_of(states), len(states), times))
 
 
 def may_lock(system: System, p: np.ndarray) -> bool:

@@ -13,9 +13,9 @@ import numpy as np
 from beamfem.atomic_write import readable
 from beamfem.element.element import CRBF, Element
 from beamfem.errors import InputError, NotReadWarning, warn
-from beamfem.io.abaqus import OF_THE_MESH, Keyword, content_of, keywords_of, listed, number
 from beamfem.io.frame import Frame, build_frame
 from beamfem.io.line_mesh import LineMesh, line_mesh
+from beamfem.io.mesh_files import OF_THE_MESH, Keyword, content_of, keywords_of, listed, number
 from beamfem.material import Material
 from beamfem.model.beam import Point
 from beamfem.model.joint_base import Joint

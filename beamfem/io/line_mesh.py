@@ -16,8 +16,7 @@ from beamfem.curves.curve import GAP
 from beamfem.damping import Damping
 from beamfem.element.element import Element
 from beamfem.errors import InputError, NotJoinedWarning, warn
-from beamfem.io.abaqus import read_abaqus
-from beamfem.io.meshio_reader import MeshFile, read_through_meshio
+from beamfem.io.mesh_files import MeshFile, read_abaqus, read_through_meshio
 from beamfem.material import Material
 from beamfem.reprs import brief
 from beamfem.validation import LARGEST, flag, items, number_table, shown, text

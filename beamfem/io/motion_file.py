@@ -13,6 +13,8 @@ from beamfem.equations.callbacks import uninterrupted
 from beamfem.errors import FileError, InputError
 from beamfem.io.description import describe, rebuild
 from beamfem.io.hdf5 import (
+    Journal,
+    Pages,
     begin_checked,
     checksum,
     extend_checked,
@@ -22,7 +24,6 @@ from beamfem.io.hdf5 import (
     write_checked,
     write_hdf5,
 )
-from beamfem.io.paged_file import Journal, Pages
 from beamfem.io.results_hdf5 import (
     CHECKSUMS,
     EVENTS,

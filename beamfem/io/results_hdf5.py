@@ -17,17 +17,19 @@ from beamfem.errors import InputError
 from beamfem.io.description import describe, rebuild
 from beamfem.io.hdf5 import (
     begin_checked,
+    being_written,
     checksum,
     extend_checked,
+    opened_once_written,
     read_checked,
     read_label,
+    replay,
     require_own,
     required_h5py,
     write_checked,
     write_hdf5,
     write_label,
 )
-from beamfem.io.paged_file import being_written, opened_once_written, replay
 from beamfem.results.axis_fields import QUANTITIES, section_forces
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import VALUES, LikeBeams, equal_beams

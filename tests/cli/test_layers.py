@@ -34,7 +34,6 @@ LAYERS = (
     "solve/start",
     "io/motion_file",
     "io/results_hdf5",
-    "io/paged_file",
     "io/hdf5",
     "io/description",
     "results",

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.io import paged_file
+from beamfem.io import hdf5
 from beamfem.io.motion_file import MotionFile
 from beamfem.solve.motion import long_runs
 
@@ -307,7 +307,7 @@ def test_an_unfinished_motion_is_not_replaced(short, tmp_path):
 def test_a_full_disk_leaves_what_was_written(short, tmp_path, monkeypatch):
     model, path, whole = pendulum(), tmp_path / "swing.h5", tmp_path / "whole.h5"
     bf.simulate(model, 0.3, 1e-3, file=whole)
-    put, calls = paged_file._put, []
+    put, calls = hdf5._put, []
 
     def full(file, data, at):
         calls.append(None)
@@ -316,12 +316,12 @@ def test_a_full_disk_leaves_what_was_written(short, tmp_path, monkeypatch):
             raise OSError(28, "No space left on device")
         put(file, data, at)
 
-    monkeypatch.setattr(paged_file, "_put", full)
+    monkeypatch.setattr(hdf5, "_put", full)
     with pytest.raises(
         bf.FileError, match=r"No space left on device; the motion up to then is in it, and bf.resume goes"
     ):
         bf.simulate(model, 0.3, 1e-3, file=path)
-    monkeypatch.setattr(paged_file, "_put", put)
+    monkeypatch.setattr(hdf5, "_put", put)
     assert 30 < len(bf.load(path)) < 301
     bf.resume(path)
     assert_same(datasets(path), datasets(whole))
@@ -329,7 +329,7 @@ def test_a_full_disk_leaves_what_was_written(short, tmp_path, monkeypatch):
 
 def test_a_file_is_as_before_or_after_a_change_wherever_its_writer_ends(tmp_path, short, monkeypatch):
     """The process ends, here by an exception, before each single piece that is written."""
-    model, path, put = pendulum(), tmp_path / "swing.h5", paged_file._put
+    model, path, put = pendulum(), tmp_path / "swing.h5", hdf5._put
     motion = bf.simulate(model, 0.03, 1e-3, file=path)
     before = datasets(path)
     shutil.copy(path, tmp_path / "before.h5")
@@ -344,10 +344,10 @@ def test_a_file_is_as_before_or_after_a_change_wherever_its_writer_ends(tmp_path
             if len(calls) > allowed:
                 raise SystemExit
 
-        monkeypatch.setattr(paged_file, "_put", ends)
+        monkeypatch.setattr(hdf5, "_put", ends)
         with suppress(SystemExit):
             bf.resume(path, duration=0.05)
-        monkeypatch.setattr(paged_file, "_put", put)
+        monkeypatch.setattr(hdf5, "_put", put)
         assert len(bf.load(path)) >= len(motion)
         found = datasets(path)
         if found["rows"] == before["rows"]:

@@ -4,24 +4,13 @@ import base64
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
+from importlib.resources import files
 from os import PathLike
 from pathlib import Path
 
 from beamfem.atomic_write import path_of, whole
 from beamfem.view.notebook_paths import WrittenFile
 
-_STYLE = """
-body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 62rem; margin: 2rem auto; padding: 0 1rem }
-h1, h2 { line-height: 1.2 } figure { margin: 1.5rem 0; display: grid; gap: .5rem 1.5rem;
-grid-template-columns: minmax(18rem, 3fr) 2fr; align-items: center } figure img { width: 100% }
-figcaption b { display: block } table { border-collapse: collapse; margin: 1rem 0 } td, th { padding: .2rem .8rem;
-border-bottom: 1px solid #ddd; text-align: right } td:first-child, th:first-child { text-align: left }
-.word { white-space: nowrap } .wide { overflow-x: auto } nav ul { columns: 18rem; padding-left: 1.2rem }
-figcaption { overflow-wrap: anywhere }
-.no { color: #b02030 } .yes { color: #207040 }
-@media (max-width: 45rem) { figure { grid-template-columns: minmax(0, 1fr) } h1 { font-size: 1.6rem }
-td, th { padding: .2rem .4rem; font-size: .85rem } }
-"""
 _WORD = " class='word'"
 
 
@@ -66,10 +55,9 @@ def write_page(path: str | PathLike[str], title: str, parts: Sequence[Part]) -> 
         f"{''.join(map(_entry, part.entries))}{''.join(map(_table, part.tables))}"
         for number, part in enumerate(parts)
     )
-    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(title)}</title>'
-    page = f"<!doctype html><html lang='en'><head>{head}<style>{_STYLE}</style></head>"
+    template = files("beamfem.view").joinpath("page.html").read_text(encoding="utf-8")
     with whole(target) as partial:
-        partial.write_text(f"{page}<body><h1>{escape(title)}</h1>{body}</body></html>\n", encoding="utf-8")
+        partial.write_text(template.replace("@TITLE@", escape(title)).replace("@BODY@", body), encoding="utf-8")
     return WrittenFile(target)
 
 

@@ -2,6 +2,7 @@
 
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.nodes import put
 from beamfem.kernels.pointers import at, given, small_code
 from beamfem.kernels.record import LANES, ROW, Group, System
 from beamfem.kernels.simd import WIDTH, as_rows, merged, zeros
@@ -35,15 +36,9 @@ def gather(nodes, count, first, stride, ordered, place, rows, chunks, e):
         offsets, whole = at(place, n * stride + first), at(e, n * rows * ROW)
         run = _run(offsets, count) if ordered != 0 else 0
         if run > 0:
-            lanes, filled = as_rows(at(chunks, offsets[0])), as_rows(whole)
-            for i in range(0, run, WIDTH):
-                for row in range(i, i + rows * ROW, ROW):
-                    filled[row] = lanes[row]
+            put(rows, run, True, at(chunks, offsets[0]), whole)
             if run < count:
-                lanes, filled = as_rows(at(chunks, offsets[run])), as_rows(at(whole, run))
-                for i in range(0, count - run, WIDTH):
-                    for row in range(i, i + rows * ROW, ROW):
-                        filled[row] = lanes[row]
+                put(rows, count - run, True, at(chunks, offsets[run]), at(whole, run))
         else:
             for row in range(rows):
                 to, source = at(whole, row * ROW), at(chunks, row * ROW)
@@ -136,6 +131,14 @@ def collect(group: Group, system: System, first: int, count: int, rows: int, cop
     return 0
 
 
+@inlined
+def _add_run(rows, count, source, to):
+    lanes, added = as_rows(source), as_rows(to)
+    for row in range(rows):
+        for i in range(0, count, WIDTH):
+            added[row * ROW + i] += merged(lanes[row * ROW + i], zeros(), count - i)
+
+
 @routine("iiiiiniirr")
 def scatter(nodes, count, first, stride, ordered, place, size, row, f, chunks):
     """Add the forces f (nodes, size, ROW) of a batch to the rows of its nodes in the chunks, from `row` on."""
@@ -144,15 +147,9 @@ def scatter(nodes, count, first, stride, ordered, place, size, row, f, chunks):
         offsets, forces, sums = at(place, n * stride + first), at(f, n * size * ROW), at(chunks, row * ROW)
         run = _run(offsets, count) if ordered != 0 else 0
         if run > 0:
-            lanes, added = as_rows(forces), as_rows(at(sums, offsets[0]))
-            for part in range(size):
-                for i in range(0, run, WIDTH):
-                    added[part * ROW + i] += merged(lanes[part * ROW + i], zeros(), run - i)
+            _add_run(size, run, forces, at(sums, offsets[0]))
             if run < count:
-                lanes, added = as_rows(at(forces, run)), as_rows(at(sums, offsets[run]))
-                for part in range(size):
-                    for i in range(0, count - run, WIDTH):
-                        added[part * ROW + i] += merged(lanes[part * ROW + i], zeros(), count - run - i)
+                _add_run(size, count - run, at(forces, run), at(sums, offsets[run]))
         else:
             for part in range(size):
                 source, to = at(forces, part * ROW), at(sums, part * ROW)

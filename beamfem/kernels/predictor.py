@@ -43,6 +43,24 @@ def alternates(difference, higher):
     return difference * (1.5 * difference - higher)
 
 
+@inlined
+def _predict_at(i, n, length, order, h, gamma, beta, kept, mean, fraction, state, before, differences, ahead):
+    """Store and predict one coordinate, or lanes of them; ahead: zero."""
+    p, v, a, mean_a = state[i], state[n + i], state[2 * n + i], state[3 * n + i]
+    before[i], before[n + i], before[2 * n + i], before[3 * n + i] = p, v, a, mean_a
+    for k in range(int(order)):
+        ahead += differences[k * length + i]
+    if 1.0 <= order < MOST:
+        test = alternates(differences[length + i], differences[2 * length + i])
+        ahead -= where_negative(test, differences[length * int(order) + i], 0.0)
+    if order < 0.0:
+        ahead = (-(v / h + (0.5 - beta) * mean_a) / beta - kept * a + mean * mean_a) / fraction
+    new = kept * a - mean * mean_a + fraction * ahead
+    state[i] = p + h * v + h * h * ((0.5 - beta) * mean_a + beta * new)
+    state[n + i] = v + h * ((1.0 - gamma) * mean_a + gamma * new)
+    state[2 * n + i] = a + ahead
+
+
 @routine()
 def predict(solver: MotionSolver) -> None:
     """Store the state (4, n) in `before` and predict the end of the step; prescribed coordinates take their values.
@@ -59,38 +77,10 @@ def predict(solver: MotionSolver) -> None:
     kept, mean, fraction = 1.0 / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m), (1.0 - alpha_f) / (1.0 - alpha_m)
     length, lanes, now, then = padded(n), as_rows(differences), as_rows(state), as_rows(before)
     whole = n // WIDTH * WIDTH
-    alternating, last = 1.0 <= order < MOST, length * int(order)
     for i in range(0, whole, WIDTH):
-        p, v, a, mean_a = now[i], now[n + i], now[2 * n + i], now[3 * n + i]
-        then[i], then[n + i], then[2 * n + i], then[3 * n + i] = p, v, a, mean_a
-        ahead = zeros()
-        for k in range(int(order)):
-            ahead += lanes[k * length + i]
-        if alternating != 0:
-            test = alternates(lanes[length + i], lanes[2 * length + i])
-            ahead -= where_negative(test, lanes[last + i], 0.0)
-        if order < 0.0:
-            ahead = (-(v / h + (0.5 - beta) * mean_a) / beta - kept * a + mean * mean_a) / fraction
-        new = kept * a - mean * mean_a + fraction * ahead
-        now[i] = p + h * v + h * h * ((0.5 - beta) * mean_a + beta * new)
-        now[n + i] = v + h * ((1.0 - gamma) * mean_a + gamma * new)
-        now[2 * n + i] = a + ahead
+        _predict_at(i, n, length, order, h, gamma, beta, kept, mean, fraction, now, then, lanes, zeros())
     for i in range(whole, n):
-        last_p, last_v, last_a, last_mean = state[i], state[n + i], state[2 * n + i], state[3 * n + i]
-        for k in range(4):
-            before[k * n + i] = state[k * n + i]
-        change = 0.0
-        for k in range(int(order)):
-            change += differences[k * length + i]
-        if alternating != 0:
-            sign = alternates(differences[length + i], differences[2 * length + i])
-            change -= where_negative(sign, differences[last + i], 0.0)
-        if order < 0.0:
-            change = (-(last_v / h + (0.5 - beta) * last_mean) / beta - kept * last_a + mean * last_mean) / fraction
-        next_a = kept * last_a - mean * last_mean + fraction * change
-        state[i] = last_p + h * last_v + h * h * ((0.5 - beta) * last_mean + beta * next_a)
-        state[n + i] = last_v + h * ((1.0 - gamma) * last_mean + gamma * next_a)
-        state[2 * n + i] = last_a + change
+        _predict_at(i, n, length, order, h, gamma, beta, kept, mean, fraction, state, before, differences, 0.0)
     prescribed, dofs, values = solver.prescribed, solver.prescribed_dofs, solver.prescribed_now
     for i in range(prescribed):
         for k in range(3):
@@ -101,14 +91,19 @@ def predict(solver: MotionSolver) -> None:
 
 
 @inlined
-def errors_of_orders(second, third, second_before, third_before):
-    """Return the errors of the accelerations that orders 1 to 3 predicted, from differences now and a step before."""
-    test = alternates(second_before, third_before)
-    return (
-        second + where_negative(test, second_before, 0.0),
-        third + where_negative(test, third_before, 0.0),
-        third - third_before,
-    )
+def _complete_at(i, n, length, new, old, mean, has_second, has_third, weight, state, before, differences):
+    """Complete one coordinate, or lanes of them.
+
+    Return the change of p'', and the errors of the accelerations that orders 1 to 3 predicted, each times a weight.
+    """
+    a, last_a = state[2 * n + i], before[2 * n + i]
+    state[3 * n + i] = new * a + old * last_a - mean * before[3 * n + i]
+    change, one, two, three = a - last_a, differences[i], differences[length + i], differences[2 * length + i]
+    second, third, test = change - one, change - one - two, alternates(two, three)
+    differences[i], differences[length + i] = change, has_second * second
+    differences[2 * length + i] = has_third * third
+    by_1, by_2 = second + where_negative(test, two, 0.0), third + where_negative(test, three, 0.0)
+    return weight * change, weight * by_1, weight * by_2, weight * (third - three)
 
 
 @inlined
@@ -152,31 +147,21 @@ def complete(solver: MotionSolver) -> float:
     errors, largest_change = MOST * length, zeros()
     whole = n // WIDTH * WIDTH
     for i in range(0, whole, WIDTH):
-        a, last_a, factor = now[2 * n + i], then[2 * n + i], weight[i]
-        now[3 * n + i] = new * a + old * last_a - mean * then[3 * n + i]
-        change = a - last_a
-        largest_change = larger(largest_change, change * factor)
-        one, two, three = lanes[i], lanes[length + i], lanes[2 * length + i]
-        second, third = change - one, change - one - two
-        by_1, by_2, by_3 = errors_of_orders(second, third, two, three)
-        lanes[i], lanes[length + i], lanes[2 * length + i] = change, has_second * second, has_third * third
-        by_0, by_1, by_2, by_3 = factor * change, factor * by_1, factor * by_2, factor * by_3
+        by_0, by_1, by_2, by_3 = _complete_at(
+            i, n, length, new, old, mean, has_second, has_third, weight[i], now, then, lanes
+        )
+        largest_change = larger(largest_change, by_0)
         sum_0, sum_1, sum_2, sum_3 = sum_0 + by_0 * by_0, sum_1 + by_1 * by_1, sum_2 + by_2 * by_2, sum_3 + by_3 * by_3
     lanes[errors], lanes[errors + WIDTH] = sum_0, sum_1
     lanes[errors + 2 * WIDTH], lanes[errors + 3 * WIDTH] = sum_2, sum_3
     for i in range(whole, n):
-        state[3 * n + i] = new * state[2 * n + i] + old * before[2 * n + i] - mean * before[3 * n + i]
-        difference = state[2 * n + i] - before[2 * n + i]
-        rest = larger_of(rest, abs(difference * inverse_scale[i]))
-        d_1, d_2, d_3 = differences[i], differences[length + i], differences[2 * length + i]
-        differences[i], differences[length + i] = difference, has_second * (difference - d_1)
-        differences[2 * length + i] = has_third * (difference - d_1 - d_2)
-        error_1, error_2, error_3 = errors_of_orders(difference - d_1, difference - d_1 - d_2, d_2, d_3)
+        of_0, of_1, of_2, of_3 = _complete_at(
+            i, n, length, new, old, mean, has_second, has_third, inverse_scale[i], state, before, differences
+        )
+        rest = larger_of(rest, abs(of_0))
         own = at(differences, errors + i - whole)
-        own[0] += (inverse_scale[i] * difference) ** 2
-        own[WIDTH] += (inverse_scale[i] * error_1) ** 2
-        own[2 * WIDTH] += (inverse_scale[i] * error_2) ** 2
-        own[3 * WIDTH] += (inverse_scale[i] * error_3) ** 2
+        own[0], own[WIDTH] = own[0] + of_0 * of_0, own[WIDTH] + of_1 * of_1
+        own[2 * WIDTH], own[3 * WIDTH] = own[2 * WIDTH] + of_2 * of_2, own[3 * WIDTH] + of_3 * of_3
     dofs = solver.prescribed_dofs
     for i in range(solver.prescribed):
         state[3 * n + dofs[i]] = state[2 * n + dofs[i]]

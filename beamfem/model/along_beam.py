@@ -25,6 +25,11 @@ class AlongBeam(ABC):
 
     beam: Beam
 
+    @property
+    def place(self) -> Beam:
+        """The beam."""
+        return self.beam
+
     @abstractmethod
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
         """Return the values (n, ...) of the field `name` at arc lengths (n,) [m].

@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.element.coordinates import ShearFree
 from beamfem.errors import InputError
 from beamfem.model.along_beam import AlongBeam, check_along, ends_and_middle, require_names, values_along
-from beamfem.model.beam import Beam, require_beam
+from beamfem.model.beam import require_beam
 from beamfem.model.load_base import Load
 from beamfem.model.load_shapes import LoadShape, Strains
 from beamfem.model.state_protocols import Placed
@@ -52,10 +52,6 @@ class ImposedStrain(AlongBeam, Load):
         if not callable(value):
             return np.full(len(arc_length), value)
         return np.array([finite(f"{what} at arc length {s:g}", called(what, value, s)) for s in arc_length.tolist()])
-
-    @property
-    def place(self) -> Beam:
-        return self.beam
 
     @property
     def conservative(self) -> bool:

@@ -317,10 +317,6 @@ class LineLoad(AlongBeam, Load):
         raise InputError(f"{what} must give finite numbers, as many at every arc length, got {shown(results)}")
 
     @property
-    def place(self) -> Beam:
-        return self.beam
-
-    @property
     def even(self) -> bool:
         """Whether the forces are one vector of x and y on the whole beam."""
         return self.uniform and self.axes == "plane"

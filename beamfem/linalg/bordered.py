@@ -1,11 +1,9 @@
 """Band matrices with a border: a few unknowns that are coupled beyond the band, and Lagrange multipliers."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg.lapack import dgetrf, dgetrs
 from scipy.sparse import coo_array, csc_array, csr_array
 
 from beamfem.kernels import record
@@ -32,42 +30,6 @@ class Border(NamedTuple):
     def size(self) -> int:
         """Number t + k of coupled unknowns and multipliers."""
         return len(self.entries)
-
-
-NO_BORDER = Border(np.empty(0, dtype=np.int64), 0, np.empty((0, 0)))
-
-
-class BorderedFactors:
-    """Factors of a band matrix B with a border: x + B^-1 E (D x_t + G^T l) = B^-1 r for the coupled unknowns x_t.
-
-    solve: replaces a right-hand side (n,) by the solution with B. Raises LinAlgError if the matrix is singular.
-    """
-
-    def __init__(self, size: int, border: Border, solve: Callable[[np.ndarray], None]) -> None:
-        self._border, self._solve, self._size = border, solve, size
-        count, entries = len(border.numbers), border.entries
-        self._columns = np.zeros((count, size))
-        self._columns[np.arange(count), border.numbers] = 1.0
-        for column in self._columns:
-            solve(column)
-        small = entries.copy()
-        small[:count] = self._columns[:, border.numbers].T @ entries[:count]
-        small[:count, :count] += np.eye(count)
-        self._coupling = entries[:count]
-        if border.size:  # LAPACK refuses empty matrices
-            self._factors, self._exchanged, singular = dgetrf(small, overwrite_a=True)
-            if singular or not np.isfinite(self._factors).all():
-                raise LinAlgError("the tangent is singular")
-
-    def solve_in_place(self, right: np.ndarray) -> None:
-        """Replace a right-hand side (n + k,) by the solution."""
-        numbers, x, rest = self._border.numbers, right[: self._size], right[self._size :]
-        self._solve(x)
-        if not self._border.size:
-            return
-        coupled, _ = dgetrs(self._factors, self._exchanged, np.concatenate([x[numbers], rest]))
-        x -= (self._coupling @ coupled) @ self._columns
-        rest[:] = coupled[len(numbers) :]
 
 
 def condensed_record(size: int, half: int, reach: np.ndarray, numbers: np.ndarray, multipliers: int) -> record.Border:

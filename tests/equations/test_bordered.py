@@ -22,7 +22,7 @@ import beamfem as bf
 from beamfem.equations import equation_numbering as layout
 from beamfem.equations.equations import linearise
 from beamfem.equations.system import System, system_of
-from beamfem.linalg.bordered import Border, BorderedFactors, BorderedTangent
+from beamfem.linalg.bordered import Border, BorderedTangent
 from beamfem.linalg.lapack import LinAlgError
 from beamfem.linalg.tangent import UNROTATED, BandTangent
 
@@ -99,7 +99,6 @@ def test_factors_with_a_border_solve_the_whole_matrix(multipliers, rng):
     rows = rng.standard_normal((size, 2 * half + 1))
     rows[:, half] += 8.0
     whole[:size, :size] = BandTangent(rows, np.empty((2, 0))).sparse(UNROTATED).toarray()
-    band = whole[:size, :size].copy()
     coupled = [np.array([0, 7, -1, 11]), np.array([3, 7, *range(size, size + multipliers)])]
     matrices = [rng.standard_normal((len(own), len(own))) for own in coupled]
     matrices[1][2:, 2:] = 0.0
@@ -107,21 +106,17 @@ def test_factors_with_a_border_solve_the_whole_matrix(multipliers, rng):
         mask = own >= 0
         whole[np.ix_(own[mask], own[mask])] += matrix[np.ix_(mask, mask)]
 
-    def solve(x):
-        x[:] = np.linalg.solve(band, x)
-
-    factors = BorderedFactors(size, border_of(size, multipliers, coupled, matrices), solve)
+    reach = np.tile(np.minimum(np.arange(size) + half + 1, size).astype(np.int32), (2, 1))
+    tangent = BorderedTangent(BandTangent(rows, reach), border_of(size, multipliers, coupled, matrices))
     right = rng.standard_normal(size + multipliers)
-    x = right.copy()
-    factors.solve_in_place(x)
-    assert whole @ x == pytest.approx(right, abs=1e-12)
+    assert whole @ tangent.solve(right, UNROTATED) == pytest.approx(right, abs=1e-12)
 
 
 def test_conditions_that_repeat_each_other_are_singular():
-    twice = [np.array([0, 2]), np.array([0, 3])]
+    twice, reach = [np.array([0, 2]), np.array([0, 3])], np.array([[1, 2], [1, 2]], dtype=np.int32)
     row = [np.array([[0.0, 1.0], [1.0, 0.0]])] * 2
     with pytest.raises(LinAlgError):
-        BorderedFactors(2, border_of(2, 2, twice, row), lambda x: None)
+        BorderedTangent(BandTangent(np.ones((2, 1)), reach), border_of(2, 2, twice, row)).factorised(UNROTATED)
 
 
 def test_an_error_in_a_force_ends_the_motion_with_the_states_before():

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p, cast
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from scipy.sparse import csc_array
@@ -13,9 +13,8 @@ from beamfem.equations.motion_workspace import MotionWorkspace
 from beamfem.equations.system import System
 from beamfem.kernels import motion_steps, rollers
 from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
-from beamfem.kernels.records import address_of
 from beamfem.kernels.time_loop import march
-from beamfem.linalg.bordered import NO_BORDER, BorderedFactors, BorderedTangent
+from beamfem.linalg.bordered import BorderedTangent
 from beamfem.linalg.lapack import LinAlgError
 from beamfem.linalg.tangent import UNROTATED, Factorised, SparseTangent
 from beamfem.precision.saddle import SaddleTangent
@@ -41,69 +40,6 @@ def is_weak(
     return not factor(len(rows), half, system.unknowns.reach, rows, np.empty(len(rows) + 2)) > WEAK
 
 
-class CoupledFactors(Protocol):
-    """Factors of a tangent."""
-
-    def solve_in_place(self, right: np.ndarray) -> None:
-        """Replace a right-hand side by the solution. Raises LinAlgError."""
-        ...
-
-
-class SparseSolution:
-    """Factors by SuperLU."""
-
-    def __init__(self, factors: Factorised) -> None:
-        self._factors = factors
-
-    def solve_in_place(self, right: np.ndarray) -> None:
-        """See `CoupledFactors`."""
-        right[:] = self._factors.solve(right)
-
-
-class SparseFactorisation:
-    """Factorises a sparse matrix with the tangents of connectors; matrix: its entries, which are overwritten."""
-
-    def __init__(self, system: System, matrix: np.ndarray) -> None:
-        self._system, self._matrix = system, matrix
-
-    def __call__(self, space: int) -> CoupledFactors:
-        """Return the factors. Raises LinAlgError."""
-        tangent, multipliers = tangent_of(self._system, self._matrix), len(self._system.connectors.multipliers)
-        if len(self._system.rotated[0]):
-            constrained = SparseTangent(csc_array(tangent.sparse(self._system.rotated)))
-            tangent = SaddleTangent(constrained, multipliers) if multipliers else constrained
-        return SparseSolution(tangent.factorised(UNROTATED))
-
-
-class BandFactorisation:
-    """Factorises a band that connectors border; matrix: its rows, which are overwritten.
-
-    If it has few digits without them, as a structure of little inertia that they hold, it is factorised with them as a
-    sparse matrix.
-    """
-
-    def __init__(self, system: System, matrix: np.ndarray) -> None:
-        self._system, self._matrix, self._kept = system, matrix, np.empty_like(matrix)
-        self._size, self._half = system.unknowns.banded, system.layouts[0].half_width
-        self._rows, self._reach = address_of(matrix), address_of(system.unknowns.reach)
-        self._routines = bidirectional_lu(self._half, self._size < SHORT)
-
-    def __call__(self, space: int) -> CoupledFactors:
-        """Return the factors; space: address of numbers (n,). Raises LinAlgError."""
-        size = self._size
-        tangent = tangent_of(self._system, self._matrix)
-        border = tangent.border if isinstance(tangent, BorderedTangent) else NO_BORDER
-        self._kept[:] = self._matrix
-        ratio = self._routines.factor.compiled(size, self._half, self._reach, self._rows, space)
-        if ratio > WEAK or not border.size:
-            return BorderedFactors(size, border, self._solve)
-        self._matrix[:] = self._kept
-        return SparseSolution(tangent.factorised(UNROTATED))
-
-    def _solve(self, x: np.ndarray) -> None:
-        self._routines.solve.compiled(self._size, self._half, self._rows, address_of(x))
-
-
 _Factor = CFUNCTYPE(c_double, *(c_int64,) * 2, *(c_void_p,) * 3)
 _Solve = CFUNCTYPE(None, *(c_int64,) * 2, *(c_void_p,) * 2)
 _Correct = CFUNCTYPE(c_double, *(c_int64,) * 2)
@@ -118,7 +54,7 @@ class PythonRoutines:
 
     def __init__(self, spoiled: np.ndarray) -> None:
         self._spoiled, self._errors, self._deferred = spoiled, KeptErrors(), Deferred()
-        self._factors: CoupledFactors | None = None
+        self._factors: Factorised | None = None
 
     def take_error(self) -> BaseException | None:
         """Return the first error since the last call, if there is one."""
@@ -148,8 +84,6 @@ class CoupledStages(PythonRoutines):
         super().__init__(space.solver.right)
         self.system = system
         self._state, self._equations, self._solver = np.empty((4, 0)), space.assembler.record, space.solver
-        factorisation = BandFactorisation if system.unknowns.pattern is None else SparseFactorisation
-        self._factorised = factorisation(system, space.solver.rows)
         self._functions = {
             "factor": _Factor(self._guarded(self._factor)),
             "solve_both": _Solve(self._guarded(self._solve)),
@@ -170,9 +104,13 @@ class CoupledStages(PythonRoutines):
 
     def _factor(self, unknown: int, half: int, reach: int, rows: int, space: int) -> float:
         """Factorise the tangent; return 1, or 0 if it is singular."""
+        system, self._factors = self.system, None  # frees memory before the new factorisation
+        tangent, multipliers = tangent_of(system, self._solver.rows), len(system.connectors.multipliers)
+        if len(system.rotated[0]):
+            constrained = SparseTangent(csc_array(tangent.sparse(system.rotated)))
+            tangent = SaddleTangent(constrained, multipliers) if multipliers else constrained
         try:
-            self._factors = None  # frees memory before the new factorisation
-            self._factors = self._factorised(space)
+            self._factors = tangent.factorised(UNROTATED)
         except LinAlgError:
             return 0.0
         return 1.0
@@ -181,7 +119,7 @@ class CoupledStages(PythonRoutines):
         """Replace the right-hand side by the solution, nan if the tangent is singular."""
         if self._factors is None:
             raise LinAlgError("the tangent is singular")
-        self._factors.solve_in_place(self._solver.right)
+        self._solver.right[:] = self._factors.solve(self._solver.right)
 
     def _correct(self, system: int, solver: int) -> float:
         """See `motion_steps.correct`."""

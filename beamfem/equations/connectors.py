@@ -224,13 +224,7 @@ class Connector:
         p, v, a = (values[self._used].astype(complex) for values in motion)
         return p, v, a
 
-    def tangent(
-        self,
-        motion: Motion,
-        time: float,
-        gravity: np.ndarray,
-        weights: Sequence[float],
-    ) -> np.ndarray:
+    def tangent(self, motion: Motion, time: float, gravity: np.ndarray, weights: Sequence[float]) -> np.ndarray:
         """Return the tangent (d + k, d + k) of the force for weights of p, p' and p'', by complex steps.
 
         Raises LinAlgError if it is not finite.
@@ -282,15 +276,8 @@ class Connector:
         angles = q[2::3] if self.per_point == 3 else np.zeros(len(self.reference))
         turned = np.column_stack([np.cos(angles), np.sin(angles)])
         past = motion[0][self.memory]
-        return (
-            q,
-            v,
-            a,
-            motion[0][self.own],
-            turned,
-            np.concatenate([self.data, past]) if len(past) else self.data,
-            gravity,
-        )
+        data = np.concatenate([self.data, past]) if len(past) else self.data
+        return q, v, a, motion[0][self.own], turned, data, gravity
 
 
 WIDTH = 1e-7  # of the central differences to which complex steps are compared, relative to the natural units

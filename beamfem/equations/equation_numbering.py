@@ -213,51 +213,35 @@ class Couplings(NamedTuple):
 
 
 def order_unknowns(
-    blocks: Sequence[Block],
-    size: int,
-    prescribed: np.ndarray,
-    joined: bool,
-    couplings: Couplings,
-    constrained: np.ndarray,
+    blocks: Sequence[Block], size: int, known: np.ndarray, joined: bool, couplings: Couplings, supported: np.ndarray
 ) -> Unknowns:
     """Return the order of the unknown coordinates: that of the nodes for a single chain, renumbered for joined beams.
 
-    prescribed: coordinates that are known; joined: whether beams are joined; constrained: coordinates that supports
+    known: coordinates that are no unknowns; joined: whether beams are joined; supported: coordinates that supports
     prescribe, at which a band of statics ends.
     """
     if len(blocks) == 1 and not joined and not couplings.coordinates and size <= _FEW:
         node, dof = blocks[0].node, blocks[0].dof
         numbers = node.tobytes(), node.shape, dof.tobytes(), dof.shape
-        return _cached_order(*numbers, size, prescribed.tobytes(), constrained.tobytes())
+        return _cached_order(*numbers, size, known.tobytes(), supported.tobytes())
     mesh = [Mesh(block.node, block.dof) for block in blocks]
-    return _order(mesh, size, prescribed, joined, couplings, constrained)
+    return _order(mesh, size, known, joined, couplings, supported)
 
 
 @lru_cache(maxsize=64)  # studies repeatedly make models with the same numbering
 def _cached_order(
-    node: bytes,
-    nodes: tuple[int, int],
-    dof: bytes,
-    dofs: tuple[int, int],
-    size: int,
-    prescribed: bytes,
-    constrained: bytes,
+    node: bytes, nodes: tuple[int, int], dof: bytes, dofs: tuple[int, int], size: int, *prescribed: bytes
 ) -> Unknowns:
     whole = np.frombuffer(node, dtype=np.int64).reshape(nodes), np.frombuffer(dof, dtype=np.int64).reshape(dofs)
-    known, supported = (np.frombuffer(each, dtype=np.int64) for each in (prescribed, constrained))
+    known, supported = (np.frombuffer(each, dtype=np.int64) for each in prescribed)
     return _order([Mesh(*whole)], size, known, False, Couplings(), supported)
 
 
 def _order(
-    blocks: Sequence[Mesh],
-    size: int,
-    prescribed: np.ndarray,
-    joined: bool,
-    couplings: Couplings,
-    constrained: np.ndarray,
+    blocks: Sequence[Mesh], size: int, known: np.ndarray, joined: bool, couplings: Couplings, supported: np.ndarray
 ) -> Unknowns:
     mask = np.ones(size, dtype=bool)
-    mask[prescribed] = False
+    mask[known] = False
     order = np.arange(size)
     if joined:
         narrow = narrow_order(blocks, size)
@@ -270,7 +254,7 @@ def _order(
     if half_width > _WIDEST_BAND:
         return _sparse(blocks, size, mask, couplings)
     dofs = order[mask[order]]
-    turned = towards_support(blocks, order, mask, constrained)
+    turned = towards_support(blocks, order, mask, supported)
     # joined nodes that share some coordinates only may be further apart then
     if turned is not None and _half_width(blocks, _numbers(turned, size)) <= half_width:
         dofs = turned

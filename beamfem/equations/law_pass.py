@@ -73,29 +73,30 @@ class LawPass:
         first: int,
         number: int,
         count: int,
-        tangent: int,
-        weight: int,
+        stiff: int,
+        w: int,
         c: int,
-        reference: int,
+        eps0: int,
         x: int,
     ) -> None:
+        """See `kernels.linear_law`."""
         try:
             own = _rows(x, POINT_ROWS)[:, :count]
             try:
-                weights, natural = _rows(weight, 1)[0, :count], _rows(reference, _MEASURES)[:, :count]
+                weights, natural = _rows(w, 1)[0, :count], _rows(eps0, _MEASURES)[:, :count]
                 own[RESULTANT : RESULTANT + _MEASURES] = 0.0
-                if tangent:
+                if stiff:
                     own[STIFFNESS : STIFFNESS + _ENTRIES] = 0.0
                 if self._thickness:
                     thickness = ThicknessLaw(weights * _rows(c, _ENTRIES)[_ENTRIES - 1, :count])
                     own[RESULTANT + THICKNESS] = thickness.resultants(own[STRAIN + THICKNESS] - natural[THICKNESS])
-                    if tangent:
+                    if stiff:
                         own[STIFFNESS + _ENTRIES - 1] = thickness.stiffness
                 if number < self._points:
                     past = _NOTHING
                     if self._law.remembers:
                         past = _past(group, system, slice(first, first + count), number)
-                    self._fill_rows(own, weights, natural[:3], past, tangent != 0)
+                    self._fill_rows(own, weights, natural[:3], past, stiff != 0)
             except BaseException:
                 own[RESULTANT : RESULTANT + _MEASURES] = np.nan
                 raise

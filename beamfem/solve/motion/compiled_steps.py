@@ -15,14 +15,6 @@ SPARSE = MotionLimits(most=24, many=16, slow=0.5)  # a factorisation costs as mu
 BORDERED = MotionLimits(most=12, many=6, slow=0.2)  # with the tangents of connectors, as much as four
 
 
-def not_converged(statistics: MotionStatistics, limits: MotionLimits) -> str:
-    """Return why a step has failed."""
-    return (
-        f"the last correction was {statistics.correction:.2e} of the model after {limits.iterations} iterations at "
-        "most. A smaller step may help"
-    )
-
-
 class StepsInCalls:
     """Takes time steps, many in one compiled call; step [s]: their size; space: its own workspace."""
 
@@ -129,7 +121,8 @@ class CompiledSteps(StepsInCalls):
     @property
     def why(self) -> str:
         """Why a step has failed."""
-        return not_converged(self._statistics, self._limits)
+        size, most = self._statistics.correction, self._limits.iterations
+        return f"the last correction was {size:.2e} of the model after {most} iterations at most"
 
     def _advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """Do what `advance` does in one compiled call."""

@@ -12,6 +12,7 @@ import numpy as np
 from beamfem.equations.motion_workspace import motion_workspace
 from beamfem.equations.system import System
 from beamfem.kernels.motion_record import MotionStatistics
+from beamfem.results.solution_checks import advice
 from beamfem.solve.motion.collocation import coefficients, is_collocation
 from beamfem.solve.motion.collocation_steps import CollocationSteps
 from beamfem.solve.motion.compiled_steps import CompiledSteps, StepsInCalls
@@ -132,7 +133,9 @@ class StepCutter:
                     if self.stopped:
                         return done
                     if good < count and window is None:
-                        self.why += f", also with steps of {part.step:.3g} {self.system.model.unit('s')}"
+                        second, at = self.system.model.unit("s"), float(part.times[done])
+                        self.why += f", also with steps of {part.step:.3g} {second} from {at:.6g} {second} on"
+                        self.why += advice(self.system.model, rows.states[good, 0])
                         return done
                     size = self._next_size(size, count, clock.perf_counter() - started, window)
                 self.memory = motion.memory(state)

@@ -16,7 +16,7 @@ from beamfem.progress import ends_as_a_whole, kept, returned_on_interrupt
 from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.full_turns import first_turns
 from beamfem.results.solution import Solution, State
-from beamfem.results.solution_checks import advice, warned
+from beamfem.results.solution_checks import warned
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.accuracy.adapted_mesh import prepared, refined_until
 from beamfem.solve.motion.constraints import impact, require_met, stopped_by_conditions
@@ -202,7 +202,7 @@ def simulate(
             failed = march(system, settings.integrator, parts, prescribed, state, record, last, saved)
     solution = found()
     if failed is not None:
-        raise ConvergenceError(f"{failed.sentence(second)}{advice(model, state[0])}", solution)
+        raise ConvergenceError(failed.sentence(second), solution)
     if solution is None:
         raise InputError("the motion has ended before the first time of save_at")
     if saved is not None:

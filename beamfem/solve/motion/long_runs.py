@@ -22,7 +22,7 @@ from beamfem.model.model import Model
 from beamfem.progress import kept, progress, returned_on_interrupt
 from beamfem.public_names import public
 from beamfem.results.solution import Solution
-from beamfem.results.solution_checks import advice, warned
+from beamfem.results.solution_checks import warned
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.motion.cut_steps import StepCutter, keep_momentum
 from beamfem.solve.motion.energy_judgement import CHUNK
@@ -237,7 +237,7 @@ def _run(file: MotionFile, plan: MotionPlan, checkpoint: Checkpoint, saved: Save
         commit()
     if failed is not None:
         unit, solution = plan.system.model.unit("s"), _loaded(file)
-        raise ConvergenceError(f"{failed.sentence(unit)}{advice(solution.model, solution.p[-1])}", solution)
+        raise ConvergenceError(failed.sentence(unit), solution)
     file.describe(plan.system.model)
     done = _described(plan.settings, False)
     file.commit(saved.take_out(before), _statistics(plan, checkpoint, True), checkpoint.arrays(), done)

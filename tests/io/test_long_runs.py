@@ -379,37 +379,50 @@ long_runs._SECONDS = 0.02
 beam = bf.Beam(bf.Line((0, 0), (1.2, 0)), 4, bf.CRBF(2), bf.Section(1.6e-3, 8.533e-6), bf.Material(0.7e6, 0.3, 5540.0))
 model = bf.Model([beam], [bf.Pin(beam.start)], [bf.Gravity((0.0, -9.81))])
 events = [bf.Event("the tip turns", lambda state: state.velocity(beam.end)[1])]
-path, how = sys.argv[1:]
+path, how = sys.argv[1:3]
 print("begins", flush=True)
 if how == "begin":
-    bf.simulate(model, 10.0, 1e-3, events=events, file=path)
+    kind, *numbers = sys.argv[3:]
+    bf.simulate(model, 10.0, 1e-3, getattr(bf, kind)(*map(float, numbers)), events=events, file=path)
 else:
     bf.resume(path, model, events=events)
 """
 
 
 @contextmanager
-def motion_process(path, how):
+def motion_process(path, how, integrator=("GeneralizedAlpha",)):
     """Begin or resume a motion in a process of its own, which is ready to take steps."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    command = [sys.executable, "-W", "ignore", "-c", KILLED, str(path), how]
+    command = [sys.executable, "-W", "ignore", "-c", KILLED, str(path), how, *integrator]
     with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE) as process:
         process.stdout.readline()
         yield process
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGKILL")
-@pytest.mark.parametrize("kills", [2, pytest.param(20, marks=pytest.mark.slow)])
-def test_a_motion_that_is_killed_at_random_moments_is_the_same(kills, tmp_path):
-    """10,000 steps, each time from the beginning of the file or from where the last process was killed."""
+@pytest.mark.parametrize(
+    ("kills", "integrator"),
+    [
+        (2, ("GeneralizedAlpha",)),
+        pytest.param(20, ("GeneralizedAlpha",), marks=pytest.mark.slow),
+        pytest.param(5, ("HHT", "-0.1"), marks=pytest.mark.slow),
+        pytest.param(5, ("Radau",), marks=pytest.mark.slow),
+        pytest.param(5, ("Gauss",), marks=pytest.mark.slow),
+    ],
+)
+def test_a_motion_that_is_killed_at_random_moments_is_the_same(kills, integrator, tmp_path):
+    """10,000 steps, each time from the beginning of the file or from where the last process was killed.
+
+    The integrator is that of the file.
+    """
     whole, path = tmp_path / "whole.h5", tmp_path / "killed.h5"
-    with motion_process(whole, "begin") as process:
+    with motion_process(whole, "begin", integrator) as process:
         began = time.monotonic()
         assert process.wait() == 0
     lasts, random, done = time.monotonic() - began, np.random.default_rng(kills), 0
     while done < kills:
         # a process needs a while until it takes its first step
-        with motion_process(path, "resume" if path.exists() else "begin") as process:
+        with motion_process(path, "resume" if path.exists() else "begin", integrator) as process:
             time.sleep(float(random.uniform(0.0, lasts)))
             process.send_signal(signal.SIGKILL)
             if process.wait() == 0:

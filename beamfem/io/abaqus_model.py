@@ -154,7 +154,7 @@ class _Reading:
         except InputError as error:
             raise InputError(f"{keyword.place}: {error}") from None
         except (ValueError, IndexError, KeyError, ZeroDivisionError) as error:
-            raise InputError(f"{keyword.place}: the lines below *{keyword.keyword} cannot be read: {error}") from error
+            raise InputError(f"{keyword.place}: this line below *{keyword.keyword} cannot be read: {error}") from error
 
     def _take(self, keyword: Keyword, given: dict[str, str]) -> None:
         kind, rows = keyword.keyword, keyword.rows

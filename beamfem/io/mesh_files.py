@@ -122,14 +122,39 @@ _NAMED = 8
 _GENERATORS = ("NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY", "SYSTEM")
 
 
-@dataclass(frozen=True)
+class Rows(list[list[str]]):
+    """Data lines with their numbers in the file; `read` is that of the line which is being read."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.lines: list[int] = []
+        self.read: int | None = None
+
+    def __iter__(self) -> Iterator[list[str]]:
+        for number, row in zip(self.lines, super().__iter__(), strict=True):
+            self.read = number
+            yield row
+        self.read = None
+
+    def __getitem__(self, index: Any) -> Any:
+        self.read = self.lines[index]
+        return super().__getitem__(index)
+
+
+@dataclass
 class Keyword:
-    """A keyword line with its parameters and data lines; `place` identifies it in messages."""
+    """A keyword line with its parameters and data lines."""
 
     keyword: str
     parameters: dict[str, str]
-    rows: list[list[str]]
-    place: str
+    path: Path
+    line: int
+    rows: Rows = field(default_factory=Rows)
+
+    @property
+    def place(self) -> str:
+        """Return file and line for messages: of the data line that is being read, else of the keyword."""
+        return f"{self.path}, line {self.rows.read or self.line}"
 
 
 @dataclass
@@ -234,7 +259,7 @@ def content_of(path: Path, keywords: Iterable[Keyword], trusses: str = "") -> Me
         except (ValueError, KeyError, IndexError) as error:
             if isinstance(error, InputError):
                 raise
-            raise InputError(f"{section.place}: the lines below *{section.keyword} cannot be read: {error}") from error
+            raise InputError(f"{section.place}: this line below *{section.keyword} cannot be read: {error}") from error
     return _assembled(path, nodes, cells, node_sets, element_sets)
 
 
@@ -330,6 +355,7 @@ def keywords_of(path: Path, depth: int = 0) -> Iterator[Keyword]:
         if not line.startswith("*"):
             if section is not None:
                 section.rows.append([value.strip() for value in line.rstrip(",").split(",")])
+                section.rows.lines.append(number)
             continue
         while line.endswith(",") and number < len(lines):
             line += lines[number].strip()
@@ -339,7 +365,7 @@ def keywords_of(path: Path, depth: int = 0) -> Iterator[Keyword]:
         keyword, *words = line[1:].split(",")
         pairs = (word.partition("=") for word in words)
         parameters = {name.strip().upper(): value.strip().strip('"') for name, _, value in pairs}
-        section = Keyword(keyword.strip().upper(), parameters, [], f"{path}, line {begun}")
+        section = Keyword(keyword.strip().upper(), parameters, path, begun)
         if section.keyword == "INCLUDE":
             yield from keywords_of(path.parent / parameters.get("INPUT", ""), depth + 1)
             section = None

@@ -10,7 +10,7 @@ from beamfem.errors import InputError
 from beamfem.section.moments import Section
 from beamfem.section.polygon import Corner, of_loops
 from beamfem.section.section_shapes import ShapedSection, Tube
-from beamfem.validation import flag, nearest, positive, text
+from beamfem.validation import flag, positive, text
 
 _SIZES = ("h", "b", "tw", "tf", "r1", "r2")  # of the table [mm]
 _HOLLOW = re.compile(r"(SHS|RHS|CHS) ([\d.]+)(?:X([\d.]+))??X([\d.]+)( COLD)?")
@@ -66,10 +66,18 @@ def Profile(name: str, weak: bool = False, millimetre: float = 1e-3) -> Section:
     if spelt not in table:
         family = [row["name"] for row in table.values() if row["name"].split()[0] == spelt.partition(" ")[0]]
         others = "there are IPE, HEA, HEB, UPN, L, SHS, RHS and CHS"
-        raise InputError(f"there is no profile {name!r}; {nearest(spelt.lower(), family) if family else others}")
+        wanted = _numbers(spelt)
+        apart = {own: sum(abs(a - b) for a, b in zip(_numbers(own), wanted, strict=False)) for own in family}
+        near = f"did you mean {min(apart, key=apart.__getitem__)}? " if family and wanted else ""
+        known = f"{near}Known are {', '.join(family)}" if family else others
+        raise InputError(f"there is no profile {name!r}; {known}")
     row = table[spelt]
     outline = {"UPN": _channel, "L": _angle}.get(spelt.split()[0], _two_flanges)
     return _placed([outline(*(float(row[key]) for key in _SIZES))], row["name"], weak, unit)
+
+
+def _numbers(name: str) -> list[float]:
+    return [float(size) for size in re.findall(r"\d+(?:\.\d+)?", name)]
 
 
 def _table() -> list[dict[str, str]]:

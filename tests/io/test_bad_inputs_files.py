@@ -34,7 +34,7 @@ FILES = {
     "an empty Abaqus file": ("x.inp", b"", BAD, "no lines"),
     "an element of no node": ("x.inp", f"{NODES}*ELEMENT, TYPE=B21\n1, 1, 9\n".encode(), BAD, "does not give"),
     "an element of no type": ("x.inp", f"{NODES}*ELEMENT\n1, 1, 2\n".encode(), BAD, "line 4"),
-    "a node of text": ("x.inp", b"*NODE\n1, a, 0\n", BAD, "line 1"),
+    "a node of text": ("x.inp", b"*NODE\n1, a, 0\n", BAD, "line 2"),
     "a set of an unknown set": ("x.inp", f"{NODES}*NSET, NSET=a\ntop\n".encode(), BAD, "no nset 'top'"),
     "an include of nothing": ("x.inp", b"*INCLUDE, INPUT=none.inp\n", BAD, "cannot be read"),
     "an empty drawing": ("x.dxf", b"", BAD, "DXF"),

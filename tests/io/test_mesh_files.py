@@ -39,7 +39,7 @@ def test_quadratic_lines_survive_every_format(tmp_path, suffix):
 def test_quadratic_lines_of_meshio_have_the_wrong_name_in_abaqus(tmp_path):
     path = tmp_path / "arch.inp"
     points = [(0, 0, 0), (1, 0.3, 0), (2, 0, 0)]
-    with pytest.raises(bf.InputError, match="line 8: element 1 of type B33H has 2 nodes; a quadratic line is a B32"):
+    with pytest.raises(bf.InputError, match="line 9: element 1 of type B33H has 2 nodes; a quadratic line is a B32"):
         written(path, points, [("line3", [[0, 2, 1]])])
     path.write_text(path.read_text().replace("B33H", "B32"))
     mesh = read_mesh(path)
@@ -199,12 +199,12 @@ def test_what_an_abaqus_file_holds_besides_lines_is_named(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("Feet\n1,", "Feet\nHands", "line 24: there is no nset 'Hands' so far; known: ALL"),
+        ("Feet\n1,", "Feet\nHands", "line 25: there is no nset 'Hands' so far; known: ALL"),
         ("Feet\n1,", "Feet\n99,", "nset Feet lists 99"),
         ("11, 2, 3", "11, 2, 77", "element 11 has nodes that the file does not give"),
         ("11, 2, 3", "11, 2", "element 11 of type B21 needs 2 nodes"),
         ("11, 2, 3", "10, 2, 3", "element 10 is given twice"),
-        ("3, 1., 1.\n", "3, 1., one\n", "line 8: the lines below .NODE cannot be read"),
+        ("3, 1., 1.\n", "3, 1., one\n", "line 9: this line below .NODE cannot be read"),
         ("3, 1., 1.\n", "3, 1., 1.\n1, 5., 5.\n", "node 1 is given twice at different places"),
         ("*Boundary", "*Ngen\n1, 6", "NGEN cannot be read"),
         ("*Boundary", "*Include, input=none.inp", "none.inp cannot be read"),

@@ -174,7 +174,8 @@ def test_a_profile_is_saved_and_loaded(section, tmp_path):
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: bf.Profile("IPE 210"), "did you mean IPE 2.0"),
+        (lambda: bf.Profile("IPE 205"), "did you mean IPE 200"),
+        (lambda: bf.Profile("HEB 1"), "did you mean HEB 100"),
         (lambda: bf.Profile("W 8x31"), "there are IPE, HEA"),
         (lambda: bf.Profile("L 100x100x11"), "did you mean L 100x100x1"),
         (lambda: bf.Profile("CHS 100x50x5"), "no profile"),

@@ -48,6 +48,23 @@ def thick_columns() -> Case:
     return Case("Thick columns", problem, source, shown[0].model, tuple(values), shown[-1].plot, 1e-8)
 
 
+def heated_column() -> Case:
+    """A column between hinges that do not give way, heated until it buckles."""
+    steel = bf.Material(2e11, 0.3, 7800.0, thermal_expansion=1.2e-5)
+    section = bf.Rectangle(0.02, 0.02)
+    rigidity = section.rigidity(steel)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 8, bf.CRBF(4), section, steel)
+    model = bf.Model([beam], [bf.Pin(beam.start), bf.Pin(beam.end)], [bf.Temperature(beam, change=1.0)])
+    buckling = bf.solve_buckling(model, 1)
+    euler = np.pi**2 * rigidity.bending
+    thrust = 0.5 * rigidity.shear * (np.sqrt(1.0 + 4.0 * euler / rigidity.shear) - 1.0)
+    exact = thrust / (rigidity.axial * 1.2e-5)
+    values = (Value("change of temperature [K]", float(exact), float(buckling.load_factors[0])),)
+    problem = "A square steel column of 20 mm and 1 m between hinges that do not move, heated evenly."
+    source = "Euler's load with shear, P (1 + P / k G A) = pi^2 E I / L^2, P = E A alpha dT"
+    return Case("Heated column", problem, source, model, values, buckling.plot)
+
+
 def own_weight() -> Case:
     """Greenhill's column."""
     beam = bf.Beam(bf.Line((0, 0), (0, 1)), 8, bf.CRBF(4), SLENDER)
@@ -168,6 +185,16 @@ def truss() -> Case:
 
 
 CASES = (
-    *(columns, thick_columns, own_weight, column_on_foundation, sway_frame, beck, follower_pressure, lee),
+    *(
+        columns,
+        thick_columns,
+        heated_column,
+        own_weight,
+        column_on_foundation,
+        sway_frame,
+        beck,
+        follower_pressure,
+        lee,
+    ),
     *(williams, deep_arch, truss),
 )

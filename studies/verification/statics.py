@@ -252,6 +252,29 @@ def heated_bar() -> Case:
     )
 
 
+def warmer_above() -> Case:
+    """Bars with a gradient of temperature over their height: one held by a clamp and a roller, one by two clamps."""
+    gradient, rigidity = 1.0, SQUARE.rigidity(STEEL)
+    curvature = -1.2e-5 * gradient
+    solved = []
+    for far in (bf.Roller, bf.Clamp):
+        beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(4), SQUARE, STEEL)
+        load = bf.Temperature(beam, change=0.0, gradient=gradient)
+        solved.append(bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start), far(beam.end)], [load])))
+    propped, held = solved
+    force = propped.reaction(propped.model.beams[0].end)[-1, 1]
+    moment = held.section_forces(held.model.beams[0]).moment[-1, 0]
+    exact = -0.5 * curvature / (1.0 / (3.0 * rigidity.bending) + 1.0 / rigidity.shear)
+    values = compared(
+        ("reaction of the roller [N]", "moment between clamps [N m]"),
+        (exact, -rigidity.bending * curvature),
+        (float(force), float(moment)),
+    )
+    problem = "Square steel bars of 10 mm and 1 m, warmer at the upper face by 1 K per metre of height."
+    source = "3/2 E I alpha dT' / L with shear, and E I alpha dT'"
+    return Case("Bars warmer above", problem, source, propped.model, values, propped.plot)
+
+
 def plastic_hinge() -> Case:
     """A square section bent beyond yield."""
     side, stress = 0.02, 2.5e8
@@ -302,5 +325,5 @@ def catenary() -> Case:
 
 CASES = (
     *(tip_force, thick_tip_force, roll_up, follower_force, distributed_load, small_bending, foundation, quarter_ring),
-    *(diametral_ring, tapered, portal, bimetal, heated_bar, plastic_hinge, beam_column, catenary),
+    *(diametral_ring, tapered, portal, bimetal, heated_bar, warmer_above, plastic_hinge, beam_column, catenary),
 )

@@ -22,4 +22,4 @@ def announce_compilation() -> None:
         how_often = "again in each process, since no folder can be written (BEAMFEM_CACHE_DIR names one)"
     else:
         how_often = "once on this computer"
-    print(f"compiling kernels, {how_often}: some two seconds ...", file=sys.stderr)
+    print(f"compiling kernels, {how_often}: three to five seconds ...", file=sys.stderr)

@@ -57,4 +57,4 @@ def test_a_first_solve_in_a_kernel_says_that_it_compiles(tmp_path, monkeypatch):
     notebook = nbformat.v4.new_notebook(cells=[cell])
     nbclient.NotebookClient(notebook, timeout=100, kernel_name="python3").execute()
     said = "".join(output.text for output in notebook.cells[0].outputs)
-    assert said == "compiling kernels, once on this computer: some two seconds ...\n"
+    assert said == "compiling kernels, once on this computer: three to five seconds ...\n"

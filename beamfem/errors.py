@@ -2,6 +2,7 @@
 
 import sys
 import warnings
+from types import FrameType, TracebackType
 from typing import Any
 
 
@@ -20,6 +21,13 @@ class BeamfemError(Exception):
         joint = ". " if remedy[:1].isupper() else "; "
         super().__init__(f"{reason}{joint}{remedy}" if remedy else reason)
         self.reason, self.remedy = reason, remedy
+
+    def _render_traceback_(self) -> list[str]:
+        """Return the lines that a notebook shows."""
+        import traceback
+
+        _shorten(self)
+        return traceback.format_exception(self)
 
 
 class InputError(BeamfemError, ValueError):
@@ -155,6 +163,44 @@ class UnknownStressWarning(UserWarning):
 def warn(message: str, kind: type[Warning] = UserWarning) -> None:
     """Warn of the line outside the package that led here, however deep inside of it this is."""
     frame, level = sys._getframe(), 1
-    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
+    while frame.f_back is not None and _package(frame) == __package__:
         frame, level = frame.f_back, level + 1
     warnings.warn(message, kind, stacklevel=level)
+
+
+def _package(frame: FrameType) -> str:
+    return str(frame.f_globals.get("__name__", "")).partition(".")[0]
+
+
+def _outside(trace: TracebackType | None) -> TracebackType | None:
+    """Return a traceback from the first to the last line outside the package, and outside IPython."""
+    entries = [] if trace is None else [trace]
+    while entries and entries[-1].tb_next is not None:
+        entries.append(entries[-1].tb_next)
+    while len(entries) > 1 and _package(entries[-1].tb_frame) == __package__:
+        entries.pop()
+    while len(entries) > 1 and _package(entries[0].tb_frame) in (__package__, "IPython"):
+        entries.pop(0)
+    ending = None
+    for entry in reversed(entries):
+        ending = TracebackType(ending, entry.tb_frame, entry.tb_lasti, entry.tb_lineno)
+    return ending
+
+
+def _shorten(error: BaseException | None) -> None:
+    """Leave the lines of the package out of the tracebacks of an error and of its causes."""
+    while error is not None:
+        error.__traceback__, error = _outside(error.__traceback__), error.__cause__
+
+
+_earlier_hook = sys.excepthook
+
+
+def _show_error(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+    """Show an error of beamfem at the line of the user's own code; `sys.last_traceback` has all lines."""
+    if isinstance(error, BeamfemError):
+        _shorten(error)
+    _earlier_hook(kind, error, error.__traceback__)
+
+
+sys.excepthook = _show_error

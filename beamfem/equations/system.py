@@ -265,7 +265,7 @@ class System:
         """The order of the coordinates that are not prescribed."""
         connectors, joined = self.connectors, bool(self.model.shared_joints)
         coupled, multipliers = [item.all for item in connectors.items], connectors.multipliers.tolist()
-        border: int | None = layout.WIDEST_BORDER if multipliers or not self.static else 0
+        border: int | None = layout.WIDEST_BORDER
         if self.inclined:
             border = 0 if self.static else None
         known = np.concatenate((self.prescribed_dofs, self.history.numbers))

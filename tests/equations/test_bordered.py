@@ -257,6 +257,31 @@ def test_equilibria_with_connectors_of_one_point_are_those_of_the_sparse_matrix(
     assert np.abs(one.displacement(one.model.beams[0].end)[-1]).max() > 1e-3
 
 
+@pytest.mark.parametrize("own", [bf.SpringDamper, SpringDamper], ids=("compiled", "Python"))
+@pytest.mark.parametrize("element", KINDS, ids=lambda element: element.name)
+def test_equilibria_with_springs_across_beams_are_those_of_the_sparse_matrix(element, own, monkeypatch):
+    """The upper beam is held by springs alone."""
+    found = []
+    for widest in (layout.WIDEST_BORDER, -1):
+        monkeypatch.setattr(layout, "WIDEST_BORDER", widest)
+        lower, upper = beam(element), beam(element, (0, 0.3), (1, 0.3))
+        pairs = (0.5, 0.0), (1.0, 0.5), (0.25, 1.0), (1.0, 1.0)
+        springs = [own(lower.at(a), upper.at(b), 200.0) for a, b in pairs]
+        loads = [bf.Gravity((1.0, -9.81)), bf.PointForce(upper.end, (0.1, -0.3))]
+        model = bf.Model([lower, upper], [bf.Clamp(lower.start)], loads, connectors=springs)
+        solution, path = bf.solve_static(model, steps=4), bf.trace_equilibrium(model, until=1.0)
+        modes = bf.solve_modes(model, 4, about=solution[-1])
+        assert (system_of(model, static=True).unknowns.pattern is None) == (widest > 0)
+        assert np.abs(solution.displacement(upper.end)[-1]).max() > 1e-3
+        found.append((solution, path, modes))
+    (one, path, modes), (other, sparse_path, sparse_modes) = found
+    assert one.p == pytest.approx(other.p, abs=1e-10)
+    assert one.statistics.iterations == other.statistics.iterations
+    assert np.array_equal(one.stability, other.stability)
+    assert path.p == pytest.approx(sparse_path.p, abs=1e-8)
+    assert modes.frequencies == pytest.approx(sparse_modes.frequencies, rel=1e-8)
+
+
 def test_an_error_of_a_connector_in_statics_is_raised_and_leaves_none_behind():
     class Failing(Anchor):
         def force(self, at):

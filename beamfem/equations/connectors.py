@@ -428,7 +428,12 @@ class Connectors:
     @cached_property
     def keep_energy(self) -> bool:
         """Whether no connector adds energy to a motion or dissipates it."""
-        return self.conservative and not self.damp and not any(any(follows_time(item)) for item in self.items)
+        return self.conservative and not self.damp and not self.follow_time
+
+    @cached_property
+    def follow_time(self) -> bool:
+        """Whether a force or a condition depends on time other than by gravity or a prescribed value."""
+        return any(any(follows_time(item)) for item in self.items)
 
     @cached_property
     def conditions_follow_time(self) -> bool:

@@ -93,6 +93,13 @@ def frame(seed, view=PLAIN, conditions=True, stiff=0.0):
     return bf.Model(listed, supports, loads, joints, connectors), chain, post
 
 
+def thrust(model):
+    """The same frame under forces against those of `frame`, and its motor."""
+    loads = [*(load for load in model.loads if isinstance(load, bf.Motor))]
+    loads += [bf.PointForce(load.point, tuple(-30.0 * np.array(load.vector))) for load in model.loads[-2:]]
+    return model.with_loads(loads)
+
+
 def found(seed, view=PLAIN, **options):
     """Results by name, lengths [m], forces [N] and rates in the frame of the plain view."""
     model, chain, post = frame(seed, view, **options)
@@ -113,10 +120,8 @@ def found(seed, view=PLAIN, **options):
     if rest.stable[-1]:
         result["about rest"] = bf.solve_modes(model, 3, about=rest[-1]).frequencies
     result["motion"] = moved(bf.simulate(model, 0.01, 1e-3))
-    thrust = [*(load for load in model.loads if isinstance(load, bf.Motor))]
-    thrust += [bf.PointForce(load.point, tuple(-30.0 * np.array(load.vector))) for load in model.loads[-2:]]
     try:
-        buckled = bf.solve_buckling(model.with_loads(thrust), 2)
+        buckled = bf.solve_buckling(thrust(model), 2)
     except (bf.InputError, bf.ConvergenceError):
         return result
     return result | {"buckling": buckled.load_factors, "linearised": buckled.linearised}
@@ -157,3 +162,11 @@ def test_links_are_the_limit_of_stiff_springs(seed):
         each.pop("motion", None)
     limit = {name: stiff[name] + (stiff[name] - soft[name]) / 9.0 for name in linked}
     compare(linked, limit, factor=100.0)
+
+
+@pytest.mark.parametrize("seed", [1, 3, 5])
+@pytest.mark.parametrize("stiff", [1e4, 1e5])
+def test_linearised_critical_loads_beside_a_very_stiff_spring_are_those_of_a_link(seed, stiff):
+    """Its elongation is a billionth of the displacements, and its force is still that of the link."""
+    linked, sprung = (bf.solve_buckling(thrust(frame(seed, **own)[0]), 2).linearised for own in ({}, {"stiff": stiff}))
+    assert sprung == pytest.approx(linked, rel=1e-6)

@@ -100,10 +100,11 @@ def linear_solution(system: System, p: np.ndarray, load_factor: float) -> Linear
 def _differences(system: System, load_factor: float) -> list[tuple[float, float]]:
     """Return load factors and weights: the derivative by the load factor is the sum of weighted changes up to them.
 
-    The difference is forward, since amplitudes may have a kink at the start, and of second order.
+    The difference is forward, since amplitudes may have a kink at the start, and of second order. Where everything is
+    linear in the load factor it is wide: in a narrow one the round-off of stiff springs hides the geometric stiffness.
     """
     size = max(1.0, abs(load_factor))
-    if not functions_of_time(system) and not system.connectors.items:
+    if not functions_of_time(system) and not system.connectors.follow_time:
         return [(load_factor + size, 1.0 / size)]
     width = _WIDTH * size
     return [(load_factor + width, 2.0 / width), (load_factor + 2.0 * width, -0.5 / width)]
@@ -147,8 +148,10 @@ def _of_connectors(system: System, p: np.ndarray, load_factor: float, slope: np.
             return item.tangent((q, zeros, zeros), load_factor, gravity, STATICS)
 
         force = item.force(item.at((p, zeros, zeros), load_factor, gravity)).real
-        unstrained = _unstrained(item, stiffness(p), force[: len(item.dofs)])
-        moved = differentiated(system, stiffness, p, slope)[: len(item.dofs), : len(item.dofs)]
+        unstrained, straining = _projections(item, stiffness(p), force[: len(item.dofs)])
+        step = np.zeros(len(p))
+        step[item.dofs], step[item.own] = straining @ slope[item.dofs], slope[item.own]
+        moved = differentiated(system, stiffness, p, step)[: len(item.dofs), : len(item.dofs)]
         rate = unstrained.T @ moved @ unstrained
         number = system.unknowns.free[item.dofs]
         row, column = (each.ravel() for each in np.meshgrid(number, number, indexing="ij"))
@@ -158,25 +161,27 @@ def _of_connectors(system: System, p: np.ndarray, load_factor: float, slope: np.
     return result
 
 
-def _unstrained(item: Connector, stiffness: np.ndarray, force: np.ndarray) -> np.ndarray:
-    """Return the projection (d, d) onto the motions that do not strain a connector, all of them if it has a force.
+def _projections(item: Connector, stiffness: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return projections (d, d) onto the motions that do not strain a connector, and onto those that change its force.
 
-    stiffness (d + k, d + k), force (d,): of the connector. In these motions, which satisfy its conditions, its tangent
-    changes by its force alone. In others it may also change by its stiffness, which turns
-    with it; its force is small beside that. Of a connector that already has a force the two cannot be told apart.
+    stiffness (d + k, d + k), force (d,): of the connector. In unstrained motions, which satisfy its conditions, its
+    tangent changes by its force alone. In others it may also change by its stiffness, which turns with it; its force is
+    small beside that. Where it has no force, unstrained motions leave it without one, and their size would hide the
+    elongation of a stiff spring. Of a connector that has a force the two cannot be told apart.
     """
-    units, count = item.units, len(item.dofs)
+    units, count, whole = item.units, len(item.dofs), np.eye(len(item.dofs))
     conditions, stiffness = stiffness[count:, :count], stiffness[:count, :count]
     if len(conditions):
         q, r = qr((conditions * units).T, mode="full")[:2]
         rank = np.count_nonzero(np.abs(np.diagonal(r)) > _ROUND_OFF * np.abs(r).max())
         basis = q[:, rank:]
-        return units[:, None] * (basis @ basis.T) / units
+        return units[:, None] * (basis @ basis.T) / units, whole
     if np.any(np.abs(force * units) > _ROUND_OFF * np.max(np.abs(units[:, None] * stiffness * units))):
-        return np.eye(len(units))
+        return whole, whole
     values, vectors = eigh(units[:, None] * (0.5 * (stiffness + stiffness.T)) * units)
     basis = vectors[:, np.abs(values) <= _ROUND_OFF * np.max(np.abs(values))]
-    return units[:, None] * (basis @ basis.T) / units
+    unstrained = units[:, None] * (basis @ basis.T) / units
+    return unstrained, whole - unstrained
 
 
 _CHANGE = 1e-3  # of the stiffness: effect of loads whose symmetry is judged

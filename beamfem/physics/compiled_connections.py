@@ -50,6 +50,12 @@ def passes_of(connection: Connection) -> Passes:
             f"{connection.name} has more than {MOST_DATA} numbers and history variables; split it into parts"
         )
     if connection.compiled is not None:
+        found = connection.compiled
+        if len(found) != 2 or not all(isinstance(each, int) and each > 0 for each in found):
+            raise InputError(
+                f"compiled of {connection.name} must be the addresses of two C functions, for force and tangent, got "
+                f"{found}"
+            )
         return Passes(Foreign(connection.compiled[0], 0), Foreign(connection.compiled[1], 3))
     package, signatures = connection in GENERATED, {"force": POINT_FORCE, "tangent": POINT_TANGENT}
     name = connection.name if package else f"{connection.name} of {id(connection)}"

@@ -37,6 +37,7 @@ bench: $(VENV)/.bench
 	$(BIN)/python -m studies.benchmarks.fresh_models
 	$(BIN)/python -m studies.benchmarks.chain_growth
 	$(BIN)/python -m studies.benchmarks.integrators
+	$(BIN)/python -m studies.benchmarks.part_costs
 	$(BIN)/python -m studies.benchmarks.roofline
 	$(BIN)/python -m studies.benchmarks.compile_budget
 	$(BIN)/python -m studies.benchmarks.package_size

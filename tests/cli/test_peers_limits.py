@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from studies.benchmarks import chain_growth, flop_counts, fresh_models, roofline, roofline_cases
+from studies.benchmarks import chain_growth, flop_counts, fresh_models, part_costs, roofline, roofline_cases
 
 
 def test_operations_of_plain_numbers():
@@ -63,6 +63,14 @@ def test_growth_measures_a_chain(analysis):
     assert peak > 50.0
     assert np.isnan(error) if analysis == "motion" else error < 1e-6
     assert len(found) + 4 == len(chain_growth.HEADER)
+
+
+def test_costs_of_parts_are_those_of_the_table(tmp_path, capsys):
+    """The bound is what a model that leaves compiled code takes; times beside other work are not judged further."""
+    rows = part_costs.main(rounds=1, folder=tmp_path, parts=("rigid link", "between two states, Python"))
+    assert [row[:2] for row in rows] == [("rigid link", 1), ("between two states, Python", 1)]
+    assert all(0.0 < row[3] < 1e3 for row in rows)
+    assert "each place" in capsys.readouterr().out
 
 
 def test_fresh_models_are_those_of_the_table(tmp_path, capsys):

@@ -5,8 +5,7 @@ from typing import Annotated
 import typer
 
 from beamfem.cli.bundled import examples, new, study
-from beamfem.cli.commands import export, info, plot, run
-from beamfem.cli.doctor import doctor
+from beamfem.cli.commands import doctor, export, info, plot, run
 
 app = typer.Typer(
     name="beamfem",

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from typer.testing import CliRunner
 
 import beamfem as bf
-from beamfem.cli import doctor
+from beamfem.cli import commands
 from beamfem.cli.app import app
 from beamfem.cli.report import plain
 
@@ -216,10 +216,10 @@ def test_doctor(monkeypatch):
     assert found["first_solve"]["right"]
     assert isinstance(found["rendering"], str)
     assert found["missing"]["store"] == []
-    version = doctor._version
+    version = commands._version
     monkeypatch.setattr("beamfem.view.rendering.can_render", lambda: False)
-    monkeypatch.setattr(doctor, "_version", lambda name: None if name == "h5py" else version(name))
-    monkeypatch.setattr(doctor, "writable", lambda folder: False)
+    monkeypatch.setattr(commands, "_version", lambda name: None if name == "h5py" else version(name))
+    monkeypatch.setattr(commands, "writable", lambda folder: False)
     text = invoke("doctor").stdout
     assert "VTK cannot render here; on Debian" in text
     assert 'missing h5py: pip install "beamfem[store]"' in text

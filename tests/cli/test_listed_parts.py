@@ -152,7 +152,7 @@ def test_listed_parts_are_solved_told_saved_drawn_and_exported(tmp_path):
 def test_wrong_keys_of_listed_parts_have_their_line(tmp_path):
     code = """
 from beamfem.cli.model_file import read_model_file
-from beamfem.cli.toml_source import ModelFileError
+from beamfem.cli.model_file import ModelFileError
 said = []
 for line, wrong in (("size = 40", "size = true"), ("size = 40", "sise = 40"), ('kind = "buffer"', 'kind = "bufer"')):
     text = open("model.toml").read()

@@ -12,8 +12,7 @@ from typer.testing import CliRunner
 import beamfem as bf
 from beamfem.cli.analyses import Analysis
 from beamfem.cli.app import app
-from beamfem.cli.model_file import read_model_file
-from beamfem.cli.toml_source import ModelFileError, read_source
+from beamfem.cli.model_file import ModelFileError, read_model_file, read_source
 
 ROOT = Path(__file__).parents[2]
 BLOCKS = re.findall(r"```toml\n(.*?)```", (ROOT / "docs" / "model_files.md").read_text(), re.S)

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.cli.model_file import read_model_file
-from beamfem.cli.toml_source import ModelFileError
+from beamfem.cli.model_file import ModelFileError, read_model_file
 
 STIFF = bf.Section.from_stiffness(1e9, 1e9, 1e3, 1.0, 1.0)
 

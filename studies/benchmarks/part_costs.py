@@ -85,7 +85,7 @@ def model(case: Case, with_it: bool) -> bf.Model:
 
 
 def tasks(own: bf.Model) -> tuple[list[Callable[[], object]], list[int]]:
-    """Return solves of a model of which the second does more iterations, in statics and in motion, and how many more."""
+    """Return solves of a model, of which the second does more iterations, in statics and in motion, and how many."""
     system = system_of(own, static=True)
 
     def iterated(most: int) -> int:

@@ -231,27 +231,38 @@ class Connector:
         """
         if self.compiled is not None:
             return self._compiled_tangent(self.compiled, motion, gravity, weights)
+        return self.linearised(motion, time, gravity, weights)[1]
+
+    def linearised(
+        self, motion: Motion, time: float, gravity: np.ndarray, weights: Sequence[float]
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return force (d + k,) and tangent of a user-defined contribution; the steps leave the force as it is.
+
+        Raises LinAlgError if the tangent is not finite.
+        """
+        at = self.at(motion, time, gravity)
         if hasattr(self.item, "exact_tangent"):
-            return np.asarray(weights[0] * self.item.exact_tangent(self.at(motion, time, gravity)))
-        at, places = self.at(motion, time, gravity), len(self.dofs)
-        result = np.empty((places + len(self.own),) * 2)
-        steps = [1j * COMPLEX_STEP * weight for weight in weights]
-        state, own = [values.astype(complex) for values in (at.q, at.v, at.a)], at.own.astype(complex)
+            return self.force(at).real, np.asarray(weights[0] * self.item.exact_tangent(at))
+        places, size = len(self.dofs), len(self.all)
+        state = at.q, at.v, at.a, at.own
+        own = q, v, a, held = [values.astype(complex) for values in state]
+        at, columns = At(q, v, a, held, at.memory, at.reference, time, gravity), np.empty((size, size), dtype=complex)
+        steps = [(each, 1j * COMPLEX_STEP * weight) for each, weight in zip((q, v, a), weights, strict=True) if weight]
         with np.errstate(all="ignore"):  # see `force`
-            for number in range(len(result)):
-                (q, v, a), held = (values.copy() for values in state), own
+            for number in range(size):
+                for values, real in zip(own, state, strict=True):
+                    values[...] = real  # anew, as users may have changed them
                 if number < places:
                     place = divmod(number, self.per_point)
-                    for values, step in zip((q, v, a), steps, strict=True):
+                    for values, step in steps:
                         values[place] += step
                 else:
-                    held = own.copy()
-                    held[number - places] += steps[0]
-                result[:, number] = self._force(At(q, v, a, held, at.memory, at.reference, time, gravity)).imag
-        result /= COMPLEX_STEP
-        if not np.isfinite(result).all():
+                    held[number - places] += 1j * COMPLEX_STEP * weights[0]
+                columns[number] = self._force(at)
+        tangent = np.ascontiguousarray(columns.imag.T) / COMPLEX_STEP
+        if not np.isfinite(tangent).all():
             raise LinAlgError(f"force of {self.name} is not finite")
-        return result
+        return columns[-1].real, tangent
 
     def force_in(self, motion: Motion, time: float, gravity: np.ndarray) -> np.ndarray:
         """Return the force (d + k,) in a real motion."""

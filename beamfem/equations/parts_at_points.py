@@ -153,12 +153,14 @@ class PartsInPython:
             )
             motion, time = (self._seen(own, "p", n), v, a), own.time
             gravity = self._seen(own, "body", 2)  # of the first beam: it acts on all mass
-            for item, _, _ in self._parts:
-                np.add.at(residual, item.all, item.force_in(motion, time, gravity))
-            if own.tangent:
-                weights, matrix = (own.weight_p, own.weight_v, own.weight_a), self._seen(own, "matrix", own.entries)
-                for item, mask, places in self._parts:
-                    np.add.at(matrix, places, item.tangent(motion, time, gravity, weights)[mask])
+            weights = own.weight_p, own.weight_v, own.weight_a
+            for item, mask, places in self._parts:
+                if own.tangent:
+                    force, tangent = item.linearised(motion, time, gravity, weights)
+                    np.add.at(self._seen(own, "matrix", own.entries), places, tangent[mask])
+                else:
+                    force = item.force_in(motion, time, gravity)
+                np.add.at(residual, item.all, force)
         except BaseException as error:
             residual[:] = np.nan
             if not isinstance(error, LinAlgError):  # of a tangent that is not finite

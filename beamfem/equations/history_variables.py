@@ -10,6 +10,7 @@ from beamfem.equations.connectors import Connectors, Motion
 from beamfem.equations.element_group import ElementGroup
 from beamfem.equations.stress_resultants import free_group, resultants
 from beamfem.kernels.block import Block
+from beamfem.physics.compiled_connections import remembering
 from beamfem.section.law import ConstitutiveLaw
 
 
@@ -38,6 +39,12 @@ class History:
         """Initial values (h,) of all history variables."""
         values = [np.broadcast_to(law.start, block.history.shape).ravel() for law, block in self.laws]
         return np.concatenate([self.connectors.start, *values]) if values else self.connectors.start
+
+    @cached_property
+    def compiled(self) -> bool:
+        """Whether compiled code can update all history variables there are."""
+        items = [item.compiled for item in self.connectors.items if len(item.memory)]
+        return bool(items) and not self.laws and all(each is not None and remembering(each) for each in items)
 
     @property
     def holders(self) -> tuple[tuple[str, str], ...]:

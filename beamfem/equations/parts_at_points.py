@@ -17,12 +17,12 @@ from beamfem.equations.connectors import Connector
 from beamfem.equations.equation_numbering import Unknowns
 from beamfem.equations.model_coordinates import COORDINATES
 from beamfem.kernels.compiler.value_types import REALS
-from beamfem.kernels.connection_passes import add_parts
+from beamfem.kernels.connection_passes import add_parts, commit
 from beamfem.kernels.record import Parts, System
 from beamfem.kernels.records import memory_at
 from beamfem.model.model import Model
 from beamfem.parts.at_points import ANALYTIC
-from beamfem.physics.compiled_connections import in_python, passes_of
+from beamfem.physics.compiled_connections import in_python, passes_of, remembering
 from beamfem.physics.connections import COORDINATE_SPRING, Connection
 
 
@@ -42,6 +42,7 @@ class Alike(NamedTuple):
     def record(self) -> Parts:
         """The record that compiled code takes."""
         coordinates, (force, tangent) = self.connection.points * self.connection.coordinates, passes_of(self.connection)
+        remember = remembering(self.connection)
         return Parts(
             count=len(self.numbers),
             coordinates=coordinates,
@@ -53,6 +54,7 @@ class Alike(NamedTuple):
             force=force,
             tangent=tangent,
             add=add_parts,
+            **({} if remember is None else {"remember": remember, "commit": commit}),
             **{name: np.ascontiguousarray(getattr(self, name)) for name in ("numbers", "data", "history", "places")},
         )
 

@@ -22,6 +22,44 @@ def _clear(count, to):
         to[i] = 0.0
 
 
+@inlined
+def _data(parts, part, p, recalled):
+    """Return the numbers of a part, followed by its history variables if it has any."""
+    data = at(parts.data, part * parts.data_size)
+    if parts.history_size > 0:
+        for i in range(parts.data_size):
+            recalled[i] = data[i]
+        _gather(parts.history_size, at(parts.history, part * parts.history_size), p, at(recalled, parts.data_size))
+        data = recalled
+    return data
+
+
+@inlined
+def _turn(parts, q, turned):
+    """Fill cosine and sine of the rotation of each point."""
+    if parts.per_point == 3:
+        for point in range(parts.coordinates // 3):
+            turned[2 * point], turned[2 * point + 1] = cosine_sine(q[3 * point + 2])
+
+
+@routine()
+def commit(parts: Parts, system: System) -> None:
+    """Replace the history variables of the parts of a kind by those after an accepted step to p, p' and p''."""
+    p, gravity, recalled, size, history = system.p, system.body, room(MOST_DATA), parts.coordinates, parts.history_size
+    q, v, a, own, turned, out = room(MOST), room(MOST), room(MOST), room(MOST), room(MOST), room(MOST_DATA)
+    for part in range(parts.count):
+        numbers, data = at(parts.numbers, part * parts.unknowns), _data(parts, part, p, recalled)
+        _gather(size, numbers, p, q)
+        _gather(size, numbers, system.v, v)
+        _gather(size, numbers, system.a, a)
+        _gather(parts.multipliers, at(numbers, size), p, own)
+        _turn(parts, q, turned)
+        parts.remember(q, v, a, own, turned, data, gravity, out)
+        places = at(parts.history, part * history)
+        for i in range(history):
+            p[places[i]] = out[i]
+
+
 @routine()
 def add_parts(parts: Parts, system: System) -> None:
     """Add the forces of the parts of a kind to the residual and, if needed, their tangents to the matrix."""
@@ -31,12 +69,7 @@ def add_parts(parts: Parts, system: System) -> None:
     q, v, a, own, turned, out = room(MOST), room(MOST), room(MOST), room(MOST), room(MOST), room(_ENTRIES)
     size, unknowns = parts.coordinates, parts.unknowns
     for part in range(parts.count):
-        numbers, data = at(parts.numbers, part * unknowns), at(parts.data, part * parts.data_size)
-        if parts.history_size > 0:
-            for i in range(parts.data_size):
-                recalled[i] = data[i]
-            _gather(parts.history_size, at(parts.history, part * parts.history_size), p, at(recalled, parts.data_size))
-            data = recalled
+        numbers, data = at(parts.numbers, part * unknowns), _data(parts, part, p, recalled)
         _gather(size, numbers, p, q)
         _gather(parts.multipliers, at(numbers, size), p, own)
         _clear(size, v)
@@ -45,9 +78,7 @@ def add_parts(parts: Parts, system: System) -> None:
             _gather(size, numbers, system.v, v)
         if system.moving != 0:
             _gather(size, numbers, system.a, a)
-        if parts.per_point == 3:
-            for point in range(size // 3):
-                turned[2 * point], turned[2 * point + 1] = cosine_sine(q[3 * point + 2])
+        _turn(parts, q, turned)
         parts.force(q, v, a, own, turned, data, gravity, out)
         for i in range(unknowns):
             residual[numbers[i]] += out[i]

@@ -117,6 +117,7 @@ class MotionSolver(Solver):
     first_step: int
     every: int
     saved: Reals  # (rows, 3, n)
+    remembers: int  # whether steps change the history variables of compiled parts
     varies: int  # whether loads vary from step to step
     body_size: int
     bodies: Reals  # (steps or 1, beams, 4)

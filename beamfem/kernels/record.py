@@ -199,6 +199,8 @@ class Parts(Record):
     add = calls("connection_passes:add_parts")  # or a function in Python
     force = calls(POINT_FORCE)
     tangent = calls(POINT_TANGENT)
+    remember = calls(POINT_FORCE)  # of parts with history
+    commit = calls("connection_passes:commit")  # likewise
 
 
 class System(Record):

@@ -131,6 +131,11 @@ def march(system: System, solver: MotionSolver) -> int:
                 state[i] = before[i]
             return step
         statistics.change = call.complete(solver) / system.weight_a
+        if solver.remembers != 0:
+            for kind in range(system.part_kinds):
+                parts = system.parts[kind]
+                if parts.history_size > 0:
+                    parts.commit(parts, system)
         call.count_rotations(solver.rotation_count, solver.rotation_table, before, state, solver.rotated_by)
         if (solver.first_step + step) % every == 0:
             row = (solver.first_step + step) // every

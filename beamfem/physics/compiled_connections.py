@@ -1,6 +1,7 @@
 """Compiled force and tangent of a part at points: derived from its definition."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from ctypes import CFUNCTYPE, c_double, c_void_p
 from functools import cache, partial
 from types import FunctionType
@@ -9,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beamfem.errors import InputError
+from beamfem.kernels.compiler.value_types import Signature
 from beamfem.kernels.compiling import Derived, Routine
 from beamfem.kernels.connection_passes import MOST, MOST_DATA
 from beamfem.kernels.record import POINT_FORCE, POINT_TANGENT
@@ -57,14 +59,10 @@ def passes_of(connection: Connection) -> Passes:
                 f"{found}"
             )
         return Passes(Foreign(connection.compiled[0], 0), Foreign(connection.compiled[1], 3))
-    package, signatures = connection in GENERATED, {"force": POINT_FORCE, "tangent": POINT_TANGENT}
-    name = connection.name if package else f"{connection.name} of {id(connection)}"
-    derived = [
-        Derived(f"{name}_{what}", signature, partial(connection_source, connection, what), on_disk=package)
-        for what, signature in signatures.items()
-    ]
+    signatures = {"force": POINT_FORCE, "tangent": POINT_TANGENT}
+    derived = [_derived(connection, what, signature) for what, signature in signatures.items()]
     try:
-        if not package:
+        if connection not in GENERATED:
             _ = [each.function for each in derived]
     except Exception as error:
         raise InputError(
@@ -72,6 +70,24 @@ def passes_of(connection: Connection) -> Passes:
             "+, -, *, /, whole powers, f.sqrt and f.positive, and f.cos and f.sin of rotations"
         ) from error
     return Passes(*derived)
+
+
+def _derived(connection: Connection, what: str, signature: Signature) -> Derived:
+    package = connection in GENERATED
+    name = connection.name if package else f"{connection.name} of {id(connection)}"
+    return Derived(f"{name}_{what}", signature, partial(connection_source, connection, what), on_disk=package)
+
+
+@cache
+def remembering(connection: Connection) -> Routine | None:
+    """Return the compiled `remember`, None if there is none or it cannot be derived, and is called in Python."""
+    if connection.remember is None:
+        return None
+    derived = _derived(connection, "remember", POINT_FORCE)
+    with suppress(Exception):
+        _ = derived.function
+        return derived
+    return None
 
 
 @cache

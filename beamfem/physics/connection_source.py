@@ -9,7 +9,8 @@ from beamfem.physics.terms import Graph, Number, Term, changes, source, sqrt, sy
 
 
 def connection_source(connection: Connection, what: str) -> str:
-    """Return the source of the force of a part at points, or of its tangent ck df/dq + cv df/dv + ca df/da by rows.
+    """Return the source of the force of a part at points, of its tangent ck df/dq + cv df/dv + ca df/da by rows, or of
+    what it remembers: of `what`.
 
     They have no fast-math, so that the force gives the same digits in Python.
     """
@@ -50,6 +51,11 @@ def connection_source(connection: Connection, what: str) -> str:
 
     f = Functions(sqrt, lambda x: cosine_sine(x)[0], lambda x: cosine_sine(x)[1], lambda x: where_positive(x, x))
     at, rates = ([tuple(x[size * i : size * (i + 1)]) for i in range(points)] for x in (q, v))
+    if what == "remember":
+        assert connection.remember is not None
+        known = connection.remember(at, rates, (*data, *own[:k]), f)
+        to = {f"out[{number}]": result for number, result in enumerate(known)}
+        return source(what, "q, v, a, own, turned, data, gravity, out", "the history variables", [], to)
     kinetic = connection.kinetic(at, rates, data, f) if connection.kinetic else 0.0
     potential = connection.potential(at, data, gravity, f) if connection.potential else 0.0
     lost = connection.dissipation(at, rates, data, f) if connection.dissipation else 0.0

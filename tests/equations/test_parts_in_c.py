@@ -8,8 +8,11 @@ from functools import cache
 
 import numpy as np
 import pytest
+from connectors import Anchor
 
 import beamfem as bf
+from beamfem.equations.history_variables import History
+from beamfem.equations.system import system_of
 from beamfem.errors import InputError
 from beamfem.kernels.compiling import routine
 from beamfem.testing import check_connector
@@ -133,3 +136,29 @@ def test_a_force_in_c_gives_the_results_of_its_formulas(how, analysis, tmp_path)
 def test_what_is_no_address_is_refused(compiled):
     with pytest.raises(InputError, match="compiled of clutch must be the addresses of two C functions"):
         swung("static", compiled)
+
+
+@pytest.mark.parametrize("python", [False, True], ids=["compiled", "with a part in Python"])
+def test_history_that_steps_change_in_compiled_code_is_that_of_python(python, monkeypatch):
+    """Friction in a clutch, and a stop on which the tip slides; both with energies that they have dissipated."""
+    found = []
+    for compiled in (True, False):
+        if not compiled:
+            monkeypatch.setattr(History, "compiled", False)
+        steel = bf.Material(2.1e11, 0.3, 7850.0)
+        shape = bf.Rectangle(0.02, 0.01)
+        one, two = (bf.Beam(bf.Line((x, 0), (x + 1, 0)), 3, bf.CRBF(2), shape, steel) for x in (0, 1))
+        own = bf.Connection("clutch", 2, 3, NAMES, memory=("slip",), force=forces, remember=slipped)
+        parts = [
+            Clutch((one.end, two.start), (4e3, 2.0, 20.0), own),
+            bf.Stop(two.end, (0.0, 0.0), (0.0, 1.0), stiffness=300.0, friction=1e-3),
+            *([Anchor(one.end, (3.0, 2.0, 1.0))] if python else []),
+        ]
+        hinge, gravity = bf.Hinge(one.end, two.start), bf.Gravity((0.0, -9.81))
+        model = bf.Model([one, two], [bf.Clamp(one.start)], [gravity], [hinge], parts)
+        found.append(bf.simulate(model, 0.4, 1e-3))
+    one, other = found
+    numbers = system_of(one.model, static=False).history.numbers
+    assert (np.abs(one.p[-1, numbers]) > 1e-9).all()
+    np.testing.assert_allclose(one.p, other.p, rtol=1e-9, atol=1e-12 * np.abs(other.p).max())
+    np.testing.assert_allclose(one.energy().dissipated, other.energy().dissipated, rtol=1e-9, atol=1e-12)

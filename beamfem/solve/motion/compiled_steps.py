@@ -22,6 +22,7 @@ class StepsInCalls:
         self._system, self._space, self._statistics, self._step = system, space, statistics, step
         self._deferred: Deferred | None = None
         self._error: BaseException | None = None
+        space.solver.remembers = 0
 
     @property
     def why(self) -> str:
@@ -66,7 +67,7 @@ class StepsInCalls:
         prescribed (steps, 3, nh): prescribed coordinates and their rates at the times (steps,) [s].
         """
         history = self._system.history
-        if not len(history.numbers):
+        if not len(history.numbers) or self._space.solver.remembers:
             return self._advance(state, prescribed, times, saving)
         for number, time in enumerate(times.tolist()):
             step, here = slice(number, number + 1), saving.after(number)
@@ -111,6 +112,7 @@ class CompiledSteps(StepsInCalls):
             rule=Rule(time_step=h, alpha_m=alpha_m, alpha_f=alpha_f, gamma=gamma, beta=beta),
             limits=self._limits,
             statistics=statistics,
+            remembers=system.history.compiled,
         )
         space.solver.differences[:] = 0.0
         space.assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))), self._step)

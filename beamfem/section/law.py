@@ -134,14 +134,14 @@ class ConstitutiveLaw:
 
     def linearised(self, strain: np.ndarray, history: np.ndarray, dt: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
         """Return section forces (n, 3) at real strains (n, 3), and the consistent tangent (n, 3, 3)."""
-        count = len(strain)
-        moved = np.tile(strain.astype(complex), (3, 1))
+        count, moved = len(strain), np.empty((3, *strain.shape), dtype=complex)
+        moved[:] = strain
         for column in range(3):
-            moved[column * count : (column + 1) * count, column] += 1j * COMPLEX_STEP
-        past = np.tile(history, (3, 1)) if self.remembers else history
-        forces = self.resultants(moved, past, dt).reshape(3, count, 3)
-        tangent = np.moveaxis(forces.imag / COMPLEX_STEP, 0, -1)
-        return forces[0].real, 0.5 * (tangent + np.swapaxes(tangent, 1, 2))
+            moved[column, :, column] += 1j * COMPLEX_STEP
+        past = np.concatenate([history] * 3) if self.remembers else history
+        forces = self.resultants(moved.reshape(-1, 3), past, dt).reshape(3, count, 3)
+        tangent = forces.imag.transpose(1, 2, 0) / COMPLEX_STEP
+        return forces[0].real, 0.5 * (tangent + tangent.transpose(0, 2, 1))
 
     def linearised_in_c(self, strain: np.ndarray, history: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
         """Return what the C function of the law gives, as `linearised` does."""

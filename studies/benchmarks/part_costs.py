@@ -25,7 +25,7 @@ from tests.trials.test_rough_stop import OwnStop
 
 OUT = Path("out/bench")
 HEADER = ("part", "places", "statics, us", "with it", "each place", "motion, us", "with it", "each place")
-ITERATIONS, STEPS = (2, 4), (200, 400)  # the difference of two solves leaves out what they do once
+ITERATIONS, STEPS = (2, 4), (200, 1200)  # the difference of two solves leaves out what they do once
 STIFF, STEP = 2.0, 1e-3
 
 Parts = Callable[[bf.Beam, bf.Beam], Sequence[object]]

@@ -67,17 +67,7 @@ class LawPass:
         return self._errors.take()
 
     def _fill(
-        self,
-        group: int,
-        system: int,
-        first: int,
-        number: int,
-        count: int,
-        stiff: int,
-        w: int,
-        c: int,
-        eps0: int,
-        x: int,
+        self, group: int, system: int, first: int, point: int, count: int, stiff: int, w: int, c: int, eps0: int, x: int
     ) -> None:
         """See `kernels.linear_law`."""
         try:
@@ -92,10 +82,10 @@ class LawPass:
                     own[RESULTANT + THICKNESS] = thickness.resultants(own[STRAIN + THICKNESS] - natural[THICKNESS])
                     if stiff:
                         own[STIFFNESS + _ENTRIES - 1] = thickness.stiffness
-                if number < self._points:
+                if point < self._points:
                     past = _NOTHING
                     if self._law.remembers:
-                        past = _past(group, system, slice(first, first + count), number)
+                        past = _past(group, system, slice(first, first + count), point)
                     self._fill_rows(own, weights, natural[:3], past, stiff != 0)
             except BaseException:
                 own[RESULTANT : RESULTANT + _MEASURES] = np.nan

@@ -3,7 +3,7 @@
 import numpy as np
 
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.nodes import cosine_sine
+from beamfem.kernels.neighbouring_nodes import normal
 from beamfem.kernels.pointers import at, reals, wholes
 
 NUMBERS, FACTORS, ELEMENT, WEIGHTS = 4, 9, 3, 5  # of a pair, and of an element
@@ -39,14 +39,8 @@ def coarseness(table, q):
             if n[1] < 0 and n[3] < 0:
                 angle = q[n[2]] - q[n[0]]
             else:
-                if n[1] < 0:
-                    x1, y1 = cosine_sine(q[n[0]])
-                else:
-                    x1, y1 = q[n[0]] * f[0] - q[n[1]] * f[1], q[n[0]] * f[1] + q[n[1]] * f[0]
-                if n[3] < 0:
-                    x2, y2 = cosine_sine(q[n[2]])
-                else:
-                    x2, y2 = q[n[2]] * f[2] - q[n[3]] * f[3], q[n[2]] * f[3] + q[n[3]] * f[2]
+                x1, y1 = normal(q, n, f)
+                x2, y2 = normal(q, at(n, 2), at(f, 2))
                 along, across = x1 * x2 + y1 * y2, x1 * y2 - y1 * x2
                 # the arctangent to 0.005
                 t = across / (along + (along * along + across * across) ** 0.5 + TINY)

@@ -1,11 +1,25 @@
 """Stretches and angles between neighbouring nodes of elements, compared with bounds."""
 
-from beamfem.kernels.compiling import routine
+from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.nodes import cosine_sine
 from beamfem.kernels.pointers import at, reals, wholes
 
 LOCKED, STRAINED = 1, 2
 NUMBERS, FACTORS = 8, 10  # of a pair
+
+
+@inlined
+def normal(q, numbers, turn):
+    """Return the unit normal of a section: of an angle, or turned from r_y.
+
+    numbers: of the angle and -1, or of x and y of r_y; turn: the inverse of r_y in the reference as a complex number.
+    """
+    i, j = numbers[0], numbers[1]
+    if j < 0:
+        x, y = cosine_sine(q[i])
+    else:
+        x, y = q[i] * turn[0] - q[j] * turn[1], q[i] * turn[1] + q[j] * turn[0]
+    return x, y
 
 
 @routine("nrii", "i")
@@ -28,12 +42,7 @@ def exceeds(table, p, rows, times):
             dx, dy = q[own[2]] - q[own[0]], q[own[3]] - q[own[1]]
             along, across = dx * f[0] - dy * f[1], dx * f[1] + dy * f[0]
             for end in range(2):
-                i, j = own[4 + 2 * end], own[5 + 2 * end]
-                if j < 0:
-                    x, y = cosine_sine(q[i])
-                else:
-                    c, s = f[2 + 2 * end], f[3 + 2 * end]
-                    x, y = q[i] * c - q[j] * s, q[i] * s + q[j] * c
+                x, y = normal(q, at(own, 4 + 2 * end), at(f, 2 + 2 * end))
                 stretch, angle = abs(along * x + across * y - 1.0), abs(across * x - along * y)
                 if times * angle * f[6] + f[7] > 1.0:
                     locked = LOCKED

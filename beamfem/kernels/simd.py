@@ -5,22 +5,8 @@ from llvmlite import ir
 from beamfem.kernels.compiler import machine
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import operation
-from beamfem.kernels.compiler.value_types import LANES, NUMBER, PAIR, PAIRS, REALS, ROWS, WHOLE, WIDTH, Value
-
-__all__ = [
-    "COLUMNS",
-    "WIDTH",
-    "WRITES_PARTS",
-    "add_columns",
-    "as_rows",
-    "gathered",
-    "larger",
-    "largest",
-    "merged",
-    "power_of_two",
-    "where_negative",
-    "zeros",
-]
+from beamfem.kernels.compiler.value_types import LANES, NUMBER, PAIR, PAIRS, REALS, ROWS, WHOLE, Value
+from beamfem.kernels.compiler.value_types import WIDTH as WIDTH  # for kernels
 
 COLUMNS = 4  # most rows that `add_columns` takes
 _NAME, _FEATURES = machine.processor()

@@ -18,8 +18,7 @@ from beamfem.model.supports import DIRECTIONS, LineSupport, PointSupport
 from beamfem.parts.at_points import PartAlongBeam
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.full_turns import StationsOfRows
-from beamfem.results.joint_forces import is_determined, joint_force
-from beamfem.results.reactions import reaction_of
+from beamfem.results.reactions import is_determined, joint_force, reaction_of
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
 from beamfem.validation import require_known

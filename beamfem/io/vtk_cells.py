@@ -16,17 +16,17 @@ from beamfem.results import postprocess
 from beamfem.results.axis_fields import QUANTITIES
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import LikeBeams, equal_beams
-from beamfem.results.full_turns import rotation
-from beamfem.results.nodal import rate_at
-from beamfem.results.section_forces import at_points
-from beamfem.results.solution import Solution
-from beamfem.results.stresses import (
+from beamfem.results.beam_stress import (
     in_the_plane,
     second_piola_kirchhoff,
     stress_in_layer,
     von_mises,
     warn_of_unknown_stress,
 )
+from beamfem.results.full_turns import rotation
+from beamfem.results.nodal import rate_at
+from beamfem.results.section_forces import at_points
+from beamfem.results.solution import Solution
 from beamfem.section import Layered
 from beamfem.validation import flag, one_of, require_known, shown
 from beamfem.value_keys import by_value

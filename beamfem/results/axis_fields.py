@@ -10,12 +10,11 @@ from beamfem.errors import ConvergenceError
 from beamfem.model.beam import Beam
 from beamfem.results import postprocess
 from beamfem.results.axis_points import AxisPoints
-from beamfem.results.beam_stress import stress_at, stress_over_height
+from beamfem.results.beam_stress import stress_at, stress_in_layer, stress_over_height
 from beamfem.results.full_turns import rotation
 from beamfem.results.postprocess import Components, Fields
 from beamfem.results.section_forces import at_points
 from beamfem.results.solution import Solution
-from beamfem.results.stresses import stress_in_layer
 from beamfem.validation import require_known, shown
 
 

@@ -8,8 +8,7 @@ from typing import TypeVar
 import numpy as np
 
 from beamfem.cached_properties import cached_property
-from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.mesh.joined_mesh import join
+from beamfem.mesh.beam_mesh import BeamMesh, join
 from beamfem.model.model import Model
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.solution import Solution

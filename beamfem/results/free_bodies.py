@@ -1,24 +1,245 @@
-"""Elements as free bodies in rows of a solution: the section forces at their two ends and at cuts between them.
+"""Elements as free bodies in rows of a solution: what acts on them, the section forces at their ends and at cuts.
 
 The nodal forces of an element, internal and inertia forces less its loads, are those that its neighbours exert on it.
 Its interpolation contains rigid-body motions, so these forces balance its loads exactly on any mesh.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from beamfem.element.fields import cross, dot
+from beamfem.equations.applied_loads import shape_tables
 from beamfem.equations.blocks import classes_of
+from beamfem.equations.frame_inertia import seen_from_rest
 from beamfem.equations.stress_resultants import elastic_forces
+from beamfem.equations.system import System
 from beamfem.kernels.block import Block
 from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.mesh.reference import interpolate
+from beamfem.mesh.reference import inertia_points, interpolate, length_points
+from beamfem.physics.compiled_connections import in_python
+from beamfem.physics.stations import STATIONS
+from beamfem.quadrature import gauss
 from beamfem.results.axis_points import AxisPoints
-from beamfem.results.element_loads import Acting, Rows, acting_on, at_more_points, fractions_before
 from beamfem.results.postprocess import direction
+from beamfem.results.solution import Solution
+from beamfem.results.solution_system import loading
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Rows of a solution and the forces that act in them.
+
+    p, v, a (steps, n): seen from rest, see `equations.frame_inertia`; body (steps, beams, 4): see `LoadsAt`;
+    values: for each block (steps, nl, 3), see `Actions`; imposing (steps, k): factors of the loads that impose strains.
+    """
+
+    system: System
+    p: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    body: np.ndarray
+    values: tuple[np.ndarray, ...]
+    imposing: np.ndarray
+
+
+def rows_of(solution: Solution, rows: slice | np.ndarray) -> Rows:
+    """Return some rows of a solution with the forces that act in them, kept until other rows are asked for.
+
+    The beams of a model ask for the same rows one after another.
+    """
+    key = rows if isinstance(rows, slice) else np.asarray(rows).tobytes()
+    latest = solution.computed(_latest)
+    kept = latest.get("rows")
+    if kept is None or kept[0] != key:
+        kept = latest["rows"] = key, _rows_of(solution, rows)
+    return kept[1]
+
+
+def _latest(solution: Solution) -> dict[str, tuple[slice | bytes, Rows]]:
+    """Return the latest rows of a solution, none at first."""
+    return {}
+
+
+def _rows_of(solution: Solution, rows: slice | np.ndarray) -> Rows:
+    system, at = loading(solution)
+    times = at[rows].tolist()
+    p, rates, loads = solution.p[rows], (solution.v[rows], solution.a[rows]), system.loads.of_rows(times)
+    return Rows(system, p, *seen_from_rest(system, p, *rates, at[rows]), loads.body, loads.points, loads.imposing)
+
+
+@dataclass(frozen=True, eq=False)
+class Acting:
+    """Forces at points of elements; virtual work f . delta r + h . delta g, where g is a vector that turns with them.
+
+    element (m,): index among the elements cut free; xi (m,); rule (m,): number of Gauss points over which the
+    distributed force is lumped; position, direction (m, nv): r = sum position_i e_i, likewise g;
+    force f (steps, m, 2) [N], couple h (steps, m, 2) [N m over the unit of g].
+    """
+
+    element: np.ndarray
+    xi: np.ndarray
+    rule: np.ndarray
+    position: np.ndarray
+    direction: np.ndarray
+    force: np.ndarray
+    couple: np.ndarray
+
+    def moments(self, e: np.ndarray, origin: np.ndarray) -> np.ndarray:
+        """Return the moments (steps, m) [N m] about an origin (steps, elements, 2) of each element; e: `vectors`."""
+        arm = _at(self.position, e, self.element) - origin[:, self.element]
+        return cross(arm, self.force) + cross(_at(self.direction, e, self.element), self.couple)
+
+    def nodal(self, elements: int) -> np.ndarray:
+        """Return the forces (steps, elements, nv, 2) on the nodal vectors of each element."""
+        result = np.zeros((elements, len(self.force), self.position.shape[1], 2))
+        parts = np.einsum("smc,mi->msic", self.force, self.position)
+        parts += np.einsum("smc,mi->msic", self.couple, self.direction)
+        np.add.at(result, self.element, parts)
+        return np.moveaxis(result, 0, 1)
+
+
+def acting_on(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, acceleration: np.ndarray) -> Acting:
+    """Return the forces on elements (ne,) of a beam with nodal vectors e and accelerations e'' (steps, ne, nv, 2).
+
+    Point loads are excluded: they act at nodes, that is between elements.
+    """
+    parts = [
+        _of_mass(rows, mesh, elements, e, acceleration),
+        _along(rows, mesh, elements, e),
+        _distributed(rows, mesh, elements, e),
+    ]
+    joined = {
+        name: np.concatenate([getattr(part, name) for part in parts], axis=1 if name in ("force", "couple") else 0)
+        for name in Acting.__dataclass_fields__
+    }
+    return Acting(**joined)
+
+
+def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acting:
+    """Return the same forces, distributed ones at as many Gauss points of elements (ne,) as their moments need.
+
+    The moment of an interpolated density is a polynomial whose degree is higher by that of the field.
+    """
+    if not len(acting.rule):
+        return acting
+    field = mesh.beam.element.field
+    extra = max(field.degree, field.director_degree)
+    parts = []
+    for rule in np.unique(acting.rule).tolist():
+        mask = acting.rule == rule
+        index = acting.element[mask], nearest(gauss(rule)[0], acting.xi[mask])
+        finer = to_more_points(rule, rule + extra)
+        distributed = []
+        for values in (acting.force[:, mask], acting.couple[:, mask]):
+            summed = np.zeros((len(elements), rule, len(values), 2))
+            np.add.at(summed, index, np.moveaxis(values, 1, 0))
+            distributed.append(np.einsum("jn,ensc->sejc", finer, summed).reshape(len(values), -1, 2))
+        element, xi = np.repeat(np.arange(len(elements)), len(finer)), np.tile(gauss(len(finer))[0], len(elements))
+        # distributed moments come from inertia alone, which turns with d
+        tables = shape_tables(mesh, elements[element], xi)
+        parts.append((element, xi, np.full(len(xi), len(finer)), *tables, *distributed))
+    joined = zip(*parts, strict=True)
+    return Acting(*(np.concatenate(values, axis=1 if values[0].ndim == 3 else 0) for values in joined))
+
+
+def _of_mass(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, acceleration: np.ndarray) -> Acting:
+    """Return weight less mass times acceleration of the body r0 + y d."""
+    pull = rows.body[:, _beams(rows, mesh, elements), :2]
+    if not pull.any() and not acceleration.any():
+        return _nothing(e)
+    where, xi, inertia = inertia_points(mesh, elements)
+    element, tables = np.searchsorted(elements, where), shape_tables(mesh, where, xi)
+    mass, first, rotary = inertia.T[:, None, :, None]
+    free, turn = pull[:, element] - _at(tables[0], acceleration, element), _at(tables[1], acceleration, element)
+    rule = np.full(len(xi), len(xi) // len(elements))
+    return Acting(element, xi, rule, *tables, mass * free - first * turn, first * free - rotary * turn)
+
+
+def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
+    """Return forces per length that keep their direction."""
+    load = rows.body[:, _beams(rows, mesh, elements), 2:]
+    if not load.any():
+        return _nothing(e)
+    where, xi, weight = length_points(mesh, elements)
+    element, rule = np.searchsorted(elements, where), np.full(len(xi), len(xi) // len(elements))
+    force = load[:, element] * weight[:, None]
+    return Acting(element, xi, rule, *shape_tables(mesh, where, xi), force, np.zeros_like(force))
+
+
+def _distributed(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
+    """Return follower and varying loads along beams, and foundation springs, as evaluated by the kernels."""
+    actions = rows.system.loads.actions[mesh.block]
+    stations, own = actions.stations, mesh.in_block(elements)
+    order = np.argsort(own)
+    chosen = actions.distributed_on(own[order])
+    if not len(chosen):
+        return _nothing(e)
+    element = order[np.searchsorted(own, stations.element[chosen], sorter=order)]
+    position, direction = stations.position[chosen], stations.direction[chosen]
+    values, forces = rows.values[mesh.block][:, chosen], np.empty((len(e), len(chosen), 4))
+    q = np.concatenate([_at(position, e, element), _at(direction, e, element)], axis=2)
+    for kind in np.unique(stations.kind[chosen]).tolist():
+        some = np.flatnonzero(stations.kind[chosen] == kind)
+        data = [*np.moveaxis(values[:, some], -1, 0), *stations.constants[chosen[some]].T]
+        out, at = np.empty((4, len(e), len(some))), np.moveaxis(q[:, some], -1, 0)
+        in_python(STATIONS[kind])(at, (), (), (), (), data, (), out)
+        forces[:, some] = -np.moveaxis(out, 0, -1)
+    return Acting(
+        element, actions.xi[chosen], actions.rule[chosen], position, direction, forces[..., :2], forces[..., 2:]
+    )
+
+
+def _nothing(e: np.ndarray) -> Acting:
+    none, table = np.zeros(0, dtype=np.int64), np.zeros((0, e.shape[2]))
+    return Acting(none, np.zeros(0), none, table, table, *np.zeros((2, len(e), 0, 2)))
+
+
+def _beams(rows: Rows, mesh: BeamMesh, elements: np.ndarray) -> np.ndarray:
+    """Return the number in the model of the beam of each element (ne,)."""
+    return np.asarray(rows.system.blocks[mesh.block].beam[mesh.in_block(elements)])
+
+
+def _at(table: np.ndarray, vectors: np.ndarray, element: np.ndarray) -> np.ndarray:
+    """Return the interpolation (steps, m, 2) of nodal vectors (steps, ne, nv, 2) at points."""
+    return np.einsum("mi,smic->smc", table, vectors[:, element])
+
+
+def fractions_before(points: int, at: np.ndarray, cut: np.ndarray) -> np.ndarray:
+    """Return the fraction (m,) before a cut (m,) of the amount lumped at a Gauss point `at` (m,), density interpolated.
+
+    It is the integral from 0 to the cut of the Lagrange polynomial of that point, over its integral from 0 to 1.
+    """
+    xi, integral = _integrals(points)
+    return np.einsum("mk,mk->m", integral[nearest(xi, at)], np.polynomial.legendre.legvander(2.0 * cut - 1.0, points))
+
+
+def to_more_points(points: int, more: int) -> np.ndarray:
+    """Return the matrix (more, points) that transfers lumped values from `points` to `more` Gauss points.
+
+    It keeps the polynomial density through the fewer points.
+    """
+    (xi, _), (fine, weights) = gauss(points), gauss(more)
+    old_values, new_values = (np.polynomial.legendre.legvander(2.0 * at - 1.0, points - 1) for at in (xi, fine))
+    return np.asarray(weights[:, None] * ((new_values * (2 * np.arange(points) + 1)) @ old_values.T))
+
+
+def nearest(xi: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Return the indices (m,) of the points xi (n,) nearest to `at` (m,)."""
+    return np.asarray(np.abs(xi - at[:, None]).argmin(axis=1))
+
+
+@lru_cache(maxsize=32)
+def _integrals(points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return Gauss points on [0, 1] and the integrals of their Lagrange polynomials as Legendre series."""
+    xi, weights = gauss(points)
+    degree = np.arange(points)
+    legendre = np.polynomial.legendre.legvander(2.0 * xi - 1.0, points - 1)
+    coefficients = legendre * weights[:, None] * (2 * degree + 1)
+    return xi, np.polynomial.legendre.legint(coefficients, lbnd=-1.0, axis=1) / (2.0 * weights[:, None])
 
 
 @dataclass(frozen=True, eq=False)

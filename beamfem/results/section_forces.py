@@ -13,12 +13,10 @@ from beamfem.model.beam import Beam
 from beamfem.reprs import brief
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import of_beam
-from beamfem.results.element_loads import Rows, rows_of
 from beamfem.results.extremes import Force, Measure, Part, Peak, extreme
-from beamfem.results.free_bodies import Parted, cut_free, parted
-from beamfem.results.roundoff_corrections import exactly
+from beamfem.results.free_bodies import Parted, Rows, cut_free, parted, rows_of
 from beamfem.results.solution import Solution
-from beamfem.results.solution_system import loading
+from beamfem.results.solution_system import exactly, loading
 from beamfem.units import Units, units_of
 from beamfem.validation import require_known, shown
 

@@ -385,7 +385,7 @@ class Solution:
         -9997
         """
 
-        from beamfem.results.joint_forces import joint_force
+        from beamfem.results.reactions import joint_force
 
         return joint_force(self, joint)
 
@@ -426,7 +426,7 @@ class Solution:
 
         In a stiff part of a model they may change the forces noticeably; zero where they do not, and for a motion.
         """
-        from beamfem.results.roundoff_corrections import remainders
+        from beamfem.results.solution_system import remainders
 
         return remainders(self)
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from beamfem.atomic_write import whole
 from beamfem.errors import InputError
-from beamfem.mesh.joined_mesh import join
+from beamfem.mesh.beam_mesh import join
 from beamfem.model.beam import Beam
 from beamfem.model.load_base import factor
 from beamfem.results.axis_fields import QUANTITIES, section_forces

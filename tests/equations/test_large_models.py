@@ -15,7 +15,7 @@ from beamfem.equations.system import System
 from beamfem.mesh.beam_grid import Grid, distances, make_grid, make_grids, nearest
 from beamfem.model.beam import reference_positions
 from beamfem.results import batched_beams, postprocess
-from beamfem.results import roundoff_corrections as last_digits
+from beamfem.results import solution_system as last_digits
 from beamfem.solve.start.mechanisms import Conditions, mechanisms
 
 

@@ -9,7 +9,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 import beamfem as bf
 from beamfem.element.fields import Axis
 from beamfem.mesh.reference import length_points
-from beamfem.results.stresses import second_piola_kirchhoff
+from beamfem.results.beam_stress import second_piola_kirchhoff
 from tests.connectors import SpringDamper
 from tests.own_parts import Bracket, Guide, HalfWave, Traction
 

@@ -19,7 +19,7 @@ from beamfem.equations.stress_resultants import elastic_forces
 from beamfem.equations.system import System
 from beamfem.kernels.block import Block
 from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.mesh.reference import inertia_points, interpolate, length_points
+from beamfem.mesh.reference import inertia_at, interpolate, length_points
 from beamfem.physics.compiled_connections import in_python
 from beamfem.physics.stations import STATIONS
 from beamfem.quadrature import gauss
@@ -55,20 +55,20 @@ def rows_of(solution: Solution, rows: slice | np.ndarray) -> Rows:
     latest = solution.computed(_latest)
     kept = latest.get("rows")
     if kept is None or kept[0] != key:
-        kept = latest["rows"] = key, _rows_of(solution, rows)
+        system, at = loading(solution)
+        p, rates, loads = (
+            solution.p[rows],
+            (solution.v[rows], solution.a[rows]),
+            system.loads.of_rows(at[rows].tolist()),
+        )
+        moving = seen_from_rest(system, p, *rates, at[rows])
+        kept = latest["rows"] = key, Rows(system, p, *moving, loads.body, loads.points, loads.imposing)
     return kept[1]
 
 
 def _latest(solution: Solution) -> dict[str, tuple[slice | bytes, Rows]]:
     """Return the latest rows of a solution, none at first."""
     return {}
-
-
-def _rows_of(solution: Solution, rows: slice | np.ndarray) -> Rows:
-    system, at = loading(solution)
-    times = at[rows].tolist()
-    p, rates, loads = solution.p[rows], (solution.v[rows], solution.a[rows]), system.loads.of_rows(times)
-    return Rows(system, p, *seen_from_rest(system, p, *rates, at[rows]), loads.body, loads.points, loads.imposing)
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,11 +107,7 @@ def acting_on(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, a
 
     Point loads are excluded: they act at nodes, that is between elements.
     """
-    parts = [
-        _of_mass(rows, mesh, elements, e, acceleration),
-        _along(rows, mesh, elements, e),
-        _distributed(rows, mesh, elements, e),
-    ]
+    parts = [_of_mass(rows, mesh, elements, e, acceleration), _distributed(rows, mesh, elements, e)]
     joined = {
         name: np.concatenate([getattr(part, name) for part in parts], axis=1 if name in ("force", "couple") else 0)
         for name in Acting.__dataclass_fields__
@@ -147,27 +143,17 @@ def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acti
 
 
 def _of_mass(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, acceleration: np.ndarray) -> Acting:
-    """Return weight less mass times acceleration of the body r0 + y d."""
-    pull = rows.body[:, _beams(rows, mesh, elements), :2]
-    if not pull.any() and not acceleration.any():
-        return _nothing(e)
-    where, xi, inertia = inertia_points(mesh, elements)
-    element, tables = np.searchsorted(elements, where), shape_tables(mesh, where, xi)
-    mass, first, rotary = inertia.T[:, None, :, None]
-    free, turn = pull[:, element] - _at(tables[0], acceleration, element), _at(tables[1], acceleration, element)
-    rule = np.full(len(xi), len(xi) // len(elements))
-    return Acting(element, xi, rule, *tables, mass * free - first * turn, first * free - rotary * turn)
-
-
-def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
-    """Return forces per length that keep their direction."""
-    load = rows.body[:, _beams(rows, mesh, elements), 2:]
-    if not load.any():
+    """Return weight less mass times acceleration of the body r0 + y d, and loads per length of fixed direction."""
+    body = rows.body[:, rows.system.blocks[mesh.block].beam[mesh.in_block(elements)]]
+    if not body.any() and not acceleration.any():
         return _nothing(e)
     where, xi, weight = length_points(mesh, elements)
-    element, rule = np.searchsorted(elements, where), np.full(len(xi), len(xi) // len(elements))
-    force = load[:, element] * weight[:, None]
-    return Acting(element, xi, rule, *shape_tables(mesh, where, xi), force, np.zeros_like(force))
+    element, tables = np.searchsorted(elements, where), shape_tables(mesh, where, xi)
+    mass, first, rotary = inertia_at(mesh, where, xi, weight).T[:, None, :, None]
+    pull, load = body[:, element, :2], body[:, element, 2:] * weight[:, None]
+    free, turn = pull - _at(tables[0], acceleration, element), _at(tables[1], acceleration, element)
+    rule = np.full(len(xi), len(xi) // len(elements))
+    return Acting(element, xi, rule, *tables, mass * free - first * turn + load, first * free - rotary * turn)
 
 
 def _distributed(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
@@ -196,11 +182,6 @@ def _distributed(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray
 def _nothing(e: np.ndarray) -> Acting:
     none, table = np.zeros(0, dtype=np.int64), np.zeros((0, e.shape[2]))
     return Acting(none, np.zeros(0), none, table, table, *np.zeros((2, len(e), 0, 2)))
-
-
-def _beams(rows: Rows, mesh: BeamMesh, elements: np.ndarray) -> np.ndarray:
-    """Return the number in the model of the beam of each element (ne,)."""
-    return np.asarray(rows.system.blocks[mesh.block].beam[mesh.in_block(elements)])
 
 
 def _at(table: np.ndarray, vectors: np.ndarray, element: np.ndarray) -> np.ndarray:

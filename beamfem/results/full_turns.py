@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.results import postprocess
 from beamfem.results.axis_points import AxisPoints
@@ -37,18 +36,12 @@ def continued_rotations(model: Model, p: np.ndarray) -> np.ndarray:
     return np.concatenate([np.empty((len(p), 0)), *parts], axis=1)
 
 
-def turned_of(solution: Solution, mesh: BeamMesh) -> np.ndarray | None:
-    """Return the start rotation (steps, beams) [rad] of each beam of a mesh; None if coordinates hold full turns."""
-    indices = [solution.model.numbered.numbers_uncounted.get(part) for part in mesh.parts]
-    counted = [index for index in indices if index is not None]
-    return start_rotations(solution)[:, counted] if counted else None
-
-
 def rotation(points: AxisPoints, solution: Solution, rows: slice | np.ndarray = slice(None)) -> np.ndarray:
     """Return the rotation of the section from the reference configuration (rows, points) [rad], full turns included."""
-    turned, p = turned_of(solution, points.mesh), solution.p[rows]
-    counted = None if turned is None else turned[rows]
-    return postprocess.section_rotation(points.mesh, p, points.now(p), points.element, points.xi, counted)
+    p, numbers = solution.p[rows], solution.model.numbered.numbers_uncounted
+    counted = [numbers[part] for part in points.mesh.parts if part in numbers]
+    turned = start_rotations(solution)[:, counted][rows] if counted else None
+    return postprocess.section_rotation(points.mesh, p, points.now(p), points.element, points.xi, turned)
 
 
 @dataclass(frozen=True, eq=False)

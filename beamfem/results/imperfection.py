@@ -18,6 +18,7 @@ from beamfem.model.check_replaceable import require_remade
 from beamfem.model.load_base import Load
 from beamfem.model.model import Model
 from beamfem.reprs import brief
+from beamfem.results.axis_points import AxisPoints
 from beamfem.results.nodal import rate_at
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import finite, number_below, of_package, shown, squared
@@ -81,9 +82,8 @@ def with_imperfection(model: Model, modes: Any, size: float, mode: int = 0) -> M
     beams = [crooked[id(beam)].beam for beam in model.beams]
     for beam, same in zip(getattr(model, "original", ()), model.beams, strict=False):
         crooked[id(beam)] = crooked[id(same)]
-    parts = (model.supports, model.joints, model.connectors, model.masses)
-    supports, joints, connectors, masses = ([_placed(item, crooked) for item in part] for part in parts)
-    loads = [_placed_load(load, crooked) for load in model.loads]
+    parts = (model.supports, model.loads, model.joints, model.connectors, model.masses)
+    supports, loads, joints, connectors, masses = ([_placed(item, crooked) for item in part] for part in parts)
     for connector in (*connectors, *masses):
         if any(id(point.beam) in crooked for point in connector.points):
             raise InputError(
@@ -113,15 +113,10 @@ def _shape(model: Model, modes: Any, mode: int) -> tuple[np.ndarray, np.ndarray]
     return p, shape.real
 
 
-def _pieces(mesh: BeamMesh) -> int:
+def _points(mesh: BeamMesh) -> AxisPoints:
+    """Return the ends of the cubic segments."""
     degree = mesh.beam.element.field.degree
-    return 1 if degree == 1 else max(_PIECES, 2 * degree)
-
-
-def _places(mesh: BeamMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Return element and xi (ne * (pieces + 1),) of the ends of the cubic segments."""
-    ends = np.linspace(0.0, 1.0, _pieces(mesh) + 1)
-    return np.repeat(np.arange(mesh.elements), len(ends)), np.tile(ends, mesh.elements)
+    return AxisPoints.spaced(mesh, 1 if degree == 1 else max(_PIECES, 2 * degree))
 
 
 def _rates(mesh: BeamMesh, p: np.ndarray, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -129,20 +124,18 @@ def _rates(mesh: BeamMesh, p: np.ndarray, shape: np.ndarray) -> tuple[np.ndarray
 
     A linear field has no unique slope at its nodes: the axis is taken to turn with the section there.
     """
-    element, xi = _places(mesh)
-    rates = rate_at(mesh, p[None], shape[None], element, xi)
+    points = _points(mesh)
+    rates = rate_at(mesh, p[None], shape[None], points.element, points.xi)
     slope = -across(rates.d[0]) if mesh.beam.element.field.degree == 1 else rates.r_s[0]
     return rates.r[0], slope
 
 
 def _crooked(mesh: BeamMesh, moved: np.ndarray, slope: np.ndarray) -> _Crooked:
-    beam, curve = mesh.beam, mesh.beam.curve
-    element, xi = _places(mesh)
-    inside = mesh.arc_length_inside(element, xi, curve.corners)
-    at = mesh.arc_length(element, xi)
+    beam, curve, points = mesh.beam, mesh.beam.curve, _points(mesh)
+    inside, at = mesh.arc_length_inside(points.element, points.xi, curve.corners), points.arc_length
     position, rate = curve.position(at.copy()) + moved, curve.tangent(inside.copy()) + slope
     # element ends are one point with the mean of the slopes on both sides, except at corners
-    first = np.arange(_pieces(mesh) + 1, len(at), _pieces(mesh) + 1)
+    first = np.arange(points.pieces + 1, len(at), points.pieces + 1)
     corner = np.isclose(at[first][:, None], np.array(curve.corners), rtol=0.0, atol=1e-9 * curve.length).any(axis=1)
     smooth = first[~corner]
     rate[smooth - 1] = rate[smooth] = 0.5 * (rate[smooth - 1] + rate[smooth])
@@ -167,7 +160,10 @@ def _along(function: Any, old: np.ndarray, new: np.ndarray) -> Moved:
 
 
 def _placed(item: Any, crooked: dict[int, _Crooked]) -> Any:
-    """Return a support, joint or connector, or what a part refers to, at the same points of the imperfect beams."""
+    """Return a part, or what it refers to, at the same points of the imperfect beams; loads with their functions.
+
+    Raises InputError for a part that cannot be made anew from its fields.
+    """
     if isinstance(item, Beam):
         return crooked[id(item)].beam
     if isinstance(item, Point):
@@ -178,22 +174,11 @@ def _placed(item: Any, crooked: dict[int, _Crooked]) -> Any:
         return type(item)(*parts) if hasattr(item, "_fields") else type(item)(parts)
     if not is_dataclass(item) or isinstance(item, type):
         return item
-    return replace(item, **_placed_fields(item, crooked))
-
-
-def _placed_load(load: Load, crooked: dict[int, _Crooked]) -> Any:
-    """Return a load at the same points, with its functions of the arc length."""
-    item: Any = load
-    changes = _placed_fields(item, crooked)
-    for name, function in functions_along(load).items():
-        moved = crooked[id(item.beam)]
-        changes[name] = _along(function, moved.old, moved.new)
-    return replace(item, **changes)
-
-
-def _placed_fields(item: Any, crooked: dict[int, _Crooked]) -> dict[str, Any]:
-    """Return the fields of a part at the same points. Raises InputError if it cannot be made anew from them."""
-    kind: Any = type(item)
-    if not of_package(kind):
+    if not of_package(type(item)):
         require_remade(f"a {type(item).__name__} cannot be placed on imperfect beams", item)
-    return {field.name: _placed(getattr(item, field.name), crooked) for field in fields(item) if field.init}
+    changes = {field.name: _placed(getattr(item, field.name), crooked) for field in fields(item) if field.init}
+    if isinstance(item, Load):
+        for name, function in functions_along(item).items():
+            moved = crooked[id(item.place)]
+            changes[name] = _along(function, moved.old, moved.new)
+    return replace(item, **changes)

@@ -22,7 +22,7 @@ from beamfem.mesh.reference import (
 )
 from beamfem.model.along_beam import jumps_along
 from beamfem.model.load_base import factor
-from beamfem.results.nodal import axis, nodal_vectors
+from beamfem.results.axis_points import axis, nodal_vectors
 
 _STEP = 1e-40
 

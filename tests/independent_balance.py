@@ -9,7 +9,7 @@ from scipy.linalg import LinAlgError
 import beamfem as bf
 from beamfem.equations.equations import linearise
 from beamfem.equations.system import system_of
-from beamfem.results.nodal import axis, nodal_vectors
+from beamfem.results.axis_points import axis, nodal_vectors
 
 # of all that acts; solvers are content with 1e-9 of the largest force
 TOLERANCE = 2e-9

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import beamfem as bf
-from beamfem.results.nodal import axis_at
+from beamfem.results.axis_points import axis_at
 
 KINDS = {
     "ANCF": bf.ANCF(),

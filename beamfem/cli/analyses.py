@@ -11,9 +11,9 @@ from beamfem.cli.schema import Keyed, Kinds, Names, build, keys_of, reader, show
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
+from beamfem.results.axis_fields import AT_POINT, OF_BEAM, OF_MODEL, value_of
 from beamfem.results.path import Path as EquilibriumPath
 from beamfem.results.path import PathState
-from beamfem.results.quantities import AT_POINT, OF_BEAM, OF_MODEL, value_of
 from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import warned
 from beamfem.solve.modes.modes import Modes, solve_modes

@@ -23,8 +23,8 @@ from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 from beamfem.parts.rigid_body import RigidBody
+from beamfem.results.axis_fields import UNITS
 from beamfem.results.path import Path as EquilibriumPath
-from beamfem.results.quantities import UNITS
 from beamfem.results.solution_checks import findings
 from beamfem.results.status import counted
 

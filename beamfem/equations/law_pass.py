@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.element.thickness_law import THICKNESS, ThicknessLaw
 from beamfem.equations.callbacks import KeptErrors
 from beamfem.errors import InputError
 from beamfem.kernels.compiler.value_types import REALS
@@ -13,7 +12,7 @@ from beamfem.kernels.point import POINT_ROWS, RESULTANT, STIFFNESS, STRAIN
 from beamfem.kernels.record import ROW, Group, System
 from beamfem.kernels.records import memory_at
 from beamfem.kernels.user_law import MOST_HISTORY, user_resultants
-from beamfem.section.law import ConstitutiveLaw
+from beamfem.section.law import THICKNESS, ConstitutiveLaw, ThicknessLaw
 
 _MEASURES = 4  # stretch, shear, curvature and thickness stretch; a law has only the first three
 _PAIRS = np.array([(i, j) for i in range(_MEASURES) for j in range(i, _MEASURES)]).T

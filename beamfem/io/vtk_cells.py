@@ -14,7 +14,7 @@ from beamfem.model.beam import Beam, names
 from beamfem.model.model import Model
 from beamfem.results import postprocess
 from beamfem.results.axis_fields import QUANTITIES
-from beamfem.results.axis_points import AxisPoints
+from beamfem.results.axis_points import AxisPoints, rate_at
 from beamfem.results.batched_beams import LikeBeams, equal_beams
 from beamfem.results.beam_stress import (
     in_the_plane,
@@ -24,7 +24,6 @@ from beamfem.results.beam_stress import (
     warn_of_unknown_stress,
 )
 from beamfem.results.full_turns import rotation
-from beamfem.results.nodal import rate_at
 from beamfem.results.section_forces import at_points
 from beamfem.results.solution import Solution
 from beamfem.section import Layered

@@ -12,8 +12,8 @@ from beamfem.equations.system import System, system_of
 from beamfem.kernels.motion_record import MotionLimits
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.time_functions import kinks_of
+from beamfem.results.energies import Forces, exchange, forces_without_potential
 from beamfem.results.full_turns import start_rotations
-from beamfem.results.work_and_losses import Forces, exchange, forces_without_potential
 
 if TYPE_CHECKING:
     from beamfem.results.energies import Energy

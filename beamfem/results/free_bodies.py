@@ -56,11 +56,8 @@ def rows_of(solution: Solution, rows: slice | np.ndarray) -> Rows:
     kept = latest.get("rows")
     if kept is None or kept[0] != key:
         system, at = loading(solution)
-        p, rates, loads = (
-            solution.p[rows],
-            (solution.v[rows], solution.a[rows]),
-            system.loads.of_rows(at[rows].tolist()),
-        )
+        p, rates = solution.p[rows], (solution.v[rows], solution.a[rows])
+        loads = system.loads.of_rows(at[rows].tolist())
         moving = seen_from_rest(system, p, *rates, at[rows])
         kept = latest["rows"] = key, Rows(system, p, *moving, loads.body, loads.points, loads.imposing)
     return kept[1]

@@ -18,8 +18,7 @@ from beamfem.model.check_replaceable import require_remade
 from beamfem.model.load_base import Load
 from beamfem.model.model import Model
 from beamfem.reprs import brief
-from beamfem.results.axis_points import AxisPoints
-from beamfem.results.nodal import rate_at
+from beamfem.results.axis_points import AxisPoints, rate_at
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import finite, number_below, of_package, shown, squared
 

@@ -8,7 +8,6 @@ import numpy as np
 from beamfem.element import body_strain as body
 from beamfem.element import coordinates
 from beamfem.element.fields import Axis, cross, dot, section_frame
-from beamfem.element.thickness_law import THICKNESS, ThicknessLaw
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import (
     energy_points,
@@ -18,9 +17,8 @@ from beamfem.mesh.reference import (
     reference_axis,
 )
 from beamfem.reprs import brief
-from beamfem.results.axis_points import AxisPoints
-from beamfem.results.nodal import axis_at, has_angles, nodal_angles, nodal_vectors, rate_at
-from beamfem.section.law import ConstitutiveLaw
+from beamfem.results.axis_points import AxisPoints, axis_at, has_angles, nodal_angles, nodal_vectors, rate_at
+from beamfem.section.law import THICKNESS, ConstitutiveLaw, ThicknessLaw
 
 
 @dataclass(frozen=True)

@@ -21,10 +21,10 @@ from beamfem.model.beam import beam_in_words
 from beamfem.model.missing_joints import in_words, unjoined_ends
 from beamfem.model.model import Model
 from beamfem.results import locking
+from beamfem.results.axis_points import axis_at, nodal_vectors
 from beamfem.results.beam_stress import peak_stress
 from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.locking import heights, pairs, rows_looked_at
-from beamfem.results.nodal import axis_at, nodal_vectors
 from beamfem.results.postprocess import nodal_rotations
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import imposed_measures, loading

@@ -8,12 +8,11 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
-from beamfem.results.axis_fields import QUANTITIES, Quantity
+from beamfem.results.axis_fields import AT_POINT, QUANTITIES, UNITS, Quantity, value_of
 from beamfem.results.axis_fields import quantity as quantity_along
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.envelope import Envelope
 from beamfem.results.path import Path, PathState
-from beamfem.results.quantities import AT_POINT, UNITS, value_of
 from beamfem.results.solution import Solution
 from beamfem.solve.linear.linear_model import QUANTITIES as LINEAR
 from beamfem.validation import items, one_of, require_known, shown

@@ -13,7 +13,7 @@ from scipy.integrate import simpson
 
 import beamfem as bf
 from beamfem.results import postprocess
-from beamfem.results.nodal import axis_at
+from beamfem.results.axis_points import axis_at
 from beamfem.view.html_page import Entry, Part, Table
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 from studies.paper.terminal import show

@@ -10,7 +10,7 @@ from beamfem.equations.equations import linearise, residual
 from beamfem.equations.model_coordinates import coordinate_columns
 from beamfem.equations.system import System
 from beamfem.mesh.reference import curvature, energy_points, reference_axis
-from beamfem.results.nodal import axis, nodal_vectors, nodal_velocities
+from beamfem.results.axis_points import axis, nodal_vectors, nodal_velocities
 from beamfem.results.postprocess import strain_energy
 from beamfem.results.status import Statistics
 

@@ -11,7 +11,7 @@ from beamfem.equations.model_coordinates import coordinate_columns
 from beamfem.equations.system import System
 from beamfem.linalg.tangent import BandTangent, _solve_pivoted
 from beamfem.mesh.reference import stations
-from beamfem.results.nodal import axis, nodal_vectors
+from beamfem.results.axis_points import axis, nodal_vectors
 
 NONE_TURNED = (np.empty(0, dtype=np.int64), np.empty((0, 2)))
 

@@ -14,7 +14,7 @@ from beamfem.element.fields import Cubic
 from beamfem.equations.equations import linearise
 from beamfem.equations.system import System
 from beamfem.kernels import block
-from beamfem.results.nodal import axis, nodal_vectors
+from beamfem.results.axis_points import axis, nodal_vectors
 from beamfem.results.postprocess import strain_energy
 from beamfem.results.status import Statistics
 

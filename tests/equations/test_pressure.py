@@ -13,7 +13,7 @@ import beamfem as bf
 from beamfem.equations.equations import STATICS, linearise, residual
 from beamfem.equations.system import System
 from beamfem.forms import axis_basis, nodal_numbers, pressure_load
-from beamfem.results.nodal import nodal_vectors, nodal_velocities
+from beamfem.results.axis_points import nodal_vectors, nodal_velocities
 from beamfem.solve.newton.newton import NewtonResult, solve_equilibrium
 from beamfem.solve.statics.load_steps import skips_limit_points
 from beamfem.solve.statics.static_record import StaticRecord

@@ -7,7 +7,7 @@ import beamfem as bf
 from beamfem.equations.model_coordinates import coordinate_columns
 from beamfem.equations.system import System
 from beamfem.mesh.reference import reference_axis
-from beamfem.results.nodal import axis, nodal_vectors
+from beamfem.results.axis_points import axis, nodal_vectors
 from beamfem.results.postprocess import green_strain
 
 STIFF = bf.Section.from_stiffness(1e9, 1e9, 1.0, 1.0, 1.0)

@@ -15,7 +15,7 @@ from beamfem.equations.equations import STATICS, linearise
 from beamfem.equations.system import System
 from beamfem.linalg.lapack import LinAlgError, superlu
 from beamfem.mesh.reference import energy_points
-from beamfem.results.nodal import axis, nodal_vectors
+from beamfem.results.axis_points import axis, nodal_vectors
 
 SECTION = bf.Rectangle(0.05, 0.05)
 MATERIAL = bf.Material(1e7, 0.3, 1000.0)

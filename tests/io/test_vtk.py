@@ -19,7 +19,7 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 import beamfem as bf
 from beamfem.io import vtk
 from beamfem.io import vtk_cells as cells
-from beamfem.results.nodal import axis_at
+from beamfem.results.axis_points import axis_at
 
 HEIGHT = 0.02
 # Degree (3, 2): xi and side of the twelve points of a cell, from vtkHigherOrderQuadrilateral.PointIndexFromIJK.

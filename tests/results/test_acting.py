@@ -6,8 +6,8 @@ import pytest
 import beamfem as bf
 from beamfem.equations.equations import residual
 from beamfem.equations.system import System
+from beamfem.results.axis_points import nodal_vectors
 from beamfem.results.free_bodies import acting_on, rows_of
-from beamfem.results.nodal import nodal_vectors
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics
 

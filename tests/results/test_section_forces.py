@@ -5,7 +5,7 @@ import pytest
 from conftest import ELEMENTS, identify
 
 import beamfem as bf
-from beamfem.results.nodal import axis, nodal_vectors
+from beamfem.results.axis_points import axis, nodal_vectors
 from beamfem.results.postprocess import direction
 
 SOFT = bf.Material(2e5, 0.3, 7800.0)

@@ -22,8 +22,8 @@ from beamfem.mesh.reference import reference_axis, reference_position
 from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
 from beamfem.results import postprocess
+from beamfem.results.axis_points import axis_at
 from beamfem.results.full_turns import first_turns
-from beamfem.results.nodal import axis_at
 from beamfem.results.postprocess import position
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics

@@ -16,7 +16,7 @@ from beamfem.linalg.lapack import superlu
 from beamfem.model.beam import Point
 from beamfem.model.load_base import Load
 from beamfem.model.model import Model
-from beamfem.results.nodal import axis_at, rate_at
+from beamfem.results.axis_points import axis_at, rate_at
 from beamfem.results.solution import State
 from beamfem.solve.linear.quadratic_modes import slowest_rates
 from beamfem.solve.modes.mode_stiffness import upright

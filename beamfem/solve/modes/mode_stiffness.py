@@ -8,7 +8,7 @@ from beamfem.equations.stress_resultants import free_group, resultants
 from beamfem.equations.system import System
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.model import Model
-from beamfem.results.nodal import nodal_vectors, nodal_velocities
+from beamfem.results.axis_points import nodal_vectors, nodal_velocities
 
 
 def nodal_motion(model: Model, p: np.ndarray, shape: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:

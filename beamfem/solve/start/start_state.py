@@ -14,8 +14,8 @@ from beamfem.mesh.reference import reference_angle
 from beamfem.model.beam import beam_in_words
 from beamfem.model.model import Model
 from beamfem.results import postprocess
+from beamfem.results.axis_points import nodal_vectors, nodal_velocities
 from beamfem.results.check_arrays import require_finite
-from beamfem.results.nodal import nodal_vectors, nodal_velocities
 from beamfem.results.solution import Solution, State
 from beamfem.solve.start.start_checks import left_over
 from beamfem.value_keys import equal

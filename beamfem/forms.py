@@ -14,7 +14,6 @@ from beamfem.element.fields import BeamMapping, FieldElement
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import sections_at
 from beamfem.quadrature import gauss
-from beamfem.section.protocol import CrossSection
 
 _ALL = slice(None)
 
@@ -27,11 +26,8 @@ def beam_basis(mesh: BeamMesh, points: int | None = None, elements: slice = _ALL
     formulation, chosen = mesh.beam.element, np.arange(mesh.elements)[elements]
     xi, along = formulation.quadrature() if points is None else gauss(points)
     element, at = np.repeat(chosen, len(xi)), np.tile(xi, len(chosen))
-    material = mesh.beam.material
-    if isinstance(mesh.beam.section, CrossSection):
-        strips = [mesh.beam.section.strips(material)] * len(at)
-    else:
-        strips = [section.strips(material) for section in sections_at(mesh, element, at)]
+    sections = sections_at(mesh, element, at)
+    strips = [section.strips(mesh.beam.material) for section in sections] * (len(at) // len(sections))
     y, across = (np.array([np.concatenate([part[n] for part in parts]) for parts in strips]) for n in (1, 2))
     shape = (len(chosen), -1)
     X = np.stack([np.repeat(at[:, None], y.shape[1], axis=1).reshape(shape), y.reshape(shape)])

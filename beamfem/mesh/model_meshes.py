@@ -43,11 +43,7 @@ def require_body(grid: Grid, unit: Callable[[str], str]) -> None:
     if grid.straight:
         return
     element, xi, _ = energy_points(grid)
-    section = grid.beam.section
-    if isinstance(section, CrossSection):
-        faces = np.array(_faces(section, grid))
-    else:
-        faces = np.array([_faces(own, grid) for own in sections_at(grid, element, xi)])
+    faces = np.array([_faces(section, grid) for section in sections_at(grid, element, xi)])
     bend = curvature(grid, element, xi)
     reach = (bend[:, None] * faces).max(axis=1)
     worst = int(np.argmax(reach))
@@ -67,7 +63,7 @@ def _require_short(
 ) -> None:
     """Raise InputError if the interpolated body has det J = (r0' + y d') x d <= 0.
 
-    This is checked on the axis and, for forces integrated over the body, at its faces (2,) or (n, 2).
+    This is checked on the axis and, for forces integrated over the body, at its faces (1, 2) or (n, 2).
     """
     axis = reference_axis(grid, element, xi)
     heights = np.zeros((len(xi), 3))  # of both faces and of the axis

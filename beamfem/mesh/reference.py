@@ -9,8 +9,9 @@ from beamfem.element.coordinates import across
 from beamfem.element.element import Element
 from beamfem.element.fields import Axis, cross, d_slots, dot, length_rule, r_slots, section_frame, slots
 from beamfem.errors import InputError
+from beamfem.material import Material
 from beamfem.mesh.beam_grid import Grid
-from beamfem.model.beam import Beam
+from beamfem.model.beam import Beam, sections_along
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import of_package, shown
 
@@ -128,10 +129,10 @@ def length_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.nda
     return _points(grid, element, *length_rule(grid.beam.element.field))
 
 
-def _stiffness(beam: Beam, arc: float, at: Axis) -> np.ndarray:
-    """Return the section stiffness (n, ns, ns) at an arc length, for points of the axis. Raises InputError."""
+def _stiffness(beam: Beam, section: CrossSection, at: Axis) -> np.ndarray:
+    """Return the stiffness (n, ns, ns) of a section at points of the axis. Raises InputError."""
     forces = beam.element.forces
-    found = forces.stiffness(beam.section_at(arc), beam.material, beam.element.coordinates, at)
+    found = forces.stiffness(section, beam.material, beam.element.coordinates, at)
     kind: Any = type(forces)
     if of_package(kind):
         return found
@@ -152,22 +153,21 @@ def stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.nd
         # the same at all points
         along, none = np.array([grid.tangent[0].tolist()]), np.zeros((1, 2))
         at = Axis(none, along, none, across(along), none)
-        strains, stiffness = forces.strains(at), _stiffness(beam, 0.0, at)
+        strains, stiffness = forces.strains(at), _stiffness(beam, beam.section_at(0.0), at)
         return stiffness.repeat(len(element), axis=0), strains.repeat(len(element), axis=0)
     at = reference_axis(grid, element, xi)
-    strains = forces.strains(at)
-    if beam.prismatic:
-        return _stiffness(beam, 0.0, at), strains
-    parts = []
-    for i, arc in enumerate(grid.section_arc_length(element, xi)):
-        point_axis = Axis(*(getattr(at, name)[i : i + 1] for name in Axis._fields))
-        parts.append(_stiffness(beam, arc, point_axis))
-    return np.concatenate(parts), strains
+    sections = sections_at(grid, element, xi)
+    places = np.array_split(np.arange(len(element)), len(sections))
+    parts = [
+        _stiffness(beam, section, Axis(*(values[some] for values in at)))
+        for section, some in zip(sections, places, strict=True)
+    ]
+    return np.concatenate(parts), forces.strains(at)
 
 
 def sections_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> list[CrossSection]:
-    """Return the section at each of the points (element, xi)."""
-    return [grid.beam.section_at(arc) for arc in grid.section_arc_length(element, xi)]
+    """Return the sections at points (element, xi): a single one stands for all along a prismatic beam."""
+    return sections_along(grid.beam, np.zeros(1) if grid.beam.prismatic else grid.section_arc_length(element, xi))
 
 
 def curvature(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
@@ -198,33 +198,23 @@ def inertia_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.nd
 
 def inertia_at(grid: Grid, where: np.ndarray, at: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """Return the inertia (n, 3) at points (where, at) with weights (n,) [m], see `inertia_points`."""
-    beam = grid.beam
-    if beam.prismatic:
-        per_length = beam.section_at(0.0).inertia(beam.material)
-        inertia = np.array([[per_length.mass, per_length.first_moment, per_length.rotary]])
-    else:
-        inertias = [beam.section_at(arc).inertia(beam.material) for arc in grid.section_arc_length(where, at)]
-        inertia = np.array([[per_length.mass, per_length.first_moment, per_length.rotary] for per_length in inertias])
+    beam, sections = grid.beam, sections_at(grid, where, at)
+    inertias = [section.inertia(beam.material) for section in sections]
+    inertia = np.array([[per_length.mass, per_length.first_moment, per_length.rotary] for per_length in inertias])
     if beam.element.forces.fills_body and not grid.straight:
         # det J = alpha + beta y of the curved body
         reference = reference_axis(grid, where, at)
         along, _ = section_frame(reference.d)
         size = np.linalg.norm(reference.d, axis=-1)
         alpha, beta = dot(reference.r_s, along) * size, dot(reference.d_s, along) * size
-        inertia = alpha[:, None] * inertia + beta[:, None] * _raised(grid, where, at)
+        raised = np.array([_raised(section, beam.material) for section in sections])
+        inertia = alpha[:, None] * inertia + beta[:, None] * raised
     return inertia * weight[:, None]
 
 
-def _raised(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
-    """Return first, second and third mass moment per length over y (n, 3) [kg, kg m, kg m^2] of a body's sections."""
-    beam = grid.beam
-
-    def moments(section: CrossSection) -> np.ndarray:
-        return np.asarray(sum(part.density * moments[1:4] for part, moments in section.moments(beam.material)))
-
-    if beam.prismatic:
-        return np.broadcast_to(moments(beam.section_at(0.0)), (len(element), 3))
-    return np.array([moments(beam.section_at(arc)) for arc in grid.section_arc_length(element, xi)])
+def _raised(section: CrossSection, material: Material | None) -> np.ndarray:
+    """Return first, second and third mass moment per length over y (3,) [kg, kg m, kg m^2] of the section of a body."""
+    return np.asarray(sum(part.density * moments[1:4] for part, moments in section.moments(material)))
 
 
 def reference_angle(grid: Grid) -> np.ndarray:

@@ -8,7 +8,6 @@ import numpy as np
 from beamfem.mesh.beam_grid import Grid
 from beamfem.mesh.reference import curvature, sections_at
 from beamfem.section.distribution import Distribution, distribution, layers_of
-from beamfem.section.protocol import CrossSection
 
 # indices of points (n,), consecutive over all groups, and the distribution of forces at them
 _Group = tuple[np.ndarray, Distribution]
@@ -57,28 +56,20 @@ class Distributions:
 
 def distributions(grid: Grid, element: np.ndarray, xi: np.ndarray) -> Distributions:
     """Return the distribution of section forces over the height at points (element, xi) of a beam."""
-    bend = curvature(grid, element, xi)[:, None]
-    material = grid.beam.material
-    groups: list[_Group]
-    if isinstance(grid.beam.section, CrossSection):
-        groups = [(np.arange(len(element)), distribution(grid.beam.section, material, bend))]
-    else:
-        groups = [
-            (np.array([i]), distribution(section, material, bend[i]))
-            for i, section in enumerate(sections_at(grid, element, xi))
-        ]
+    bend, material = curvature(grid, element, xi)[:, None], grid.beam.material
+    sections = sections_at(grid, element, xi)
+    groups = [
+        (where, distribution(section, material, bend[where]))
+        for section, where in zip(sections, np.array_split(np.arange(len(element)), len(sections)), strict=True)
+    ]
     return Distributions(tuple(groups), layers(grid, element, xi))
 
 
 def layers(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
     """Return lower and upper y (n, layers, 2) [m] of the layers at points (element, xi); see `Distributions`."""
-    material = grid.beam.material
-    if isinstance(grid.beam.section, CrossSection):
-        edges = np.array(layers_of(grid.beam.section, material))
-        return np.broadcast_to(edges, (len(element), *edges.shape))
-    layer_lists = [layers_of(section, material) for section in sections_at(grid, element, xi)]
-    result = np.empty((len(element), max(map(len, layer_lists)), 2))
+    layer_lists = [layers_of(section, grid.beam.material) for section in sections_at(grid, element, xi)]
+    result = np.empty((len(layer_lists), max(map(len, layer_lists)), 2))
     for point, at in enumerate(layer_lists):
         result[point, : len(at)] = at
         result[point, len(at) :] = at[-1][1]
-    return result
+    return np.broadcast_to(result, (len(element), *result.shape[1:]))

@@ -454,6 +454,11 @@ def graded(elements: int, ratio: float) -> tuple[float, ...]:
     return (*(float(end) for end in ends[:-1]), 1.0)
 
 
+def sections_along(beam: Beam, arc_length: np.ndarray) -> list[CrossSection]:
+    """Return the sections at arc lengths (n,) [m]: a single one stands for all along a prismatic beam."""
+    return [beam.section_at(at) for at in ([0.0] if beam.prismatic else arc_length.tolist())]
+
+
 def require_law_fits(beam: Beam) -> None:
     """Raise InputError if the section has a law but the element assumes a linear one, or if the law returns
     arrays of another shape or numbers that are not finite.

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from beamfem.model.beam import Beam
+from beamfem.model.beam import Beam, sections_along
 from beamfem.model.imposed_strains import Along, ImposedStrain, require_followed
 from beamfem.model.load_base import Amplitude
 
@@ -55,8 +55,8 @@ class Pretension(ImposedStrain):
 
     def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the imposed strains (n, 4) at arc lengths (n,) [m], see `ImposedStrain.free_strain`."""
-        at = [0.0] if self.beam.prismatic else arc_length.tolist()
-        axial = np.array([self.beam.section_at(s).rigidity(self.beam.material).axial for s in at])
+        sections = sections_along(self.beam, arc_length)
+        axial = np.array([section.rigidity(self.beam.material).axial for section in sections])
         strain = np.zeros((len(arc_length), 4))
         strain[:, 0] = -self.values_of("force", arc_length) / axial
         return strain

@@ -7,7 +7,7 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.along_beam import ends_and_middle
-from beamfem.model.beam import Beam
+from beamfem.model.beam import Beam, sections_along
 from beamfem.model.imposed_strains import Along, ImposedStrain, require_followed
 from beamfem.model.load_base import Amplitude
 from beamfem.section.thermal import expands_evenly, thermal_strain
@@ -81,10 +81,7 @@ class Temperature(ImposedStrain):
     def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the thermal strains (n, 4) at arc lengths (n,) [m], see `ImposedStrain.free_strain`."""
         beam, heat = self.beam, self.heat(arc_length)
-        if beam.prismatic:
-            unit = thermal_strain(beam.section_at(0.0), beam.material)[None]
-        else:
-            unit = np.array([thermal_strain(beam.section_at(s), beam.material) for s in arc_length.tolist()])
+        unit = np.array([thermal_strain(section, beam.material) for section in sections_along(beam, arc_length)])
         stretch, curvature, thickness = (unit @ heat[:, :, None])[:, :, 0].T
         return np.column_stack([stretch, np.zeros(len(arc_length)), curvature, thickness])
 

@@ -80,14 +80,11 @@ def strengths(grid: Grid, element: np.ndarray, xi: np.ndarray, layers: int) -> n
 
     Sections with fewer layers repeat the last one.
     """
-    prismatic = isinstance(grid.beam.section, CrossSection)
-    sections = [grid.beam.section_at(0.0)] if prismatic else sections_at(grid, element, xi)
     rows = []
-    for section in sections:
+    for section in sections_at(grid, element, xi):
         own = [material.strength for material in materials_of(section, grid.beam.material)] or [None]
         rows.append((own + own[-1:] * layers)[:layers])  # the last one counts for missing layers too
-    values = np.array(rows, dtype=float).T
-    return np.broadcast_to(values, (layers, len(element))) if prismatic else values
+    return np.broadcast_to(np.array(rows, dtype=float).T, (layers, len(element)))
 
 
 _NAMED = 10  # beams that the warning names
@@ -138,8 +135,7 @@ def self_stress(
         return result
     beam = mesh.beam
     imposed = solution.model.imposed_on[beam]
-    arc = mesh.section_arc_length(element, xi)
-    sections = [beam.section_at(s) for s in (arc[:1] if beam.prismatic else arc).tolist()]
+    sections = sections_at(mesh, element, xi)
     if all(expands_evenly(section, beam.material) for section in sections):
         return 0.0
     each = sections * len(y) if len(sections) == 1 else sections

@@ -15,7 +15,7 @@ from beamfem.equations.system import System, system_of
 from beamfem.errors import LockingWarning
 from beamfem.kernels.block import GREEN_LAGRANGE, Block
 from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.model.beam import beam_in_words
+from beamfem.model.beam import beam_in_words, sections_along
 from beamfem.model.model import Model
 from beamfem.precision.roundoff import row_floors
 from beamfem.results import postprocess
@@ -93,9 +93,8 @@ def heights(system: System) -> np.ndarray:
     """Return the height (m,) [m] of the section in the middle of the elements of neighbouring nodes."""
     parts = []
     for mesh in system.model.meshes:
-        arc, beam = 0.5 * (mesh.vertices[1:] + mesh.vertices[:-1]), mesh.beam
-        sections = [beam.section_at(s) for s in (arc[:1] if beam.prismatic else arc).tolist()]
-        own = np.array([np.ptp(section.bounds) for section in sections])
+        arc = 0.5 * (mesh.vertices[1:] + mesh.vertices[:-1])
+        own = np.array([np.ptp(section.bounds) for section in sections_along(mesh.beam, arc)])
         parts.append(np.repeat(np.broadcast_to(own, len(arc)), mesh.node.shape[1] - 1))
     return np.concatenate(parts)
 

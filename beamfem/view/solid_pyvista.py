@@ -183,11 +183,8 @@ class _Scene:
 def _width(points: AxisPoints) -> np.ndarray:
     """Return the width out of the plane [m]: area over height, or the height for sections without an area."""
     height = points.faces[:, 1] - points.faces[:, 0]
-    if points.mesh.beam.prismatic:
-        area = np.full(len(height), getattr(points.mesh.beam.section, "area", 0.0))
-    else:
-        sections = sections_at(points.mesh, points.element, points.xi)
-        area = np.array([getattr(section, "area", 0.0) for section in sections])
+    sections = sections_at(points.mesh, points.element, points.xi)
+    area = np.array([getattr(section, "area", 0.0) for section in sections])
     return np.where(area > 0.0, area / height, height)
 
 

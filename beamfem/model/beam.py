@@ -20,8 +20,8 @@ from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.model.jumps import find_jumps
 from beamfem.section.law import ConstitutiveLaw, SectionLaw
+from beamfem.section.moments import expansion
 from beamfem.section.protocol import CrossSection
-from beamfem.section.thermal import expansion
 from beamfem.validation import (
     LARGEST,
     SMALLEST,

@@ -10,7 +10,7 @@ from beamfem.model.along_beam import ends_and_middle
 from beamfem.model.beam import Beam, sections_along
 from beamfem.model.imposed_strains import Along, ImposedStrain, require_followed
 from beamfem.model.load_base import Amplitude
-from beamfem.section.thermal import expands_evenly, thermal_strain
+from beamfem.section.moments import expands_evenly, thermal_strain
 
 
 @dataclass(frozen=True)

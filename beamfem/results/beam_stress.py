@@ -19,9 +19,8 @@ from beamfem.results.extremes import Measure, Part, Peak, estimate, extreme_of_b
 from beamfem.results.section_forces import at_points, in_parts, peak_of, stations
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import imposing
-from beamfem.section.moments import materials_of
+from beamfem.section.moments import expands_evenly, materials_of, thermal_strain
 from beamfem.section.protocol import CrossSection
-from beamfem.section.thermal import expands_evenly, thermal_strain
 from beamfem.units import Units, units_of
 from beamfem.validation import require_known, shown
 

@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.element import body_strain as body
-from beamfem.element import coordinates
+from beamfem.element import coordinates, forces
 from beamfem.element.fields import Axis, cross, dot, section_frame
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import (
@@ -165,7 +164,7 @@ def strain_at_axis(points: AxisPoints, now: Axis) -> Components:
 
 def green_strain(now: Axis, reference: Axis, y: np.ndarray) -> Components:
     """Return the Green-Lagrange strain (..., heights) at heights y (heights,) [m] in the frame of the reference."""
-    xx, yy, xy = body.green_strain(now, reference, y)
+    xx, yy, xy = forces.green_strain(now, reference, y)
     return Components(xx, yy, 0.5 * xy)
 
 

@@ -61,7 +61,7 @@ class ConvergenceError(BeamfemError, RuntimeError):
 
 
 class LimitPointError(ConvergenceError):
-    """A static solve that came to a limit point: beyond its load factor there is no equilibrium nearby.
+    """A static solve reached a limit point: beyond its load factor there is no equilibrium nearby.
 
     Parameters
     ----------
@@ -81,11 +81,11 @@ class LimitPointError(ConvergenceError):
 
 
 class FileError(BeamfemError, OSError):
-    """A file that the system does not let us read or write: no room, no permission, no such place."""
+    """A file that the system refuses to read or write: disk full, no permission, no such folder."""
 
 
 class MissingFileError(FileError, FileNotFoundError):
-    """A file to read that is not there."""
+    """A file to be read does not exist."""
 
 
 class MissingPackageError(BeamfemError, ImportError):
@@ -93,7 +93,7 @@ class MissingPackageError(BeamfemError, ImportError):
 
 
 class UnstableWarning(UserWarning):
-    """Some rows of a static solution are equilibria that the structure would leave."""
+    """Some rows of a static solution are unstable equilibria, which the structure would leave."""
 
 
 class ChangedCodeWarning(UserWarning):
@@ -101,7 +101,7 @@ class ChangedCodeWarning(UserWarning):
 
 
 class NotStoredWarning(UserWarning):
-    """The store of a sweep cannot be written any more, so that further results are not found by the next run."""
+    """The store of a sweep can no longer be written, so the next run computes further results anew."""
 
 
 class RoundOffWarning(UserWarning):
@@ -117,7 +117,7 @@ class CoarseMeshWarning(UserWarning):
 
 
 class UnitsWarning(UserWarning):
-    """Values that no material, section or load has in the units that the model names."""
+    """Values of materials, sections or loads are implausible in the units of the model."""
 
 
 class LargeStrainWarning(UserWarning):
@@ -149,15 +149,15 @@ class SeveralTurnsWarning(UserWarning):
 
 
 class NotReadWarning(UserWarning):
-    """A file of another program holds more than is read, such as sections of a mesh file or amplitudes of a model."""
+    """Parts of a file of another program are not read, such as sections of a mesh file or amplitudes of a model."""
 
 
 class NotWrittenWarning(UserWarning):
-    """A model has parts that a file of another program is written without."""
+    """Parts of a model are left out of a file for another program."""
 
 
 class UnknownStressWarning(UserWarning):
-    """Sections of some beams do not tell their shape, so that the stress there is nan or left out of a file."""
+    """The shape of some sections is unknown, so their stress is nan or left out of a file."""
 
 
 def warn(message: str, kind: type[Warning] = UserWarning) -> None:

@@ -52,7 +52,7 @@ class _Written:
 
 
 def write_abaqus(model: Model, path: str | PathLike[str], pieces: int = 4) -> None:
-    """Write a model as an Abaqus input file of B21 elements with a static step, which has NLGEOM.
+    """Write a model as an Abaqus input file of B21 elements with a static step for large deflections (NLGEOM).
 
     It has *BEAM GENERAL SECTION, *BOUNDARY, *CLOAD, *DLOAD, and *MPC, PIN for hinges. The elements of the first beam
     are the set BEAM-1, and so on.

@@ -137,7 +137,7 @@ class Beam:
 
     @property
     def holding(self) -> tuple[Any, ...]:
-        """Joints of a beam that a model adds with it, where a part acts on it: none."""
+        """Joints that a model adds with the beam, such as those of a part that acts on it; none by default."""
         return ()
 
     def __post_init__(self) -> None:

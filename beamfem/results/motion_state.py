@@ -36,7 +36,7 @@ class StateWithResults(State):
 
 @dataclass(frozen=True, eq=False)
 class MotionState(StateWithResults):
-    """One state of a motion, as the function of an `Event` gets it: results as those of a Solution in one row.
+    """One state of a motion, passed to the function of an `Event`: results as those of a Solution in one row.
 
     Parameters
     ----------

@@ -407,7 +407,7 @@ class Solution:
         return {}
 
     def computed(self, build: "Callable[[Solution], _Value]") -> _Value:
-        """Return build(solution), which is kept with the solution."""
+        """Return build(solution), computed once for each solution."""
         if build not in self._computed:
             self._computed[build] = build(self)
         value: _Value = self._computed[build]

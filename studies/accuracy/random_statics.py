@@ -1,4 +1,4 @@
-"""Random static models: how good error estimates are, and what meshes cost that are refined to an accuracy.
+"""Random static models: quality of the error estimates, and cost of meshes refined to an accuracy.
 
 Beams and frames, straight and curved, tapered and layered, under forces, followers, pressure, moments, distributed
 loads and actuation, each the same for the same seed. True errors are those against 48 elements of order 8 a beam (256

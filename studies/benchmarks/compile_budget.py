@@ -1,4 +1,4 @@
-"""What the compiler costs: kernels of first problems of different kinds, and imports.
+"""Cost of compilation: kernels of first problems of different kinds, and imports.
 
 Each figure is of a new process, the kernels of one with an empty cache folder; problems are solved one after the other,
 so that each is charged with what none before it needed. Run as a script with the argument `child` it does the work and

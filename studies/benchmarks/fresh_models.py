@@ -1,4 +1,4 @@
-"""From `Beam(...)` to the displacement of the tip: what one model of a study with few elements costs.
+"""Cost of one model of a study with few elements, from `Beam(...)` to the displacement of the tip.
 
 Beside a model that is made anew, with other measures, stiffness and length each time: the same model with another load,
 made by `with_loads`, and a ready model that is solved again.

@@ -1,4 +1,4 @@
-"""beamfem against Exudyn: the same beams, steps and tolerances in one process, in turns, warm, CPU time of one thread.
+"""beamfem against Exudyn: the same beams, steps and tolerances, in turns in one warm process; CPU time of one thread.
 
 Exudyn gets whatever serves it best: the fastest of its linear solvers and the best number of load steps. Where it takes
 more than one tangent a step it struggles to converge; such a row has no ratio, it would not measure the speed of

@@ -1,4 +1,4 @@
-"""Random motions with steps from a thousandth to three times the lowest period: which finish, and keep their energy.
+"""Random motions with steps from a thousandth to three times the lowest period: which finish and keep energy.
 
 Mechanisms with masses, springs and rigid bodies, hinged chains that fall, and bent beams that are let go, of six kinds
 of elements, each the same for the same seed: python -m studies.benchmarks.random_motions [first] [last]. Rows of long

@@ -1,4 +1,4 @@
-"""How far the kernels are from what one core gives: operations and bytes a coordinate against measured ceilings.
+"""Roofline of the kernels: operations and bytes per coordinate against measured ceilings of one core.
 
 Operations are counted (`flop_counts`), bytes are the least that must move (`roofline_cases.least_traffic`), times are
 of warm kernels. 1000 elements stay in cache, 100,000 do not. The limit named is the ceiling of which a kernel reaches

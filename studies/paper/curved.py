@@ -1,4 +1,4 @@
-"""Beams that are curved without stress: a thin ring against Castigliano, a tapered ring, rings on splines and polygons.
+"""Stress-free curved beams: a thin ring against Castigliano, a tapered ring, rings on splines and polygons.
 
 Reference for the quarter ring: Reissner's curved beam by shooting; for a spline and a polygon of it order 8 on a fine
 mesh. Paper, section 2: a stress-free curved beam measures its strains against its own reference.

@@ -1,4 +1,4 @@
-"""Every element the three choices make, compared: a cantilever under P L^2 / (E I) = 5, L/h = 10 and 100.
+"""Comparison of all elements: a cantilever under P L^2 / (E I) = 5, L/h = 10 and 100.
 
 All have as many nodes (24 intervals). Each is judged against its own limit: structural forces against Reissner's beam
 and the elastic line against the extensible elastica, both by shooting; continuum forces against a graded mesh of

@@ -1,4 +1,4 @@
-"""Locking, shown and cured: of Poisson's ratio, of shear, of nodes without shear; paper, sections 3.3 to 5.
+"""Locking by Poisson's ratio, by shear and at nodes without shear, and its remedies; paper, sections 3.3 to 5.
 
 Poisson: transverse strain that cannot vary over the height makes continuum forces bend too stiffly; a pure end moment
 measures by how much. Shear: the bilinear field with full integration. Nodes without shear (sections 1.5 and 3.5): the

@@ -26,7 +26,7 @@ _TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
 
 @dataclass(frozen=True)
 class EnergyMomentum:
-    """Conserves energy and both momenta at any size of steps; second order.
+    """Energy-momentum method: conserves energy and both momenta at any step size; second order.
 
     The midpoint rule in nodal vectors e with a constant mass, M (e1' - e0') / h + f = 0, e1 - e0 = h (e0' + e1') / 2.
     f has the mean of the stresses of both states, and algebraic differences of the strains, which are functions of

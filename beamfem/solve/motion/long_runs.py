@@ -115,7 +115,7 @@ def resume(
     duration: float | None = None,
     watch: bool = False,
 ) -> Solution:
-    """Go on with a motion that `simulate` wrote into a file, up to its end or beyond.
+    """Continue a motion that `simulate` wrote into a file, to its end or beyond.
 
     A run that was interrupted or killed continues from the last checkpoint in its file, written about once a second,
     and ends with the same numbers as one that was not. What is given must be what the motion was begun with; functions

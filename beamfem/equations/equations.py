@@ -12,9 +12,8 @@ from beamfem.equations.differences import differentiated
 from beamfem.equations.frame_inertia import absolute, right_angle, right_angle_of_unknowns, speeds
 from beamfem.equations.system import Proven, System
 from beamfem.linalg.bordered import Border, BorderedTangent
-from beamfem.linalg.tangent import UNROTATED, BandTangent, SparseTangent, Tangent
+from beamfem.linalg.tangent import UNROTATED, BandTangent, SaddleTangent, SparseTangent, Tangent
 from beamfem.precision.mixed_tangent import MixedTangent, mixed
-from beamfem.precision.saddle import SaddleTangent
 
 STATICS = (1.0, 0.0, 0.0)
 INERTIA = (0.0, 0.0, 1.0)

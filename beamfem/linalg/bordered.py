@@ -11,8 +11,16 @@ from beamfem.kernels.bidirectional_lu import bidirectional_lu
 from beamfem.kernels.condensation import factor_condensed, solve_condensed
 from beamfem.kernels.records import aligned
 from beamfem.linalg.lapack import LinAlgError
-from beamfem.linalg.tangent import SMALLEST_PIVOT, UNROTATED, BandTangent, Factorised, Rotated, SparseTangent, Tangent
-from beamfem.precision.saddle import SaddleTangent
+from beamfem.linalg.tangent import (
+    SMALLEST_PIVOT,
+    UNROTATED,
+    BandTangent,
+    Factorised,
+    Rotated,
+    SaddleTangent,
+    SparseTangent,
+    Tangent,
+)
 
 
 class Border(NamedTuple):

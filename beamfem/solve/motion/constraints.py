@@ -8,9 +8,8 @@ from beamfem.equations.connectors import SHORT_TIME, Motion
 from beamfem.equations.equations import INERTIA, STATICS, linearise, residual
 from beamfem.equations.system import System
 from beamfem.errors import InputError
-from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
+from beamfem.linalg.tangent import UNROTATED, SaddleTangent, SparseTangent, Tangent
 from beamfem.model.contribution import is_one_sided
-from beamfem.precision.saddle import SaddleTangent
 from beamfem.solve.start.mechanisms import dependent, require_independent
 
 _MET = 1e-8  # of the model, or of the largest velocity

@@ -16,8 +16,7 @@ from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 from beamfem.kernels.time_loop import march
 from beamfem.linalg.bordered import BorderedTangent
 from beamfem.linalg.lapack import LinAlgError
-from beamfem.linalg.tangent import UNROTATED, Factorised, SparseTangent
-from beamfem.precision.saddle import SaddleTangent
+from beamfem.linalg.tangent import UNROTATED, Factorised, SaddleTangent, SparseTangent
 
 # smallest ratio of a pivot to the original diagonal entry with which a band alone has digits enough to be bordered
 WEAK = 1e-10

@@ -107,7 +107,7 @@ def test_the_legend_of_a_sweep_leaves_the_axes_their_height(n, h):
     """Ten curves took half of the figure, above the axes."""
     figure = bf.sweep(of_three, load=[1.0, 2.0], n=n, h=h).plot()
     figure.canvas.draw()
-    axes, (legend,) = figure.axes[0].get_window_extent(), figure.legends
+    axes, legend = figure.axes[0].get_window_extent(), figure.axes[0].get_legend()
     assert len(legend.get_texts()) == len(n) * len(h)
     assert not legend.get_window_extent().overlaps(axes)
     assert axes.height > 0.75 * figure.bbox.height

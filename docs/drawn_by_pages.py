@@ -14,6 +14,7 @@ import shutil
 import sys
 import tempfile
 import time
+import warnings
 from pathlib import Path
 
 from page_code import blocks_of, run
@@ -27,6 +28,7 @@ _PICTURES = "_pictures"  # beside the pages, as Sphinx wants it; not in the repo
 
 def draw(app) -> None:
     """Run the pages that draw, and keep their pictures and where they belong."""
+    warnings.simplefilter("ignore", UserWarning)  # of meshes that pages refine, or that lock to show it
     source = Path(app.srcdir)
     shutil.rmtree(source / _PICTURES, ignore_errors=True)
     app.drawn_by_pages = {}

@@ -53,7 +53,7 @@ def case(form: str, elements: int) -> tuple[System, Case]:
 def place(one: Case, tangent: bool) -> None:
     """Make ready for calls of `balance` on the table of the equations, with the tangent or without."""
     one.equations.require("tangent")
-    one.equations.place(*one.state, one.residual, one.band)
+    one.equations.place(*one.state, one.residual, one.band.ravel())
     one.equations.record.tangent = tangent
 
 

@@ -17,7 +17,7 @@ from beamfem.parts.at_points import ANALYTIC
 from beamfem.physics.stations import STATIONS
 from beamfem.reprs import brief
 from beamfem.results.axis_points import nodal_vectors
-from beamfem.results.postprocess import momenta
+from beamfem.results.postprocess import kinetic_energy
 from beamfem.results.reactions import energies_of
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
@@ -171,7 +171,7 @@ def _of_frame(solution: Solution) -> np.ndarray:
     unit = RigidVelocity(angular=1.0, about=frame.about)
     p = np.vstack([solution.p, system.reference])
     spin = np.array([rigid_rates(system, unit, row) for row in p])
-    moments = sum((momenta(mesh, p, spin).kinetic for mesh in solution.model.meshes), np.zeros(len(p)))
+    moments = sum((kinetic_energy(mesh, p, spin) for mesh in solution.model.meshes), np.zeros(len(p)))
     zeros = np.zeros(p.shape[1])
     moments += [system.connectors.energies((row, rate, zeros), 0.0)[0] for row, rate in zip(p, spin, strict=True)]
     factors = times if system.static else np.ones(len(times))

@@ -206,26 +206,32 @@ def _energies_of_law(
     return np.einsum("sqi,q->si", energies.reshape(rows, len(weights), 2), weights)
 
 
+def kinetic_energy(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return the kinetic energy of a beam (steps,) [J]."""
+    element, xi, inertia = inertia_points(mesh)
+    mass, first, rotary = inertia.T
+    rate = rate_at(mesh, p, v, element, xi)
+    return 0.5 * (dot(rate.r, rate.r) @ mass + dot(rate.d, rate.d) @ rotary) + dot(rate.r, rate.d) @ first
+
+
 @dataclass(frozen=True)
 class Momenta:
-    """Kinetic energy [J], linear (steps, 2) [kg m/s] and angular momentum about the origin [kg m^2/s]."""
+    """Linear (steps, 2) [kg m/s] and angular momentum about the origin (steps,) [kg m^2/s]."""
 
-    kinetic: np.ndarray
     linear: np.ndarray
     angular: np.ndarray
 
 
 def momenta(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> Momenta:
-    """Return kinetic energy and momenta of a beam (steps, ...), see `Momenta`."""
+    """Return the momenta of a beam, see `Momenta`."""
     element, xi, inertia = inertia_points(mesh)
     mass, first, rotary = inertia.T
     now = axis_at(mesh, p, element, xi)
     rate = rate_at(mesh, p, v, element, xi)
-    kinetic = 0.5 * (dot(rate.r, rate.r) @ mass + dot(rate.d, rate.d) @ rotary) + dot(rate.r, rate.d) @ first
     linear = np.einsum("sqc,q->sc", rate.r, mass) + np.einsum("sqc,q->sc", rate.d, first)
     angular = cross(now.r, rate.r) @ mass + cross(now.d, rate.d) @ rotary
     angular = angular + (cross(now.r, rate.d) + cross(now.d, rate.r)) @ first
-    return Momenta(kinetic, linear, angular)
+    return Momenta(linear, angular)
 
 
 def part_of(fields: Fields, index: Any) -> Fields:

@@ -497,7 +497,7 @@ class Solution:
         from beamfem.results.solution_system import imposed_measures
 
         moving, stored = energies_of_connectors(self).T
-        kinetic = sum((m.kinetic for m in self._momenta), moving)
+        kinetic = sum((postprocess.kinetic_energy(mesh, self.p, self.v) for mesh in self.model.meshes), moving)
         imposed = ((mesh, imposed_measures(self, mesh)) for mesh in self.model.meshes)
         parts = (postprocess.strain_energies(mesh, self.p, measures) for mesh, measures in imposed)
         strain, lost = sum(parts, np.zeros((len(self), 2))).T

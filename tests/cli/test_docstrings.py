@@ -13,7 +13,7 @@ import beamfem as bf
 import beamfem.testing
 from beamfem.convergence.convergence_result import Convergence
 from beamfem.section.protocol import CrossSection, HasParts
-from beamfem.sweeps.sweep_result import Sweep
+from beamfem.sweeps.sweep import Sweep
 
 RETURNED = {"Convergence": Convergence, "Sweep": Sweep}  # by public functions
 EXTENDED = {"CrossSection": CrossSection, "HasParts": HasParts}  # by user-defined sections, see docs/extending.md

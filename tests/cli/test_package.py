@@ -16,7 +16,7 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 
 import beamfem as bf
 from beamfem.convergence.convergence_result import Convergence
-from beamfem.sweeps.sweep_result import Sweep
+from beamfem.sweeps.sweep import Sweep
 from beamfem.view.html_page import Part, write_page
 from studies import all as main_job
 from studies.paper import pendulum, pendulum_figures, pendulum_page

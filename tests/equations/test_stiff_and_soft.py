@@ -10,7 +10,7 @@ from shooting import Member, solved
 import beamfem as bf
 from beamfem.equations.equations import STATICS
 from beamfem.equations.system import system_of
-from beamfem.linalg.negative_eigenvalues import negative_eigenvalues
+from beamfem.precision.mixed_tangent import negative_eigenvalues
 from beamfem.precision.roundoff import lost_digits
 
 EI, EA = 115.0, 5.5e6

@@ -21,7 +21,7 @@ from beamfem.results.solution import Solution, State
 from beamfem.results.status import Finding
 from beamfem.solve.accuracy.error_estimate import (
     Quantity,
-    enriched_row,
+    enriched_row_kept,
     error,
     error_shares,
     largest_displacement_error,
@@ -35,6 +35,7 @@ DEFAULT = 1e-4  # accuracy of beams whose elements are "auto"
 _MOST_MESHES = 16
 # orders below are raised first, by so much at a time, and up to the highest one where most elements would be divided
 _RAISED, _STEP = 4, 2
+_LITTLE = 100.0  # by how much a step from order 4 lowers an error as a rule; for more, two are taken
 _MOST_PARTS = 4  # of an element from one mesh to the next: far from the limit its order promises too much
 _TRUST = 1.5  # how many times as large as its estimate an error may be
 _SAFETY = 2.0  # by how much the next mesh is to fall below the accuracy
@@ -157,27 +158,18 @@ def static_attempt(solution: Solution, quantity: Quantity) -> tuple[Solution, fl
     elements that lock.
     """
     require_unlocked(solution.computed(locking))
-    last = len(solution) - 1
     try:
-        error = _relative_error(solution, quantity)
+        last, finer = enriched_row_kept(solution, -1)
     except ConvergenceError:  # too far from the finer mesh to say how far
         return solution, np.inf, None
-    shares = error_shares if quantity is not None else position_shares
-    return solution, error, shares(solution[last], enriched_row(solution, last))
-
-
-def _relative_error(solution: Solution, quantity: Quantity) -> float:
-    last = len(solution) - 1
+    state = solution[last]
     if quantity is None:
-        finer = enriched_row(solution, last)
-        return (
-            largest_displacement_error(solution[last], finer, between_nodes=True)
-            / system_of(solution.model, static=True).extent
-        )
-    change = np.abs(error(solution, quantity, last)).max()
+        off = largest_displacement_error(state, finer, between_nodes=True)
+        return solution, off / system_of(solution.model, static=True).extent, position_shares(state, finer)
+    change = float(np.abs(error(solution, quantity, last)).max())
     evaluated = quantity(solution[last:]) if callable(quantity) else solution.displacement(quantity)[-1]
     size = float(np.abs(evaluated).max())
-    return float(change / size) if size > 0.0 else float(change)
+    return solution, change / size if size > 0.0 else change, error_shares(state, finer)
 
 
 def refined(model: Model, shares: Shares, excess: float, fixed: list[np.ndarray]) -> Model:
@@ -202,8 +194,9 @@ def _refined(mesh: BeamMesh, wanted: np.ndarray, fixed: np.ndarray, evenly: bool
     rate = 2 * field.degree if raisable else 2
     parts = np.clip(np.minimum(wanted, 1e300) ** (1.0 / rate), 1.0, _MOST_PARTS)
     if raisable and (field.degree < _RAISED or (field.degree + _STEP <= HIGHEST_ORDER and np.median(parts) > 1.0)):
-        order = field.degree + _STEP
-        return replace(beam, element=of_order(beam.element, order if field.degree >= _RAISED else min(order, _RAISED)))
+        low, steps = field.degree < _RAISED, 1 + int(np.median(wanted) > _LITTLE)
+        order = min(field.degree + _STEP, _RAISED) if low else min(field.degree + _STEP * steps, HIGHEST_ORDER)
+        return replace(beam, element=of_order(beam.element, order))
     if evenly:
         parts = np.ceil(parts)
     # whole numbers of elements between fixed ends: if 1.2 times as many do, halves of all would be far too many

@@ -218,7 +218,7 @@ def error(solution: Solution, quantity: Quantity, row: int) -> Any:
             "quantity is a function of a solution, such as lambda s: s.rotation(beam.end)[-1], or a point, got "
             f"{shown(quantity)}"
         )
-    number, finer = _enriched_row(solution, row)
+    number, finer = enriched_row_kept(solution, row)
     if quantity is None:
         return largest_displacement_error(solution[number], finer)
     evaluate = (lambda s: s.displacement(quantity)[-1]) if isinstance(quantity, Point) else quantity
@@ -236,14 +236,14 @@ def error(solution: Solution, quantity: Quantity, row: int) -> Any:
 def beam_shares(solution: Solution, beam: Beam, row: int) -> np.ndarray:
     """Return the share of each element of a beam in the error of a row, see `Solution.error_shares`."""
     of_beam = solution.model.number_of(beam)
-    number, finer = _enriched_row(solution, row)
+    number, finer = enriched_row_kept(solution, row)
     known = solution.computed(_SharesByRow)
     if number not in known:
         known[number] = error_shares(solution[number], finer)
     return known[number][of_beam]
 
 
-def _enriched_row(solution: Solution, row: int) -> tuple[int, Solution]:
+def enriched_row_kept(solution: Solution, row: int) -> tuple[int, Solution]:
     """Return the number of a row from 0, and its equilibrium on the enriched space."""
     if not solution.static:
         raise InputError("errors are estimated for static solutions only; this one is a motion")

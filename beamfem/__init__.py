@@ -40,6 +40,7 @@ Contents; see help(bf.Beam), for example, for details.
                       linearise frequency_response reduce
     Solver settings   Newton RigidVelocity Event
     Integrators       GeneralizedAlpha HHT Newmark Trapezoidal Midpoint Gauss Radau EnergyMomentum
+                      Bathe CentralDifferences DormandPrince
     Results           Solution State Path PathState Bifurcation Modes Buckling Status
                       LinearModel FrequencyResponse MotionState Occurrence
     Along beams       SectionForces BeamStress envelope Envelope Fields FieldOnBasis field_on_basis

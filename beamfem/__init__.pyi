@@ -168,6 +168,9 @@ from .solve.motion.generalized_alpha import Newmark as Newmark
 from .solve.motion.generalized_alpha import Scheme as Scheme
 from .solve.motion.generalized_alpha import Trapezoidal as Trapezoidal
 from .solve.motion.long_runs import resume as resume
+from .solve.motion.runge_kutta import Bathe as Bathe
+from .solve.motion.runge_kutta import CentralDifferences as CentralDifferences
+from .solve.motion.runge_kutta import DormandPrince as DormandPrince
 from .solve.newton.newton import Newton as Newton
 from .solve.paths.trace import trace_equilibrium as trace_equilibrium
 from .solve.stability.buckling import Buckling as Buckling

@@ -1,4 +1,4 @@
-"""The records that time steps of a collocation method share with Python."""
+"""The records that time steps of a method with stages share with Python."""
 
 from typing import Annotated
 
@@ -16,6 +16,7 @@ class StageRoutines(Record):
     complete = calls("stage_steps:complete")
     accelerate = calls("stage_steps:accelerate")
     iterate = calls("stage_steps:iterate")
+    accelerate_stage = calls("explicit_steps:accelerate_stage")
     factor_planes = calls("stage_steps:factor_planes")
     solve_planes = calls("stage_steps:solve_planes")
     factor_complex = calls("complex_band:ANY.factor")
@@ -23,7 +24,9 @@ class StageRoutines(Record):
 
 
 class Stages(Record):
-    """A collocation method of s stages, and its steps: accelerations a_j of the stages, p_i = p + c_i h v + h^2 A^2 a.
+    """A method of s stages, and its steps: accelerations a_j of the stages, p_i = p + c_i h v + h^2 A^2 a.
+
+    If the beginning is a stage besides, as of `Bathe`, its share is `of_begin` times p'' there.
 
     Planes are the real numbers that the transformed stages consist of: one for a real eigenvalue of A, which comes
     first, two for each complex pair, real and imaginary part.
@@ -31,16 +34,18 @@ class Stages(Record):
 
     routines: StageRoutines
     stages: int  # s
-    real: int  # number of real eigenvalues, 0 or 1
+    real: int  # number of real eigenvalues
     samples: int  # rows of loads and prescribed coordinates of a step: the stages, and its end unless it is the last
     first: int  # of the steps to take
     steps: int
     stride: int  # padded(n)
     height: int  # padded(unknown)
     time_step: float
+    elapsed: float  # since the beginning of the step, where `accelerate` is asked for accelerations
     nodes: Annotated[Reals, "stages"]  # c
     of_p: Annotated[Reals, "stages", "stages"]  # h^2 A^2
     of_v: Annotated[Reals, "stages", "stages"]  # h A
+    of_begin: Annotated[Reals, "stages", 2]  # of p'' at the beginning, in p and p' of the stages
     to_multipliers: Annotated[Reals, "stages", "stages"]  # inverse of h^2 A^2
     at_end: Annotated[Reals, 3, "stages"]  # h^2 b A, h b, and the polynomial of accelerations at the end
     ahead: Reals  # (s, s + 1): that through the stages and the end, at the stages of the next step, equal to this one

@@ -24,7 +24,7 @@ _SHARE = 1e-3  # of the estimated error of the step
 
 
 @inlined
-def _place(solver, stages, i):
+def place(solver, stages, i):
     """Set p, p' and p'' of the prescribed coordinates at a stage."""
     stride, dofs, values, count = stages.stride, solver.prescribed_dofs, solver.prescribed_now, solver.prescribed
     p, v, a = at(stages.p, i * stride), at(stages.v, i * stride), at(stages.a, i * stride)
@@ -77,16 +77,20 @@ def predict(system: System, solver: MotionSolver, stages: Stages, step: int, att
             along = c * of_stage[x] + d * of_stage[y]
             of_stage[x] -= along * c
             of_stage[y] -= along * d
+    for i in range(solver.conditions):
+        begin[2 * stride + solver.multipliers[i]] = 0.0
     for k in range(0, stride, WIDTH):
         for i in range(s):
             at_p, at_v = now[k] + h * nodes[i] * now[stride + k], zeros() + now[stride + k]
+            at_p += stages.of_begin[2 * i] * now[2 * stride + k]
+            at_v += stages.of_begin[2 * i + 1] * now[2 * stride + k]
             for j in range(s):
                 at_p += stages.of_p[i * s + j] * a[j * stride + k]
                 at_v += stages.of_v[i * s + j] * a[j * stride + k]
             p[i * stride + k], v[i * stride + k] = at_p, at_v
     for i in range(s):
         load_row(system, solver, step * stages.samples + i)
-        _place(solver, stages, i)
+        place(solver, stages, i)
 
 
 @inlined
@@ -140,8 +144,9 @@ def factor_planes(solver: MotionSolver, stages: Stages) -> float:
     for plane in range(stages.stages):
         _constrain(solver, at(stages.matrices, plane * stages.entries))
     ratio, n, half, reach, space, entries = 1.0, solver.unknown, solver.half, solver.reach, solver.step, stages.entries
-    if stages.real != 0:
-        ratio = solver.routines.factor(n, half, reach, stages.matrices, space)
+    for plane in range(stages.real):
+        rows = at(stages.matrices, plane * entries)
+        ratio = min(ratio, solver.routines.factor(n, half, reach, rows, space))
     for plane in range(stages.real, stages.stages, 2):
         re, im = at(stages.matrices, plane * entries), at(stages.matrices, (plane + 1) * entries)
         ratio = min(ratio, stages.routines.factor_complex(n, half, reach, re, im, space))
@@ -188,8 +193,8 @@ def solve_planes(solver: MotionSolver, stages: Stages) -> None:
     """Solve for the right-hand side of each plane, or pair of planes."""
     small_code()
     n, half, entries, height, planes = solver.unknown, solver.half, stages.entries, stages.height, stages.planes
-    if stages.real != 0:
-        solver.routines.solve_both(n, half, stages.matrices, planes)
+    for plane in range(stages.real):
+        solver.routines.solve_both(n, half, at(stages.matrices, plane * entries), at(planes, plane * height))
     for plane in range(stages.real, stages.stages, 2):
         re, im = at(stages.matrices, plane * entries), at(stages.matrices, (plane + 1) * entries)
         stages.routines.solve_complex(n, half, re, im, at(planes, plane * height), at(planes, (plane + 1) * height))
@@ -231,7 +236,7 @@ def accelerate(system: System, solver: MotionSolver, stages: Stages) -> None:
         solver.rows,
     )
     system.p, system.v, system.a, system.matrix = state, at(state, n), at(state, 2 * n), rows
-    system.weight_p, system.weight_v, system.weight_a, system.since_committed = 0.0, 0.0, 1.0, 0.0
+    system.weight_p, system.weight_v, system.weight_a, system.since_committed = 0.0, 0.0, 1.0, stages.elapsed
     system.tangent, solver.rotations_wanted = 1, 0
     solver.routines.assemble(system, solver)
     for k in range(unknown):
@@ -320,25 +325,39 @@ def iterate(system: System, solver: MotionSolver, stages: Stages, step: int, fre
     return 0
 
 
+@inlined
+def start_step(solver, stages):
+    """Keep the state, and hand p, p' and p'' to the step that begins."""
+    n, state, before, begin = solver.size, solver.state, solver.before, stages.begin
+    for k in range(4 * n):
+        before[k] = state[k]
+    for row in range(3):
+        for k in range(n):
+            begin[row * stages.stride + k] = state[row * n + k]
+
+
+@inlined
+def end_step(solver, stages, step):
+    """Count rotations in the step, and save its end if it is wanted."""
+    n, state, every, count = solver.size, solver.state, solver.every, solver.rotation_count
+    stages.known = 1
+    solver.routines.count_rotations(count, solver.rotation_table, solver.before, state, solver.rotated_by)
+    if (solver.first_step + step) % every == 0:
+        row = (solver.first_step + step) // every
+        to = at(solver.saved, 3 * n * row)
+        for k in range(3 * n):
+            to[k] = state[k]
+        for k in range(count):
+            solver.saved_rotations[row * count + k] = solver.rotated_by[k]
+
+
 @routine()
 def march_stages(system: System, solver: MotionSolver, stages: Stages) -> int:
     """March through steps from `state`, advanced in place; return how many were completed."""
     small_code()
-    own, n, state, before, every, begin = (
-        stages.routines,
-        solver.size,
-        solver.state,
-        solver.before,
-        solver.every,
-        stages.begin,
-    )
-    statistics = solver.statistics
+    own, statistics = stages.routines, solver.statistics
     for step in range(stages.first, stages.steps):
-        for k in range(4 * n):
-            before[k] = state[k]
-        for row in range(3):
-            for k in range(n):
-                begin[row * stages.stride + k] = state[row * n + k]
+        start_step(solver, stages)
         attempt, done = 0, stages.solved
         while done == 0 and attempt < 3:
             own.predict(system, solver, stages, step, attempt)
@@ -357,13 +376,5 @@ def march_stages(system: System, solver: MotionSolver, stages: Stages) -> int:
             return step
         stages.solved = 0
         own.complete(system, solver, stages, step)
-        stages.known = 1
-        solver.routines.count_rotations(solver.rotation_count, solver.rotation_table, before, state, solver.rotated_by)
-        if (solver.first_step + step) % every == 0:
-            row = (solver.first_step + step) // every
-            to = at(solver.saved, 3 * n * row)
-            for k in range(3 * n):
-                to[k] = state[k]
-            for k in range(solver.rotation_count):
-                solver.saved_rotations[row * solver.rotation_count + k] = solver.rotated_by[k]
+        end_step(solver, stages, step)
     return stages.steps

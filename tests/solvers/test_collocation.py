@@ -1,4 +1,4 @@
-"""Gauss and Radau methods: their orders, what they keep, and stiff motions at steps that resolve no vibration."""
+"""Gauss, Radau and Bathe's methods: their orders, what they keep, and stiff motions at steps without resolution."""
 
 import itertools
 from dataclasses import replace
@@ -17,6 +17,7 @@ DEEP = bf.Rectangle(0.02, 0.1)
 STEPS = (4e-3, 2e-3, 1e-3)
 GAUSS = [(bf.Gauss(stages), 2 * stages) for stages in (1, 2, 3)]
 RADAU = [(bf.Radau(stages), 2 * stages - 1) for stages in (1, 2, 3)]
+BATHE = (bf.Bathe(), 2)
 ids = {"ids": lambda item: f"{type(item).__name__}-{item.stages}" if hasattr(item, "stages") else None}
 
 
@@ -65,7 +66,8 @@ def sprung(element):
 
 def errors(one, model, integrator):
     exact = bf.simulate(model, 0.04, 2.5e-4, integrator=bf.Radau(5)).position(one.end)[-1]
-    motions = (bf.simulate(model, 0.04, step, integrator=integrator) for step in STEPS)
+    steps = np.divide(STEPS, 8.0) if integrator == bf.Bathe() else STEPS
+    motions = (bf.simulate(model, 0.04, step, integrator=integrator) for step in steps)
     return np.array([np.linalg.norm(motion.position(one.end)[-1] - exact) for motion in motions])
 
 
@@ -74,24 +76,24 @@ def order(found):
 
 
 @pytest.mark.parametrize("element", [bf.CRBF(2), bf.ANCF(integration="lobatto")], ids=lambda element: element.name)
-@pytest.mark.parametrize(("integrator", "expected"), GAUSS + RADAU, **ids)
+@pytest.mark.parametrize(("integrator", "expected"), [*GAUSS, *RADAU, BATHE], **ids)
 def test_order_of_each_method(integrator, expected, element):
     assert order(errors(*pushed(beam(element)), integrator)) == pytest.approx(expected, abs=0.25)
 
 
 @pytest.mark.parametrize("make", [on_a_roller, hinged, linked, sprung])
-@pytest.mark.parametrize(("integrator", "expected"), [GAUSS[1], RADAU[1], RADAU[2]], **ids)
+@pytest.mark.parametrize(("integrator", "expected"), [GAUSS[1], RADAU[1], RADAU[2], BATHE], **ids)
 def test_order_with_rollers_hinges_conditions_and_dampers(integrator, expected, make):
     assert order(errors(*make(bf.CRBF(2)), integrator)) == pytest.approx(expected, abs=0.25)
 
 
-@pytest.mark.parametrize(("integrator", "expected"), [GAUSS[1], RADAU[1], RADAU[2]], **ids)
+@pytest.mark.parametrize(("integrator", "expected"), [GAUSS[1], RADAU[1], RADAU[2], BATHE], **ids)
 def test_order_with_a_damped_material(integrator, expected):
     assert order(errors(*pushed(beam(bf.CRBF(2), material=DAMPED)), integrator)) == pytest.approx(expected, abs=0.25)
 
 
 @pytest.mark.parametrize("element", [bf.CRBF(2), bf.ANCF(integration="lobatto")], ids=lambda element: element.name)
-@pytest.mark.parametrize(("integrator", "expected"), [*GAUSS, *RADAU[1:]], **ids)
+@pytest.mark.parametrize(("integrator", "expected"), [*GAUSS, *RADAU[1:], BATHE], **ids)
 def test_order_with_moved_supports_of_positions_and_reactions(integrator, expected, element):
     one, model = driven(element)
     exact = bf.simulate(model, 0.12, 2.5e-4, integrator=bf.Radau(5), save_every=16)
@@ -114,7 +116,7 @@ def mounted(kind):
     return pushed(one, other, connectors=[mount], supports=[bf.Clamp(one.start), bf.Pin(other.end)])
 
 
-@pytest.mark.parametrize("integrator", [bf.Gauss(2), bf.Radau(3)], **ids)
+@pytest.mark.parametrize("integrator", [bf.Gauss(2), bf.Radau(3), bf.Bathe()], **ids)
 def test_connectors_in_python_take_the_steps_of_compiled_ones_and_raise_their_errors(integrator):
     tips = []
     for kind in (Mount, bf.Bushing):
@@ -127,7 +129,7 @@ def test_connectors_in_python_take_the_steps_of_compiled_ones_and_raise_their_er
 
 
 @pytest.mark.parametrize("make", [on_a_roller, hinged, sprung])
-@pytest.mark.parametrize("integrator", [bf.Gauss(2), bf.Radau(3)], **ids)
+@pytest.mark.parametrize("integrator", [bf.Gauss(2), bf.Radau(3), bf.Bathe()], **ids)
 def test_sparse_tangents_take_the_steps_of_bands(monkeypatch, integrator, make):
     one, model = make(bf.CRBF(2))
     band = bf.simulate(model, 0.04, 2e-3, integrator=integrator).position(one.end)
@@ -182,9 +184,10 @@ ELEMENTS = [bf.CRBF(1), bf.CRBF(2), bf.CRBF(3), bf.ANCF(bf.Structural()), bf.ANC
 
 @pytest.mark.parametrize("element", ELEMENTS, ids=lambda element: element.name)
 @pytest.mark.parametrize("make", [double_pendulum, released_strip, four_bar])
-def test_radau_goes_on_where_steps_resolve_no_vibration_and_never_gains_energy(make, element):
+@pytest.mark.parametrize("integrator", [bf.Radau(3), bf.Bathe()], **ids)
+def test_stable_methods_go_on_where_steps_resolve_no_vibration_and_never_gain_energy(integrator, make, element):
     model, step, start = make(element)
-    motion = bf.simulate(model, 40 * step, step, integrator=bf.Radau(3), start=start)
+    motion = bf.simulate(model, 40 * step, step, integrator=integrator, start=start)
     energy = motion.energy()
     assert len(motion) == 41
     assert np.max(energy.total - energy.total[0]) < 1e-6 * np.ptp(energy.kinetic)
@@ -196,8 +199,10 @@ def test_history_is_committed_once_a_step():
     rod = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(3), law)
     load = bf.PointMoment(rod.end, 20.0, amplitude=lambda t: float(np.sin(10.0 * t) ** 4))
     model = bf.Model([rod], [bf.Clamp(rod.start)], [load])
-    own, known = (bf.simulate(model, 0.2, 2e-4, integrator=each) for each in (bf.Radau(2), bf.GeneralizedAlpha(0.5)))
-    np.testing.assert_allclose(own.rotation(rod.end)[-1], known.rotation(rod.end)[-1], rtol=2e-3)
+    known = bf.simulate(model, 0.2, 2e-4, integrator=bf.GeneralizedAlpha(0.5))
+    for integrator in (bf.Radau(2), bf.Bathe(), bf.CentralDifferences()):
+        own = bf.simulate(model, 0.2, 2e-4, integrator=integrator)
+        np.testing.assert_allclose(own.rotation(rod.end)[-1], known.rotation(rod.end)[-1], rtol=2e-3)
 
 
 @pytest.mark.parametrize(("make", "message"), [(bf.Gauss, "Gauss"), (bf.Radau, "Radau")])
@@ -205,3 +210,19 @@ def test_number_of_stages_is_checked(make, message):
     for stages in (0, 9, 1.5):
         with pytest.raises(bf.InputError, match=f"stages of {message}"):
             make(stages)
+
+
+def test_vibrations_decay_as_by_the_recursion_of_bathe():
+    """R(z) of his method at z = i w h, from the trapezoidal rule and the backward difference formula."""
+    one = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(3), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    modes = bf.solve_modes(bf.Model([one], [bf.Clamp(one.start)]), 1)
+    step = 0.15 / modes.frequencies[0]
+    z = 2j * np.pi * 0.15
+    half = (1.0 + z / 4.0) / (1.0 - z / 4.0)
+    factor = (4.0 * half - 1.0) / (3.0 - z)
+    motion = bf.simulate(modes.model, 12 * step, step, bf.Bathe(), start=modes.start(0, 1e-7))
+    found = motion.displacement(one.end)[:, 1]
+    assert found / found[0] == pytest.approx((factor ** np.arange(13)).real, abs=1e-5)
+    assert 1.0 - abs((4.0 * (1 + 1e-2j / 4) / (1 - 1e-2j / 4) - 1) / (3 - 1e-2j)) ** 2 == pytest.approx(
+        bf.Bathe().removed * 1e-8, rel=1e-2
+    )

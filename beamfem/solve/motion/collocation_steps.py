@@ -1,4 +1,4 @@
-"""Time steps of collocation methods; one compiled call takes many steps."""
+"""Time steps of methods with stages; one compiled call takes many steps."""
 
 from collections.abc import Callable
 
@@ -11,15 +11,16 @@ from beamfem.equations.motion_workspace import MotionWorkspace
 from beamfem.equations.system import System
 from beamfem.errors import ConvergenceError
 from beamfem.kernels.complex_band import complex_band
+from beamfem.kernels.explicit_steps import march_explicit
 from beamfem.kernels.motion_record import MotionLimits, MotionStatistics
 from beamfem.kernels.predictor import padded
 from beamfem.kernels.records import aligned
 from beamfem.kernels.stage_record import StageRoutines, Stages
 from beamfem.kernels.stage_steps import march_stages, predict
-from beamfem.solve.motion.collocation import Coefficients
 from beamfem.solve.motion.compiled_steps import StepsInCalls
 from beamfem.solve.motion.coupled_planes import CoupledPlanes, is_coupled
 from beamfem.solve.motion.equations_of_motion import EquationsOfMotion
+from beamfem.solve.motion.stage_coefficients import Coefficients
 from beamfem.solve.motion.stored_states import Saving
 
 _KEPT = 0.1  # rate of convergence up to which factors are kept for the next step
@@ -43,23 +44,26 @@ class CollocationSteps(StepsInCalls):
     ) -> None:
         super().__init__(system, space, statistics, step)
         self._rule, self._time, h = rule, begin, step
+        self._routine = march_explicit if rule.explicit else march_stages
         found = space.stages.pop(rule, None)
         self._stages = own = space.stages[rule] = _stages(system, space, rule) if found is None else found
-        of_p, z = h * h * rule.a @ rule.a, h * rule.values
-        parts = [((each**2).real, each.real, 1.0, (each**2).imag, each.imag, 0.0) for each in z]
-        weights = np.array(parts).reshape(-1, 3)[own.real :]  # the real eigenvalue has one plane
-        weights[: own.real] = parts[0][:3]
+        of_p, z = h * h * rule.of_p, h * rule.values
+        planes = [(each.real**2, each.real, 1.0) for each in z[: rule.real]]
+        for each in z[rule.real :]:
+            planes += [((each**2).real, each.real, 1.0), ((each**2).imag, each.imag, 0.0)]
         own.fill(
             time_step=h,
+            elapsed=0.0,
             rate=0.0,
             known=0,
             factored=0,
             solved=0,
             of_p=of_p,
-            of_v=h * rule.a,
-            to_multipliers=np.linalg.inv(of_p),
-            at_end=np.array([h * h * rule.weights @ rule.a, h * rule.weights, rule.at_end]),
-            weights=weights,
+            of_v=h * rule.of_v,
+            of_begin=rule.of_begin * (h * h, h),
+            to_multipliers=of_p if rule.explicit else np.linalg.inv(of_p),
+            at_end=rule.at_end * [[h * h], [h], [1.0]],
+            weights=np.zeros((own.stages, 3)) if rule.explicit else np.array(planes),
         )
         self._coupled = CoupledPlanes(system, space, own) if is_coupled(system) else None
         space.solver.fill(limits=MotionLimits(), statistics=statistics)
@@ -70,6 +74,8 @@ class CollocationSteps(StepsInCalls):
     def why(self) -> str:
         """Why a step has failed."""
         size = self._statistics.correction
+        if self._rule.explicit:
+            return "it moves the model by more than its size, so that it is too long to be stable"
         return f"the iteration on its stages did not converge; the last correction was {size:.2e} of the model"
 
     def _advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
@@ -80,7 +86,7 @@ class CollocationSteps(StepsInCalls):
         self._fill(state, self._prescribed(begins, times), sampled, saving)
         solver.fill(conditions=len(system.connectors.multipliers))
         if self._coupled is None and not space.assembler.calls_python:
-            done = self._march(state, begins, times, lambda: march_stages(space.assembler.record, solver, own))
+            done = self._march(state, begins, times, lambda: self._routine(space.assembler.record, solver, own))
         else:
             with Deferred() as self._deferred:
                 done = self._march(state, begins, times, lambda: self._called(state, sampled))
@@ -91,9 +97,9 @@ class CollocationSteps(StepsInCalls):
         """March with routines in Python, and keep the first error in them."""
         space, coupled = self._space, self._coupled
         if coupled is None:
-            done = int(march_stages(space.assembler.record, space.solver, self._stages))
+            done = int(self._routine(space.assembler.record, space.solver, self._stages))
         else:
-            done = coupled.march(state, times, self._deferred or Deferred())
+            done = coupled.march(self._routine, state, times, self._deferred or Deferred())
         errors = () if coupled is None else (coupled.take_error(),)
         self._error = next((each for each in (*errors, space.assembler.take_error()) if each is not None), None)
         return done
@@ -104,7 +110,12 @@ class CollocationSteps(StepsInCalls):
         while True:
             self._stages.first = done
             done = march()
-            if done == len(ends) or self.broken or not self._solved_together(state, done, begins, ends):
+            if (
+                done == len(ends)
+                or self.broken
+                or self._rule.explicit
+                or not self._solved_together(state, done, begins, ends)
+            ):
                 return done
 
     def _prescribed(self, begins: np.ndarray, ends: np.ndarray) -> np.ndarray:
@@ -162,11 +173,11 @@ def _stages(system: System, space: MotionWorkspace, rule: Coefficients) -> Stage
     solver = space.solver
     own = Stages(
         stages=len(rule.nodes),
-        real=len(rule.nodes) % 2,
+        real=rule.real,
         samples=len(rule.samples),
         stride=padded(solver.size),
         height=padded(solver.unknown),
-        entries=system.unknowns.entries,
+        entries=0 if rule.explicit else system.unknowns.entries,
         error_factor=rule.error[0],
         error_power=rule.error[1],
         kept_rate=_KEPT,

@@ -11,8 +11,8 @@ from beamfem.equations.equations import tangent_of
 from beamfem.equations.motion_workspace import MotionWorkspace
 from beamfem.equations.system import System
 from beamfem.kernels import motion_stages
+from beamfem.kernels.compiling import Routine
 from beamfem.kernels.stage_record import Stages
-from beamfem.kernels.stage_steps import march_stages
 from beamfem.linalg.lapack import LinAlgError, superlu
 from beamfem.solve.motion.coupled_stages import PythonRoutines
 from beamfem.solve.motion.start_acceleration import initial_acceleration
@@ -45,14 +45,14 @@ class CoupledPlanes(PythonRoutines):
         stages.routines.fill(**{name: cast(each, c_void_p).value for name, each in self._functions.items()})
         self._assembling = _Two(self._guarded(self._assemble))
 
-    def march(self, state: np.ndarray, times: np.ndarray, deferred: Deferred) -> int:
-        """March a state (4, n) with loads at times (rows,) [s]; see `stage_steps.march_stages`."""
+    def march(self, routine: Routine, state: np.ndarray, times: np.ndarray, deferred: Deferred) -> int:
+        """March a state (4, n) with loads at times (rows,) [s]; see `stage_steps.march_stages`, or another routine."""
         self._state, self._times, self._deferred = state, times, deferred
         usual = self._solver.routines
         self._solver.routines = usual.copy()
         self._solver.routines.assemble = cast(self._assembling, c_void_p).value
         try:
-            return int(march_stages(self._equations, self._solver, self._stages))
+            return int(routine(self._equations, self._solver, self._stages))
         finally:
             self._solver.routines = usual
 
@@ -87,5 +87,6 @@ class CoupledPlanes(PythonRoutines):
                 planes[re], planes[re + 1] = solution.real, solution.imag
 
     def _accelerate(self, system: int, solver: int, stages: int) -> None:
-        """Set p'' at the end of a step, and multipliers."""
-        self._state[2] = initial_acceleration(self._system, self._state, float(self._times[self._solver.now]))
+        """Set p'' in the state reached, and multipliers."""
+        time, elapsed = float(self._times[self._solver.now]), self._stages.elapsed
+        self._state[2] = initial_acceleration(self._system, self._state, time, elapsed=elapsed)

@@ -13,7 +13,6 @@ from beamfem.equations.motion_workspace import motion_workspace
 from beamfem.equations.system import System
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.results.solution_checks import advice
-from beamfem.solve.motion.collocation import coefficients, is_collocation
 from beamfem.solve.motion.collocation_steps import CollocationSteps
 from beamfem.solve.motion.compiled_steps import CompiledSteps, StepsInCalls
 from beamfem.solve.motion.energy_judgement import CHUNK, EnergyJudge
@@ -21,6 +20,7 @@ from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.generalized_alpha import Scheme, is_scheme
 from beamfem.solve.motion.marching_by_step import Memory, OwnSteps
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
+from beamfem.solve.motion.stage_coefficients import coefficients, has_stages
 from beamfem.solve.motion.start_acceleration import initial_acceleration, mean_acceleration
 from beamfem.solve.motion.stored_states import Saving
 from beamfem.solve.motion.time_steps import PARTS, Stretch
@@ -277,7 +277,7 @@ def _steps(
     system: System, integrator: Scheme | Integrator, part: Stretch, statistics: MotionStatistics
 ) -> Iterator[StepsInCalls | OwnSteps]:
     """Provide the object that takes the steps of a stretch."""
-    if is_collocation(integrator):
+    if has_stages(integrator):
         with motion_workspace(system) as space:
             begin, step = part.loads_from, part.step
             yield CollocationSteps(system, space, coefficients(integrator), begin, step, statistics)

@@ -150,7 +150,7 @@ def simulate(
     settings = settings_of(duration, step, integrator, save_every, tolerance, save_at, events)
     settings = replace(settings, watch=flag("watch", watch))
     plan = planned(model, settings, in_memory=file is None)
-    system, times, parts, acting = plan.system, plan.times, plan.parts, plan.acting
+    settings, system, times, parts, acting = plan.settings, plan.system, plan.times, plan.parts, plan.acting
     collects = save_at is not None or tolerance is not None or len(settings.events) > 0
     every, second = len(times) if collects else settings.save_every, model.unit("s")
     prescribed = prescribed_motion(system, plan.ends if file is None else plan.ends[:20])

@@ -1,7 +1,7 @@
 """What a motion is to do: its steps, its rows, and its loads over time."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -9,11 +9,12 @@ from beamfem.equations.compilation_notice import announce_compilation
 from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError
 from beamfem.model.model import Model
-from beamfem.solve.motion.collocation import is_collocation
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.events import Event, Watch
 from beamfem.solve.motion.generalized_alpha import GeneralizedAlpha, Scheme, is_scheme, require_rule
 from beamfem.solve.motion.saved_rows import SavedRows
+from beamfem.solve.motion.stable_step import stable_step
+from beamfem.solve.motion.stage_coefficients import Explicit, has_stages, is_explicit
 from beamfem.solve.motion.time_steps import Stretch, stretches
 from beamfem.solve.start.functions_of_time import FunctionOfTime, functions_of_time
 from beamfem.solve.start.start_checks import refuse_frame, require_memory
@@ -82,13 +83,13 @@ def settings_of(
 ) -> MotionSettings:
     """Return the settings of a motion. Raises InputError for invalid ones."""
     duration, save_every = positive("duration", duration), count("save_every", save_every)
-    if step is None and tolerance is None:
+    if step is None and tolerance is None and not is_explicit(integrator):
         raise InputError("simulate needs a step [s], or a tolerance that steps follow")
     step, tolerance = (None if x is None else positive(n, x) for n, x in (("step", step), ("tolerance", tolerance)))
     if step is not None and step > duration:
         raise InputError(f"step ({step:g}) must not exceed duration ({duration:g})")
     integrator = GeneralizedAlpha() if integrator is None else integrator
-    user_defined = not is_scheme(integrator) and not is_collocation(integrator)
+    user_defined = not is_scheme(integrator) and not has_stages(integrator)
     steps = any(callable(getattr(integrator, name, None)) for name in ("step", "run"))
     if isinstance(integrator, type) or (user_defined and not steps):
         raise InputError(
@@ -111,13 +112,16 @@ def planned(model: Model, settings: MotionSettings, in_memory: bool) -> MotionPl
 
     Raises InputError for what the model, or the memory, does not allow.
     """
-    system, step = system_of(model, static=False), settings.step
+    system = system_of(model, static=False)
     refuse_frame(system, "simulate")
+    if is_explicit(settings.integrator):
+        settings = _stable(system, settings, settings.integrator)
+    step = settings.step
     rows_at = settings.duration / _PARTS if step is None else step
     rule: tuple[float, ...] = ()
     if is_scheme(settings.integrator):
         rule = require_rule(settings.integrator, rows_at)
-    elif is_collocation(settings.integrator):
+    elif has_stages(settings.integrator):
         rule = (rows_at, settings.integrator.stages, settings.integrator.removed)
     require_memory(model.size if in_memory else 0, settings.duration, rows_at, settings.save_every)
     announce_compilation()
@@ -126,6 +130,17 @@ def planned(model: Model, settings: MotionSettings, in_memory: bool) -> MotionPl
     parts = stretches(times, [function for function in acting if function.amplitude])
     ends = np.concatenate([times[:1], *(part.times[1:] for part in parts)])
     return MotionPlan(system, settings, rule, rows_at, times, ends, parts, _wanted(settings, times), acting)
+
+
+def _stable(system: System, settings: MotionSettings, method: Explicit) -> MotionSettings:
+    """Return the settings with steps that are stable: longer ones are divided."""
+    longest, step = stable_step(system, method), settings.step
+    if settings.tolerance is not None:
+        return settings
+    if step is None:
+        return replace(settings, step=settings.duration / np.ceil(settings.duration / longest))
+    parts = int(np.ceil(step / longest * (1.0 - 1e-9)))
+    return replace(settings, step=step / parts, save_every=settings.save_every * (1 if settings.save_at else parts))
 
 
 def _rows_at(save_at: Sequence[float] | np.ndarray) -> tuple[float, ...]:

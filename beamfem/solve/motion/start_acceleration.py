@@ -13,19 +13,22 @@ from beamfem.solve.motion.constraints import constrained_acceleration
 _NEGLIGIBLE = 0.1  # of the inertia forces at the start: those that depend on the velocity after a step
 
 
-def initial_acceleration(system: System, state: np.ndarray, time: float, step: float = 0.0) -> np.ndarray:
+def initial_acceleration(
+    system: System, state: np.ndarray, time: float, step: float = 0.0, elapsed: float = 0.0
+) -> np.ndarray:
     """Return p'' (n,) that satisfies the equations of motion at the start; state: p, p', p'' of prescribed coordinates.
 
     Multipliers among p are set as well. With a step [s] it solves (M + step D) p'' = unbalanced forces, the mean over
     a step. In a beam with strong damping D, p'' itself decays within an instant, and from it the generalized-alpha
-    method would move by step^2 (1 / 2 - beta / gamma) p''. To first order in the step both are the same.
+    method would move by step^2 (1 / 2 - beta / gamma) p''. To first order in the step both are the same. elapsed [s]:
+    since history was committed.
     """
     motion = state[:3].copy()
     p, v, a = motion
     free = system.free_dofs
     multipliers = system.connectors.multipliers
     a[free] = p[multipliers] = v[multipliers] = 0.0
-    unbalanced, mass = residual(system, p, v, a, time), _mass(system, (p, v, a), time, step)
+    unbalanced, mass = residual(system, p, v, a, time, elapsed), _mass(system, (p, v, a), time, step)
     if len(multipliers):
         a[free] = constrained_acceleration(system, (p, v, a), unbalanced, mass, time)
         state[0, multipliers], state[1, multipliers], a[multipliers] = a[multipliers], 0.0, 0.0

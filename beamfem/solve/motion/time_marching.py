@@ -8,12 +8,12 @@ import numpy as np
 from beamfem.equations.system import System
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.progress import progress
-from beamfem.solve.motion.collocation import is_collocation
 from beamfem.solve.motion.cut_steps import Rows, StepCutter, keep_momentum
 from beamfem.solve.motion.energy_judgement import EnergyJudge
 from beamfem.solve.motion.equations_of_motion import Integrator
-from beamfem.solve.motion.generalized_alpha import Scheme, is_scheme
+from beamfem.solve.motion.generalized_alpha import GeneralizedAlpha, Scheme, is_scheme
 from beamfem.solve.motion.saved_rows import SavedRows
+from beamfem.solve.motion.stage_coefficients import has_stages, is_explicit
 from beamfem.solve.motion.start_acceleration import initial_acceleration
 from beamfem.solve.motion.time_steps import Stretch
 
@@ -146,10 +146,13 @@ def cutter_of(
     first_chunk = _FIRST_CHUNK // 50 if calls_python else _FIRST_CHUNK
     size, end = 1, float(parts[-1].times[-1])
     judge, largest = None, 1
-    if is_scheme(integrator) or is_collocation(integrator):
+    if is_scheme(integrator) or has_stages(integrator):
         size, largest = max(first_chunk // system.model.size, 1), max(_LARGEST_CHUNK // system.model.size, 1)
-    if is_scheme(integrator):
-        judge = EnergyJudge(system, integrator.rule(parts[0].step), end, state[:3])
+    judged: Scheme | None = integrator if is_scheme(integrator) else None
+    if is_explicit(integrator):  # by its damping alone
+        judged = GeneralizedAlpha(0.0 if integrator.order > 2 else 1.0)
+    if judged is not None:
+        judge = EnergyJudge(system, judged.rule(parts[0].step), end, state[:3])
     return StepCutter(system, integrator, record.statistics, record.pairs, end, size, largest, judge, relaxed)
 
 

@@ -10,6 +10,7 @@ from scipy.sparse import coo_array, csr_array
 
 from beamfem.cached_properties import cached_property
 from beamfem.element.fields import r_slots, rule_of
+from beamfem.equations.equation_numbering import Mesh
 from beamfem.errors import InputError
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import jacobians, length_points, reference_vectors, scales
@@ -18,6 +19,7 @@ from beamfem.model.contribution import (
     At,
     Contribution,
     Remembering,
+    amplitudes_of,
     is_one_sided,
     prescribed_by,
     remembered,
@@ -39,8 +41,8 @@ Motion = tuple[np.ndarray, np.ndarray, np.ndarray]  # p, p', p'' (n,)
 class Connector:
     """A contribution and the numbers of the coordinates that it acts on.
 
-    dofs (d,): x, y and rotation of each of m points, x and y alone if it has no rotations; own (k,): its multipliers,
-    and then the values that are prescribed for its conditions;
+    dofs (d,): x, y and rotation of each of m points, x and y alone if it has no rotations, and then amplitudes, three
+    in each further row of q; own (k,): its multipliers, and then the values that are prescribed for its conditions;
     memory (h,): its history variables; reference (m, 3): q in the reference; given: the part of the model that it
     belongs to, another one than `item` where a part along a beam acts at its nodes.
     """
@@ -61,6 +63,11 @@ class Connector:
     def multipliers(self) -> np.ndarray:
         """Numbers of its multipliers."""
         return self.own[: self.item.unknowns]
+
+    @property
+    def amplitudes(self) -> np.ndarray:
+        """Numbers of the amplitudes, the last ones of its coordinates."""
+        return self.dofs[len(self.dofs) - amplitudes_of(self.item) :]
 
     @property
     def values(self) -> np.ndarray:
@@ -110,10 +117,10 @@ class Connector:
         """Numbers of a compiled part, see `physics.connections`."""
         assert isinstance(self.item, PartAtPoints)
         connection = self.item.connection
-        if connection.points != len(self.reference):
+        if connection.points != (found := len(self.item.points)):
             raise InputError(
                 f"{connection.name} is defined for {connection.points} point{'s' * (connection.points > 1)}, but "
-                f"{self.name} has {len(self.reference)}"
+                f"{self.name} has {found}"
             )
         numbers, names = self.item.data(self.reference), connection.data
         if len(numbers) != len(names):
@@ -125,32 +132,37 @@ class Connector:
     @cached_property
     def per_point(self) -> int:
         """Number of coordinates of a point, 3 with its rotation or 2 without."""
-        return len(self.dofs) // len(self.reference)
+        return 3 if uses_rotations(self.item) else 2
+
+    @cached_property
+    def places(self) -> np.ndarray:
+        """Places (d,) of the coordinates among those of q (m, 3)."""
+        every = np.arange(self.reference.size)
+        return every[every % 3 < self.per_point][: len(self.dofs)]
 
     @cached_property
     def undeformed(self) -> np.ndarray:
         """Coordinates (d,) in the reference."""
-        return self.reference[:, : self.per_point].ravel()
+        return self.reference.ravel()[self.places]
 
     @cached_property
     def turns(self) -> np.ndarray:
         """Which of the coordinates (d,) are rotations."""
-        return np.arange(len(self.dofs)) % self.per_point == 2
+        turning = self.places % 3 == 2
+        turning[len(turning) - len(self.amplitudes) :] = False
+        return turning
 
     @cached_property
     def units(self) -> np.ndarray:
         """Natural unit (d,) of each coordinate: the length [m] of the longest connected beam, and 1 rad."""
         size = max(point.beam.curve.length for point in self.item.points)
-        return np.tile([size, size, 1.0][: self.per_point], len(self.reference))
+        return np.where(self.turns, 1.0, size)
 
     def by_point(self, values: np.ndarray) -> np.ndarray:
         """Return values (..., d) of the coordinates as (..., m, 3), zero for rotations that are none of them."""
-        result = values.reshape(*values.shape[:-1], len(self.reference), self.per_point)
-        if self.per_point == 3:
-            return result
-        padded = np.zeros((*result.shape[:-1], 3), dtype=result.dtype)
-        padded[..., : self.per_point] = result
-        return padded
+        result = np.zeros((*values.shape[:-1], self.reference.size), dtype=values.dtype)
+        result[..., self.places] = values
+        return result.reshape(*values.shape[:-1], *self.reference.shape)
 
     def on_points(self, forces: np.ndarray, q: np.ndarray) -> np.ndarray:
         """Return forces (..., d) as forces and moments on its points (..., m, 3), in a state q."""
@@ -178,7 +190,7 @@ class Connector:
                 f"{len(self.reference)} points and {len(self.own)} conditions, as an array ({count},), got "
                 f"{force.dtype} {force.shape}{flat}"
             )
-        return force if self.per_point == 3 else self._without_moments(force)
+        return force[self._components] if self.per_point == 3 else self._without_moments(force)
 
     def _without_moments(self, force: np.ndarray) -> np.ndarray:
         """Return the force (2 m + k,) of one (3 m + k,) whose moments are zero. Raises InputError if they are not."""
@@ -195,8 +207,7 @@ class Connector:
     @cached_property
     def _components(self) -> np.ndarray:
         """Numbers (2 m + k,) of forces and conditions among those (3 m + k,) with moments."""
-        numbers = np.arange(self.reference.size + len(self.own))
-        return numbers[(numbers % 3 < 2) | (numbers >= self.reference.size)]
+        return np.append(self.places, self.reference.size + np.arange(len(self.own)))
 
     def remember(self, at: At) -> np.ndarray:
         """Return the history variables (h,) after an accepted step. Raises InputError for an invalid result."""
@@ -253,7 +264,7 @@ class Connector:
                 for values, real in zip(own, state, strict=True):
                     values[...] = real  # anew, as users may have changed them
                 if number < places:
-                    place = divmod(number, self.per_point)
+                    place = divmod(int(self.places[number]), 3)
                     for values, step in steps:
                         values[place] += step
                 else:
@@ -284,8 +295,7 @@ class Connector:
     def numbers(self, motion: Motion, gravity: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return the arguments of compiled forces and tangents."""
         q, v, a = (values[self.dofs] for values in motion)
-        angles = q[2::3] if self.per_point == 3 else np.zeros(len(self.reference))
-        turned = np.column_stack([np.cos(angles), np.sin(angles)])
+        turned = np.column_stack([np.cos(q[self.turns]), np.sin(q[self.turns])])
         past = motion[0][self.memory]
         data = np.concatenate([self.data, past]) if len(past) else self.data
         return q, v, a, motion[0][self.own], turned, data, gravity
@@ -417,6 +427,16 @@ class Connectors:
             first += len(rates)
         return csr_array(coo_array((np.concatenate(entries), tuple(np.concatenate(places, axis=1))), shape=size))
 
+    @property
+    def bodies(self) -> list[Mesh]:
+        """The parts with amplitudes, as meshes of one element: nodes of three coordinates, and of one."""
+        found = []
+        for item in (each for each in self.items if len(each.amplitudes)):
+            alone = np.column_stack([item.amplitudes, np.full((len(item.amplitudes), 2), -1)])
+            dof = np.vstack([item.dofs[: -len(alone)].reshape(-1, 3), alone])
+            found.append(Mesh(np.arange(len(dof))[None], dof))
+        return found
+
     @cached_property
     def memory(self) -> np.ndarray:
         """Numbers (h,) of the history variables."""
@@ -491,9 +511,8 @@ class Connectors:
                 v[number] += 1j * COMPLEX_STEP
                 moved = p.real, v, a.real
                 momenta[number] = np.imag(item.energy(item.alone.at(moved, time, gravity))[0]) / COMPLEX_STEP
-            for (x, y), (px, py, turn) in zip(
-                item.by_point(motion[0][item.dofs])[:, :2], item.by_point(momenta), strict=True
-            ):
+            q = item.by_point(motion[0][item.dofs])
+            for (x, y, _), (px, py, turn) in zip(q, item.on_points(momenta, q), strict=False):
                 result += px, py, x * py - y * px + turn
         return result
 
@@ -564,7 +583,7 @@ def connectors_of(model: Model, static: bool) -> Connectors:
 
 def _checked_connectors(model: Model) -> tuple[Connector, ...]:
     """Return the connectors of a model, evaluated once to check shapes and finite values."""
-    first, connectors = model.coordinates, []
+    amplitude, first, connectors = model.coordinates - sum(map(amplitudes_of, model.at_points)), model.coordinates, []
     value = first_value(model)
     behind = value + sum(len(prescribed_by(item)) for item in model.at_points)
     for given in model.at_points:
@@ -575,6 +594,9 @@ def _checked_connectors(model: Model) -> tuple[Connector, ...]:
                 names = ("r_x^x", "r_x^y") if slope else _COORDINATES[: 3 if uses_rotations(item) else 2]
                 dofs += [numbers[name] for name in names]
                 positions.append([*place, 0.0])
+            dofs += range(amplitude, amplitude + amplitudes_of(item))
+            positions += [[0.0] * 3] * -(-amplitudes_of(item) // 3)
+            amplitude += amplitudes_of(item)
             values = len(prescribed_by(item))
             own = np.concatenate([np.arange(first, first + item.unknowns), np.arange(value, value + values)])
             first, value = first + item.unknowns, value + values

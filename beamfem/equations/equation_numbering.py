@@ -204,12 +204,14 @@ class Couplings(NamedTuple):
     """Couplings of coordinates that are not elements.
 
     coordinates: those (k,) of each; multipliers: coordinates that come last, since they have no stiffness; border: how
-    many unknowns they may couple beyond a band before the matrix is sparse, None if any coupling makes it sparse.
+    many unknowns they may couple beyond a band before the matrix is sparse, None if any coupling makes it sparse;
+    bodies: those that a band has to contain, as it is singular without them, as meshes of one element.
     """
 
     coordinates: Sequence[np.ndarray] = ()
     multipliers: Sequence[int] = ()
     border: int | None = None
+    bodies: Sequence[Mesh] = ()
 
 
 def order_unknowns(
@@ -240,23 +242,23 @@ def _cached_order(
 def _order(
     blocks: Sequence[Mesh], size: int, known: np.ndarray, joined: bool, couplings: Couplings, supported: np.ndarray
 ) -> Unknowns:
-    mask = np.ones(size, dtype=bool)
+    mask, every = np.ones(size, dtype=bool), [*blocks, *couplings.bodies]
     mask[known] = False
     order = np.arange(size)
-    if joined:
-        narrow = narrow_order(blocks, size)
-        widths = [_half_width(blocks, _numbers(each[mask[each]], size)) for each in (narrow, order)]
+    if joined or couplings.bodies:
+        narrow = narrow_order(every, size)
+        widths = [_half_width(every, _numbers(each[mask[each]], size)) for each in (narrow, order)]
         order = narrow if widths[0] < widths[1] else order
-    half_width = _half_width(blocks, _numbers(order[mask[order]], size))
+    half_width = _half_width(every, _numbers(order[mask[order]], size))
     if not joined:
         # short beams get the band width of long ones, for which there is compiled code
         half_width = max(half_width, *(int((block.dof[block.node[0]] >= 0).sum()) - 1 for block in blocks))
     if half_width > _WIDEST_BAND:
         return _sparse(blocks, size, mask, couplings)
     dofs = order[mask[order]]
-    turned = towards_support(blocks, order, mask, supported)
+    turned = towards_support(every, order, mask, supported)
     # joined nodes that share some coordinates only may be further apart then
-    if turned is not None and _half_width(blocks, _numbers(turned, size)) <= half_width:
+    if turned is not None and _half_width(every, _numbers(turned, size)) <= half_width:
         dofs = turned
     banded = _banded(blocks, size, _multipliers_last(dofs, couplings.multipliers), half_width, couplings)
     return banded or _sparse(blocks, size, mask, couplings)

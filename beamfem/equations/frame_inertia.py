@@ -94,8 +94,9 @@ def _require_frame_indifferent(item: Connector, system: System) -> None:
     p, zeros, _ = resting_near(alone)
     x, y, _ = (alone.by_point(p[alone.dofs]) - [*system.model.frame.about, 0.0]).T
     v, a = zeros.copy(), zeros.copy()
-    v[alone.dofs] = np.column_stack([-y, x, np.ones(len(x))])[:, : alone.per_point].ravel()
-    a[alone.dofs] = np.column_stack([-x, -y, np.zeros(len(x))])[:, : alone.per_point].ravel()
+    v[alone.dofs] = np.column_stack([-y, x, np.ones(len(x))]).ravel()[alone.places]
+    a[alone.dofs] = np.column_stack([-x, -y, np.zeros(len(x))]).ravel()[alone.places]
+    v[alone.amplitudes] = a[alone.amplitudes] = 0.0
     turning, resting = (alone.force_in(motion, TIMES[0], gravity) for motion in ((p, v, a), (p, zeros, zeros)))
     power = (turning - resting)[: len(alone.dofs)] * v[alone.dofs]
     if abs(power.sum()) > _NEGLIGIBLE * np.abs(power).sum():

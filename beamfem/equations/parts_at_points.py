@@ -41,12 +41,12 @@ class Alike(NamedTuple):
     @property
     def record(self) -> Parts:
         """The record that compiled code takes."""
-        coordinates, (force, tangent) = self.connection.points * self.connection.coordinates, passes_of(self.connection)
+        coordinates, (force, tangent) = self.connection.size, passes_of(self.connection)
         remember = remembering(self.connection)
         return Parts(
             count=len(self.numbers),
             coordinates=coordinates,
-            per_point=self.connection.coordinates,
+            rotations=self.connection.points if self.connection.coordinates == 3 else 0,
             multipliers=self.numbers.shape[1] - coordinates,
             unknowns=self.numbers.shape[1],
             data_size=self.data.shape[1],

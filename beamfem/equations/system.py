@@ -270,7 +270,8 @@ class System:
             border = 0 if self.static else None
         known = np.concatenate((self.prescribed_dofs, self.history.numbers))
         constrained = [*self.prescribed_dofs.tolist(), *(dof for dof, _ in self.inclined)] if self.static else []
-        order = self.blocks, self.model.size, known, joined, layout.Couplings(coupled, multipliers, border)
+        couplings = layout.Couplings(coupled, multipliers, border, connectors.bodies)
+        order = self.blocks, self.model.size, known, joined, couplings
         return layout.order_unknowns(*order, np.array(constrained, dtype=np.int64))
 
     @cached_property

@@ -21,6 +21,7 @@ from beamfem.model.model import Model
 from beamfem.model.rotating_frame import RotatingFrame
 from beamfem.model.sampled_functions import Sampled, SampledAlong, SampledSection
 from beamfem.model.time_functions import Interpolated
+from beamfem.parts.floating_body import FloatingBody
 from beamfem.public_names import public_dataclasses
 from beamfem.section import ElasticFibreSection, RememberingFibreSection, ShapedSection, StiffnessSection
 from beamfem.section.outline import RectangleOutline, StripOutline, TubeOutline
@@ -89,6 +90,7 @@ _FURTHER = (  # public ones of other folders, and those whose objects public fun
     Point,
     RotatingFrame,
     Interpolated,
+    FloatingBody,
     ShapedSection,
     StiffnessSection,
     ElasticFibreSection,

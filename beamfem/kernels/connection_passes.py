@@ -5,7 +5,7 @@ from beamfem.kernels.nodes import cosine_sine
 from beamfem.kernels.pointers import at, room
 from beamfem.kernels.record import Parts, System
 
-MOST = 12  # coordinates of a part, or multipliers and prescribed values
+MOST = 24  # coordinates of a part, or multipliers and prescribed values
 MOST_DATA = 24  # numbers and history variables of a part with history
 _ENTRIES = 2 * MOST * 2 * MOST
 
@@ -37,9 +37,8 @@ def _data(parts, part, p, recalled):
 @inlined
 def _turn(parts, q, turned):
     """Fill cosine and sine of the rotation of each point."""
-    if parts.per_point == 3:
-        for point in range(parts.coordinates // 3):
-            turned[2 * point], turned[2 * point + 1] = cosine_sine(q[3 * point + 2])
+    for point in range(parts.rotations):
+        turned[2 * point], turned[2 * point + 1] = cosine_sine(q[3 * point + 2])
 
 
 @routine()

@@ -186,8 +186,8 @@ class Parts(Record):
     """Parts at points of one kind, see `connection_passes`."""
 
     count: int
-    coordinates: int  # of all points of a part
-    per_point: int
+    coordinates: int  # of a part
+    rotations: int  # of its points
     multipliers: int
     unknowns: int  # coordinates, multipliers and prescribed values
     numbers: Annotated[Wholes, "count", "unknowns"]

@@ -24,7 +24,7 @@ from beamfem.mesh.beam_mesh import BeamMesh, Nodes
 from beamfem.mesh.reference import curvature, energy_points, reference_angle, reference_axis, sections_at
 from beamfem.model.along_beam import AlongBeam, functions_along, kinks_along
 from beamfem.model.beam import Beam, Point
-from beamfem.model.contribution import prescribed_by, remembered, uses_rotations
+from beamfem.model.contribution import amplitudes_of, prescribed_by, remembered, uses_rotations
 from beamfem.section.protocol import CrossSection, HasParts
 from beamfem.value_keys import by_value
 
@@ -174,7 +174,7 @@ class NumberedMeshes:
     """The meshes of all beams of a model.
 
     meshes: that of each beam; groups: the element of each block of beams; coordinates: number of coordinates of the
-    beams; size: number of all variables of the model.
+    beams and, behind them, amplitudes of parts; size: number of all variables of the model.
     """
 
     meshes: tuple[BeamMesh, ...]
@@ -265,6 +265,7 @@ def numbered_meshes(model: "Model") -> NumberedMeshes:
     for grid in grids:
         require_body(grid, model.unit)
     nodes, size = number_nodes(grids, angled, moving, turning)
+    size += sum(map(amplitudes_of, model.at_points))
     groups, blocks = _blocks(model.beams)
     filled, meshes = [0] * len(groups), []
     behind = size + needed.further

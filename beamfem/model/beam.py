@@ -136,9 +136,9 @@ class Beam:
     damping: Damping | None = None
 
     @property
-    def holding(self) -> tuple[Any, ...]:
-        """Joints that a model adds with the beam, such as those of a part that acts on it; none by default."""
-        return ()
+    def holding(self) -> tuple[Any, ...] | None:
+        """Joints of a beam that a model adds with it, where a part acts on it; None of one that is listed."""
+        return None
 
     def __post_init__(self) -> None:
         if not fulfils(self.curve, Curve):

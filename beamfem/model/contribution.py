@@ -9,6 +9,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.model.beam import Point, require_point
 from beamfem.model.supports import Value
+from beamfem.physics.connections import Connection
 from beamfem.reprs import brief
 from beamfem.validation import count, finite, flag, fulfils, items, shown
 
@@ -136,6 +137,12 @@ def uses_rotations(connector: Contribution) -> bool:
 def is_one_sided(connector: Contribution) -> bool:
     """Return whether the conditions of a connector come and go: they are g <= 0."""
     return getattr(connector, "one_sided", False)
+
+
+def amplitudes_of(connector: Contribution) -> int:
+    """Return the number of coordinates that a connector has besides those of its points, none if it is user-defined."""
+    definition = getattr(connector, "connection", None)
+    return definition.amplitudes if isinstance(definition, Connection) else 0
 
 
 def prescribed_by(connector: Contribution) -> tuple[Value, ...]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, is_dataclass, replace
-from itertools import product
+from itertools import chain, product
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -247,10 +247,11 @@ class Model:
         several = [getattr(part, "points", ()) for part in parts]
         places += [point for points in several if isinstance(points, tuple | list) for point in points]
         held = {place.beam: place.beam.holding for place in places if isinstance(place, Point)}
-        arms = [beam for beam, joints in held.items() if joints and beam not in self.beams]
+        arms = {beam: joints for beam, joints in held.items() if joints is not None and id(beam) not in self._numbers}
         if arms:
+            del vars(self)["_numbers"]
             object.__setattr__(self, "beams", (*self.beams, *arms))
-            object.__setattr__(self, "joints", (*self.joints, *(joint for arm in arms for joint in arm.holding)))
+            object.__setattr__(self, "joints", (*self.joints, *chain(*arms.values())))
 
     def _require(self, item: object, place: Beam | Point | None) -> None:
         kind = type(item).__name__

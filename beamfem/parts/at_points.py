@@ -82,31 +82,39 @@ class PartAtPoints:
         connection = self.connection
         if connection.remember is None:
             return ()
-        q, v = (list(map(tuple, x[:, : connection.coordinates])) for x in (at.q, at.v))
+        q, v = (connection.split(self._coordinates(x)) for x in (at.q, at.v))
         return connection.remember(q, v, (*self._data(at), *at.own), ANALYTIC)
 
     def shapes(self) -> tuple[ConnectorShape, ...]:
         """Return the shapes to draw; without any, a dashed line connects its points."""
         return ()
 
+    def on_points(self, forces: np.ndarray, q: np.ndarray) -> np.ndarray:
+        """Return forces (..., rows, 3) on its points, without those on amplitudes."""
+        return forces[..., : len(self.points), :]
+
     def _data(self, at: At) -> tuple[float, ...]:
         return (*self.data(at.reference), *at.memory)
 
+    def _coordinates(self, rows: np.ndarray) -> np.ndarray:
+        """Return the coordinates of rows like `At.q`."""
+        return np.asarray(rows)[:, : self.connection.coordinates].ravel()[: self.connection.size]
+
     def force(self, at: At) -> np.ndarray:
         """Return the resisting forces fx, fy, moment at each point, then the conditions (3 m + k,)."""
-        size, count = self.connection.coordinates, len(at.q)
-        q, v, a = (np.asarray(x)[:, :size].ravel() for x in (at.q, at.v, at.a))
+        size, columns = self.connection.size, self.connection.coordinates
+        q, v, a = (self._coordinates(x) for x in (at.q, at.v, at.a))
         turned = np.array([(np.cos(angle), np.sin(angle)) for angle in at.q[:, 2]]).ravel()
-        result = np.zeros(size * count + len(at.own), dtype=np.result_type(q, v, a, at.own, float))
+        result = np.zeros(size + len(at.own), dtype=np.result_type(q, v, a, at.own, float))
         in_python(self.connection)(q, v, a, at.own, turned, self._data(at), at.gravity, result)
-        forces = np.zeros((count, 3), dtype=result.dtype)
-        forces[:, :size] = result[: size * count].reshape(count, size)
-        return np.concatenate([forces.ravel(), result[size * count :]])
+        forces = np.zeros(at.q.shape, dtype=result.dtype)
+        forces.flat[np.flatnonzero(np.arange(forces.size) % 3 < columns)[:size]] = result[:size]
+        return np.concatenate([forces.ravel(), result[size:]])
 
     def energy(self, at: At) -> tuple[float, float]:
         """Return the kinetic and the potential energy [J]."""
         connection, data = self.connection, self._data(at)
-        q, v = (list(map(tuple, x[:, : connection.coordinates])) for x in (at.q, at.v))
+        q, v = (connection.split(self._coordinates(x)) for x in (at.q, at.v))
         kinetic = connection.kinetic(q, v, data, ANALYTIC) if connection.kinetic else 0.0
         potential = connection.potential(q, data, at.gravity, ANALYTIC) if connection.potential else 0.0
         return kinetic, potential

@@ -17,6 +17,7 @@ from beamfem.kernels.record import POINT_FORCE, POINT_TANGENT
 from beamfem.kernels.records import address_of
 from beamfem.physics.connection_source import connection_source
 from beamfem.physics.connections import Connection
+from beamfem.physics.floating_frame import floating_frame
 from beamfem.physics.stations import GENERATED
 
 
@@ -45,7 +46,7 @@ def passes_of(connection: Connection) -> Passes:
     """Return the compiled force and tangent. Raises InputError for energies that cannot be derived."""
     if not connection.name.isidentifier():
         raise InputError(f"the name of a Connection must be one word of letters, digits and _, got {connection.name!r}")
-    if max(connection.points * connection.coordinates, connection.multipliers + connection.prescribed) > MOST:
+    if max(connection.size, connection.multipliers + connection.prescribed) > MOST:
         raise InputError(f"{connection.name} has more than {MOST} coordinates or conditions; split it into parts")
     if len(connection.data) + len(connection.memory) > MOST_DATA and connection.memory:
         raise InputError(
@@ -73,7 +74,8 @@ def passes_of(connection: Connection) -> Passes:
 
 
 def _derived(connection: Connection, what: str, signature: Signature) -> Derived:
-    package = connection in GENERATED
+    known = *GENERATED, floating_frame(connection.points, connection.amplitudes, connection.dissipation is not None)
+    package = connection in known
     name = connection.name if package else f"{connection.name} of {id(connection)}"
     return Derived(f"{name}_{what}", signature, partial(connection_source, connection, what), on_disk=package)
 

@@ -20,10 +20,11 @@ def connection_source(connection: Connection, what: str) -> str:
     def entries(array: str, number: int) -> list[Any]:
         return symbols(graph, *(f"{array}[{i}]" for i in range(number)))
 
-    q, v, a = (entries(array, points * size) for array in "qva")
+    q, v, a = (entries(array, connection.size) for array in "qva")
     own, turned = entries("own", k + connection.prescribed), entries("turned", 2 * points)
     data, gravity = entries("data", len(connection.data) + len(connection.memory)), entries("gravity", 2)
-    rotations = dict(zip(q[2::3], zip(turned[::2], turned[1::2], strict=True), strict=True)) if size == 3 else {}
+    angles = q[2 : points * size : 3] if size == 3 else []
+    rotations = dict(zip(angles, zip(turned[::2], turned[1::2], strict=True), strict=False))
 
     def changed(terms: Sequence[Number], of_symbols: dict[Any, Number]) -> list[Any]:
         for angle, (c, s) in rotations.items():
@@ -50,7 +51,7 @@ def connection_source(connection: Connection, what: str) -> str:
         return c, s
 
     f = Functions(sqrt, lambda x: cosine_sine(x)[0], lambda x: cosine_sine(x)[1], lambda x: where_positive(x, x))
-    at, rates = ([tuple(x[size * i : size * (i + 1)]) for i in range(points)] for x in (q, v))
+    at, rates = connection.split(q), connection.split(v)
     if what == "remember":
         assert connection.remember is not None
         known = connection.remember(at, rates, (*data, *own[:k]), f)

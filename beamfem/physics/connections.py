@@ -64,6 +64,8 @@ class Connection(NamedTuple):
         Number of the conditions, the first ones, that are g(q) = u with values u that `PartAtPoints.prescribed` gives.
     one_sided : bool, default False
         Whether its conditions are g(q) <= 0, see `Contribution`.
+    amplitudes : int, default 0
+        Number of further coordinates [m] of its own, which no beam has; q and v have them as a last item.
     """
 
     name: str
@@ -81,6 +83,18 @@ class Connection(NamedTuple):
     compiled: tuple[int, int] | None = None
     prescribed: int = 0
     one_sided: bool = False
+    amplitudes: int = 0
+
+    @property
+    def size(self) -> int:
+        """Number of all coordinates."""
+        return self.points * self.coordinates + self.amplitudes
+
+    def split(self, values: Any) -> list[Any]:
+        """Return values (size,) of all coordinates by point, and then those of the amplitudes if there are any."""
+        ends = [self.coordinates * (point + 1) for point in range(self.points)]
+        rows = [tuple(values[end - self.coordinates : end]) for end in ends]
+        return [*rows, tuple(values[ends[-1] : self.size])] if self.amplitudes else rows
 
 
 def _mass_kinetic(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:

@@ -116,7 +116,7 @@ def carried_coordinates(state: State, target: Model) -> np.ndarray:
     for old, new in zip(source.meshes, target.meshes, strict=True):
         set_coordinates(new, _values_at_nodes(old, new, state), p)
     for item, same in same_connectors(system.connectors, system_of(source, True).connectors).items():
-        p[item.own] = state.p[same.own]
+        p[item.own], p[item.amplitudes] = state.p[same.own], state.p[same.amplitudes]
     return p
 
 

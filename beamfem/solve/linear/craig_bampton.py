@@ -88,6 +88,7 @@ def reduce(model: Model, interfaces: Sequence[Point], modes: int, about: State |
         transformation=csr_array(linear.transformation @ csr_array(basis)),
         coordinates=np.append(linear.coordinates[boundary], np.full(shapes.shape[1], -1)),
         names=tuple(names),
+        interfaces=tuple(interfaces),
     )
 
 

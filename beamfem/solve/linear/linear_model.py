@@ -16,6 +16,7 @@ from beamfem.linalg.lapack import superlu
 from beamfem.model.beam import Point
 from beamfem.model.load_base import Load
 from beamfem.model.model import Model
+from beamfem.parts.floating_body import FloatingBody
 from beamfem.results.axis_points import axis_at, rate_at
 from beamfem.results.solution import State
 from beamfem.solve.linear.quadratic_modes import slowest_rates
@@ -64,6 +65,8 @@ class LinearModel:
         Names of the coordinates z, such as "beam 0, node 3, theta".
     round_off : (float, float), [1/s^2], [1/s]
         Stiffness and damping of a rigid motion of unit mass that are round-off.
+    interfaces : tuple of Point
+        Points that it was reduced to, see `reduce`.
 
     Examples
     --------
@@ -83,6 +86,7 @@ class LinearModel:
     coordinates: np.ndarray
     names: tuple[str, ...]
     round_off: tuple[float, float]
+    interfaces: tuple[Point, ...] = ()
 
     def __len__(self) -> int:
         return len(self.names)
@@ -168,6 +172,38 @@ class LinearModel:
             elastic = elastic.real
         shapes, rates = np.concatenate([upright(shapes), elastic]), np.append(np.zeros(rigid), rates)
         return Modes(self.model, self.state, rates.imag / (2.0 * np.pi), rates.real, shapes, words)
+
+    def floating_body(self) -> FloatingBody:
+        """Return a reduced model as an elastic body of a mechanism, with large rigid motion and small deformation.
+
+        Its points are r = r1 + R(theta1) (X + Phi q) in the frame of its first interface, with the deformation q of the
+        reduced model. Its energies are exact for this field; stresses do not change its stiffness, as in all linear
+        models.
+
+        Returns
+        -------
+        FloatingBody
+            A part for `masses` of a Model. Its `points` are the interfaces, to which any other part is attached; its
+            beams, without stiffness and mass, need not be listed.
+
+        Raises
+        ------
+        InputError
+            If the model was not reduced to two interfaces or more, if it is not free or not in its reference, if loads
+            act on it, or if its interfaces have no rotations.
+
+        References
+        ----------
+        Shabana 2013, Dynamics of Multibody Systems, 4th ed., chapter 5.
+
+        Examples
+        --------
+        >>> arm = bf.reduce(bf.Model([beam]), [beam.start, beam.end], modes=2).floating_body()
+        >>> pendulum = bf.Model([], [bf.Pin(arm.points[0])], [bf.Gravity((0, -9.81))], masses=[arm])
+        """
+        from beamfem.solve.linear.floating_reduction import floating_body
+
+        return floating_body(self)
 
     def state_space(
         self, outputs: Sequence[Quantity] | None = None

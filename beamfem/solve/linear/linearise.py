@@ -147,6 +147,8 @@ def _names(system: System) -> dict[int, str]:
         for node in range(mesh.nodes):
             for label, dof in mesh.coordinates_of(node).items():
                 names.setdefault(dof, f"{beam}, node {node}, {label}")
+    for item in system.connectors.items:
+        names |= {dof: f"{item.name}, mode {number}" for number, dof in enumerate(item.amplitudes.tolist())}
     return names
 
 

@@ -29,8 +29,8 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
 
     Beams are matched by identity or, in a copy of their model, by position, in any order. Nodes are the same, but
     whether their coordinates are gradients or angles depends on supports and joints. Connectors that are in both models
-    keep their history and multipliers, and beams with the same element and section law their history. Raises InputError
-    if the beams do not match.
+    keep their history, multipliers and amplitudes, and beams with the same element and section law their history.
+    Raises InputError if the beams do not match.
     """
     source, target = state.model, system.model
     if source is target:
@@ -45,7 +45,9 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
     known = same_connectors(system.connectors, system_of(source, system.static).connectors)
     for item in system.connectors.items:
         if item in known:
-            p[item.memory], p[item.own] = state.p[known[item].memory], state.p[known[item].own]
+            same = known[item]
+            p[item.memory], p[item.own] = state.p[same.memory], state.p[same.own]
+            p[item.amplitudes], v[item.amplitudes] = state.p[same.amplitudes], state.v[same.amplitudes]
         else:
             p[item.values] = item.values_in(p)
     return p, v

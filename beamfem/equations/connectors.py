@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -27,7 +27,7 @@ from beamfem.model.contribution import (
 )
 from beamfem.model.load_base import factor
 from beamfem.model.model import Model
-from beamfem.parts.at_points import AxisRows, PartAlongBeam, PartAtPoints, Station
+from beamfem.parts.at_points import AxisRows, OnElements, PartAlongBeam, PartAtPoints, Station
 from beamfem.physics.compiled_connections import passes_of
 from beamfem.physics.connections import Connection
 from beamfem.validation import called, finite
@@ -35,6 +35,13 @@ from beamfem.validation import called, finite
 COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted
 
 Motion = tuple[np.ndarray, np.ndarray, np.ndarray]  # p, p', p'' (n,)
+
+
+class Row(NamedTuple):
+    """Numbers (u,) of coordinates and multipliers, and data (k,)."""
+
+    numbers: np.ndarray
+    data: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,6 +112,24 @@ class Connector:
     def compiled(self) -> Connection | None:
         """The definition by which compiled code evaluates it, None for a user-defined contribution."""
         return self.item.connection if isinstance(self.item, PartAtPoints) else None
+
+    @property
+    def definition(self) -> Connection | None:
+        """The definition of what compiled code evaluates, None for a user-defined contribution."""
+        return self.item.connection if isinstance(self.item, OnElements) else self.compiled
+
+    @property
+    def position_step(self) -> int:
+        """See `kernels.record.Parts`."""
+        return self.item.position_step if isinstance(self.item, OnElements) else 0
+
+    @cached_property
+    def rows(self) -> Sequence["Row"]:
+        """What compiled code evaluates: itself, or one of several."""
+        if isinstance(self.item, OnElements):
+            elements = zip(self.item.coordinates, self.item.data_of(self.reference), strict=True)
+            return [Row(self.all[own], data) for own, data in elements]
+        return [Row(self.all, self.data if self.compiled is not None else _NOTHING)]
 
     @property
     def dissipated(self) -> np.ndarray:

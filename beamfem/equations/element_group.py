@@ -346,10 +346,11 @@ def make_group(block: Block, layout: Layout, stations: Stations) -> ElementGroup
         "constants": stations.constants,
     }
     kinds, number = np.unique(stations.kind, return_inverse=True)
+    passes = [passes_of(STATIONS[kind]) for kind in kinds.tolist()]
     record = structure.record.copy()
     record.fill(
         station_kind=number,
-        kinds=[StationPasses(**passes_of(STATIONS[kind])._asdict()) for kind in kinds.tolist()],
+        kinds=[StationPasses(force=own.force, tangent=own.tangent) for own in passes],
         mass_damping=block.mass_damping,
         apart=not mixed.any(),
         law_points=block.history.shape[1],

@@ -140,7 +140,7 @@ def _sorted_by(keys: np.ndarray, count: int) -> np.ndarray:
 _FEW = 20_000  # coordinates; the order of larger models is not cached
 _NONE = np.empty(0, dtype=np.int64)
 _WIDEST_BAND = 64  # half width; wider models are solved faster by a sparse factorisation
-WIDEST_BORDER = 48  # unknowns coupled beyond a band; with more, a sparse factorisation is faster
+WIDEST_BORDER = 64  # unknowns coupled beyond a band; with more, a sparse factorisation is faster
 
 
 @dataclass(frozen=True, eq=False)

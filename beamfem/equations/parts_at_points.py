@@ -5,7 +5,7 @@ pass is a callback.
 """
 
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from ctypes import CFUNCTYPE, c_int64, c_void_p, cast
 from typing import NamedTuple
 
@@ -29,7 +29,8 @@ from beamfem.physics.connections import COORDINATE_SPRING, Connection
 class Alike(NamedTuple):
     """Parts of one kind: numbers (n, u) of coordinates and unknowns, history (n, h), and data (n, k).
 
-    places (n, u, u): positions of the entries of their tangents in the matrix, -1 for none.
+    places (n, u, u): positions of the entries of their tangents in the matrix, -1 for none; alternatives: rows that
+    each part has, one at a time; position_step: see `kernels.record.Parts`.
     """
 
     connection: Connection
@@ -37,14 +38,19 @@ class Alike(NamedTuple):
     data: np.ndarray
     history: np.ndarray
     places: np.ndarray
+    alternatives: int = 1
+    position_step: int = 0
 
     @property
     def record(self) -> Parts:
         """The record that compiled code takes."""
-        coordinates, (force, tangent) = self.connection.size, passes_of(self.connection)
+        coordinates, (force, tangent, root) = self.connection.size, passes_of(self.connection)
         remember = remembering(self.connection)
         return Parts(
-            count=len(self.numbers),
+            count=len(self.numbers) // self.alternatives,
+            alternatives=self.alternatives,
+            rows=len(self.numbers),
+            position_step=self.position_step,
             coordinates=coordinates,
             rotations=self.connection.points if self.connection.coordinates == 3 else 0,
             multipliers=self.numbers.shape[1] - coordinates,
@@ -53,6 +59,7 @@ class Alike(NamedTuple):
             history_size=self.history.shape[1],
             force=force,
             tangent=tangent,
+            root=root,
             add=add_parts,
             **({} if remember is None else {"remember": remember, "commit": commit}),
             **{name: np.ascontiguousarray(getattr(self, name)) for name in ("numbers", "data", "history", "places")},
@@ -88,24 +95,26 @@ def springs_to_ground(model: Model, unknowns: Unknowns, reference: np.ndarray) -
     return Alike(COORDINATE_SPRING, numbers[:, None], data, none, places[:, None, None])
 
 
-def by_kind(parts: Iterable[tuple[Connector, np.ndarray]], size: int) -> "list[Alike | PartsInPython]":
-    """Return parts by kind, each given with the positions (u, u) of its tangent's entries in the matrix, -1 for none.
+def by_kind(parts: Iterable[tuple[Connector, Sequence[np.ndarray]]], size: int) -> "list[Alike | PartsInPython]":
+    """Return parts by kind, each given with the positions (u, u) of the entries of each row in the matrix, or -1.
 
     size: number of coordinates.
     """
-    kinds: defaultdict[Connection | None, list[tuple[Connector, np.ndarray]]] = defaultdict(list)
+    kinds: defaultdict[tuple[Connection | None, int], list[tuple[Connector, Sequence[np.ndarray]]]] = defaultdict(list)
     for item, places in parts:
-        kinds[item.compiled].append((item, places))
-    called = kinds.pop(None, [])
+        kinds[item.definition, len(places)].append((item, places))
+    called = [(item, places[0]) for item, places in kinds.pop((None, 1), [])]
     found: list[Alike | PartsInPython] = [
         Alike(
             connection,
-            np.array([item.all for item, _ in some], dtype=np.int64),
-            np.array([item.data for item, _ in some], dtype=float),
+            np.array([row.numbers for item, _ in some for row in item.rows], dtype=np.int64),
+            np.array([row.data for item, _ in some for row in item.rows], dtype=float),
             np.array([item.memory for item, _ in some], dtype=np.int64),
-            np.array([places for _, places in some], dtype=np.int64),
+            np.array([own for _, places in some for own in places], dtype=np.int64),
+            alternatives,
+            some[0][0].position_step,
         )
-        for connection, some in kinds.items()
+        for (connection, alternatives), some in kinds.items()
         if connection is not None
     ]
     return [*found, PartsInPython(called, size)] if called else found

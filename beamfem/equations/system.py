@@ -137,7 +137,8 @@ class System:
     def parts(self) -> tuple[Alike | PartsInPython, ...]:
         """The parts at points, by kind, as compiled code takes them."""
         springs = (self.springs,) if len(self.springs.numbers) else ()
-        placed = zip(self.connectors.items, self.unknowns.coupled, strict=True)
+        places = iter(self.unknowns.coupled)
+        placed = [(item, [next(places) for _ in item.rows]) for item in self.connectors.items]
         return (*springs, *by_kind(placed, self.model.size))
 
     @property
@@ -264,7 +265,8 @@ class System:
     def unknowns(self) -> Unknowns:
         """The order of the coordinates that are not prescribed."""
         connectors, joined = self.connectors, bool(self.model.shared_joints)
-        coupled, multipliers = [item.all for item in connectors.items], connectors.multipliers.tolist()
+        coupled = [row.numbers for item in connectors.items for row in item.rows]
+        multipliers = connectors.multipliers.tolist()
         border: int | None = layout.WIDEST_BORDER
         if self.inclined:
             border = 0 if self.static else None

@@ -16,6 +16,7 @@ ROW = 72  # longer than a batch, so that rows do not all map to the same cache s
 ROWS_PASS, CONVECT_PASS = signature_of("iv"), signature_of("iddv")
 USER_LAW = signature_of("rrdrrr")  # of strain, history, dt, data, resultants and tangent
 POINT_FORCE = signature_of("rrrrrrrr")  # of q, v, a, own, turned, data, gravity and the result
+POINT_ROOT = signature_of("rrdr")  # of q, data, xi and the result: h, -dh/dxi, size and scale
 POINT_TANGENT = signature_of("rrrrrrrdddr")  # likewise, with ck, cv and ca before the result
 
 
@@ -186,19 +187,23 @@ class Parts(Record):
     """Parts at points of one kind, see `connection_passes`."""
 
     count: int
+    alternatives: int  # of a part: rows of the tables, of which it has one at a time
+    rows: int  # count * alternatives
+    position_step: int  # where there is a root: of points, from one that is a position to the next
     coordinates: int  # of a part
     rotations: int  # of its points
     multipliers: int
     unknowns: int  # coordinates, multipliers and prescribed values
-    numbers: Annotated[Wholes, "count", "unknowns"]
+    numbers: Annotated[Wholes, "rows", "unknowns"]
     data_size: int
-    data: Annotated[Reals, "count", "data_size"]
+    data: Annotated[Reals, "rows", "data_size"]
     history_size: int
     history: Annotated[Wholes, "count", "history_size"]  # coordinates that are its history variables
-    places: Annotated[Wholes, "count", "unknowns", "unknowns"]  # of the tangent's entries in the matrix, -1 for none
+    places: Annotated[Wholes, "rows", "unknowns", "unknowns"]  # of the tangent's entries in the matrix, -1 for none
     add = calls("connection_passes:add_parts")  # or a function in Python
     force = calls(POINT_FORCE)
     tangent = calls(POINT_TANGENT)
+    root = calls(POINT_ROOT)
     remember = calls(POINT_FORCE)  # of parts with history
     commit = calls("connection_passes:commit")  # likewise
 

@@ -196,6 +196,41 @@ class AxisRows(NamedTuple):
     points: tuple[Point, ...]
 
 
+class OnElements:
+    """A `Contribution` on a point and on one of the elements of a beam at a time, compiled; see `Connection.root`."""
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:
+
+        @property
+        def axis(self) -> AxisRows:
+            """The axis on which it acts."""
+            ...
+
+        @property
+        def connection(self) -> Connection:
+            """Its definition on an element; its points are row 1 of q and the vectors of the element."""
+            ...
+
+    @property
+    def position_step(self) -> int:
+        """Number of vectors of a node."""
+        return 1 + ("r_x" in self.axis.field.vectors)
+
+    @property
+    def coordinates(self) -> list[np.ndarray]:
+        """Numbers (k,) of the coordinates of each element among those of q (2 m,) and the multipliers."""
+        size = 2 * (1 + int(self.axis.rows.max()))
+        own = size + np.arange(self.connection.multipliers)
+        rows = [np.append(1, rows) for rows in self.axis.rows]
+        return [np.concatenate([(2 * each[:, None] + np.arange(2)).ravel(), own]) for each in rows]
+
+    def data_of(self, reference: np.ndarray) -> list[np.ndarray]:
+        """Return the numbers of each element; reference (m, 3): q in the reference."""
+        raise NotImplementedError
+
+
 class PartAlongBeam:
     """A part along a beam that acts at all of its nodes, or at the quadrature points of its elements.
 

@@ -1,18 +1,21 @@
 """A slider on the axis of a beam."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from beamfem.element.fields import cross
 from beamfem.errors import InputError
+from beamfem.kernels.connection_passes import LEAST, SAME, STEPS
 from beamfem.model.beam import Beam, Point, require_beam, require_point_of
 from beamfem.model.contribution import At
 from beamfem.model.load_shapes import Bar, ConnectorShape
-from beamfem.parts.at_points import AxisRows, PartAlongBeam
-
-_STEPS = 30  # of Newton's method for the closest place, at most
+from beamfem.parts.at_points import AxisRows, OnElements, PartAlongBeam
+from beamfem.physics.compiled_connections import passes_of
+from beamfem.physics.connections import Connection
+from beamfem.physics.sliding import sliding
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +71,7 @@ class SliderOnBeam(PartAlongBeam):
 
 
 @dataclass(frozen=True, eq=False)
-class OnAxis:
+class OnAxis(OnElements):
     """The condition of a slider on the vectors of a beam; see `AxisRows`. Row 1 of q is the position of the point."""
 
     axis: AxisRows
@@ -82,6 +85,22 @@ class OnAxis:
         """The first node of the beam, the point that slides, and the other nodes."""
         return self.axis.points
 
+    @property
+    def connection(self) -> Connection:
+        """A point that slides on an element."""
+        return sliding(self.axis.rows.shape[1])
+
+    def data_of(self, reference: np.ndarray) -> list[np.ndarray]:
+        """Return the coefficients of the shape functions of each element, and the distance in the reference."""
+        count = self.axis.rows.shape[1]
+        places = 0.5 * (1.0 - np.cos(np.pi * (np.arange(count) + 0.5) / count))
+        powers = np.linalg.solve(np.vander(places - 0.5, increasing=True), self.axis.field.centreline(places))
+        data = [np.concatenate([[count], (powers * scale).T.ravel(), [0.0]]) for scale in self.axis.scale]
+        distance = self._evaluate("force", self._closest(reference, data), reference, np.zeros(1))[-1]
+        for each in data:
+            each[-1] = distance
+        return data
+
     def on_points(self, forces: np.ndarray, q: np.ndarray) -> np.ndarray:
         """Return forces (..., rows, 3) on its points alone, those on slopes as moments."""
         count = len(self.points)
@@ -92,74 +111,58 @@ class OnAxis:
 
     def force(self, at: At) -> np.ndarray:
         """Return the forces on all rows, and the distance less that in the reference."""
-        place, start = self._closest(np.real(at.q)), self._closest(at.reference)
-        result = np.zeros((len(at.q), 3))
-        result[place.rows, :2] = np.real(at.own[0]) * np.outer(place.shape, place.normal)
-        return np.append(result, place.distance - start.distance)
+        q, own = np.real(at.q), np.real(at.own)
+        place = self._closest(q, self.data_of(at.reference))
+        forces, result = self._evaluate("force", place, q, own), np.zeros((len(q), 3))
+        result[np.append(1, self.axis.rows[place.element]), :2] = forces[:-1].reshape(-1, 2)
+        return np.append(result, forces[-1])
 
     def energy(self, at: At) -> tuple[float, float]:
         """Return no energies."""
         return 0.0, 0.0
 
     def exact_tangent(self, at: At) -> np.ndarray:
-        """Return the derivative (2 m + 1, 2 m + 1) of forces and condition by q and the multiplier.
-
-        With r_b - r = sum w_i x_i at the place s, where (r_b - r) . r' = 0, the gradient of the distance is w_i n, and
-        dn = - t (n . dr') / |r'|.
-        """
-        place, size = self._closest(at.q), len(at.q)
-        normal, length = place.normal, float(np.hypot(*place.tangent))
-        moved, turned = (np.kron(table, np.eye(2)) for table in (place.shape, place.slope))
-        rate = place.tangent @ moved + place.distance * (normal @ turned)
-        rate /= length**2 - place.distance * (normal @ place.bend)
-        across = (normal @ turned + (normal @ place.bend) * rate) / length
-        stiffness = np.outer(normal @ turned, rate) + np.outer(place.tangent @ moved, across) / length
-        numbers = (2 * place.rows[:, None] + np.arange(2)).ravel()
-        result = np.zeros((2 * size + 1, 2 * size + 1))
-        result[np.ix_(numbers, numbers)] = -at.own[0] * stiffness
-        result[numbers, -1] = result[-1, numbers] = normal @ moved
+        """Return the derivative (2 m + 1, 2 m + 1) of forces and condition by q and the multiplier."""
+        place = self._closest(at.q, self.data_of(at.reference))
+        result, own = np.zeros((2 * len(at.q) + 1,) * 2), self.coordinates[place.element]
+        result[np.ix_(own, own)] = self._evaluate("tangent", place, at.q, at.own, 1.0, 0.0, 0.0)
         return result
 
-    def _closest(self, q: np.ndarray) -> "_Place":
-        """Return the closest place on the axis, among the elements of the nearest node."""
-        apart = ((q[: len(self.points), :2] - q[1, :2]) ** 2).sum(axis=1)
-        apart[1] = np.inf
-        found = np.flatnonzero((self.axis.rows == np.argmin(apart)).any(axis=1)).tolist()
-        return min((self._on_element(element, q) for element in found), key=lambda place: place.gap)
+    def _evaluate(self, what: str, place: "_Place", q: np.ndarray, own: np.ndarray, *weights: float) -> np.ndarray:
+        """Return the force (k + 1,) or the tangent (k + 1, k + 1) on the point and the vectors of an element."""
+        vectors = self._vectors(place.element, q)
+        still, size, xi = np.zeros(len(vectors)), len(vectors) + 1, np.array([place.xi])
+        result = np.empty(size if what == "force" else (size, size))
+        passes = getattr(passes_of(self.connection), what)
+        passes(vectors, still, still, np.array(own), xi, place.data, np.zeros(2), *weights, result)
+        return result
 
-    def _on_element(self, element: int, q: np.ndarray) -> "_Place":
-        axis, field, point = self.axis, self.axis.field, q[1, :2]
-        rows, scale = axis.rows[element], axis.scale[element]
-        vectors = q[rows, :2] * scale[:, None]
-        low, high = -np.inf if element == 0 else 0.0, np.inf if element == len(axis.rows) - 1 else 1.0
-        xi = 0.5
-        for _ in range(_STEPS):
-            inside = np.array([min(max(xi, 0.0), 1.0)])
-            beyond = xi - inside[0]
-            slope, bend = (field.centreline(inside, order)[0] for order in (1, 2))
-            shape, bend = field.centreline(inside)[0] + beyond * slope, bend * (beyond == 0.0)
-            apart, tangent, second = point - shape @ vectors, slope @ vectors, bend @ vectors
-            size = tangent @ tangent
-            change = (apart @ tangent) / (curved if (curved := size - apart @ second) > 0.1 * size else size)
-            new = min(max(xi + change, low), high)
-            if abs(new - xi) <= 1e-14:
+    def _vectors(self, element: int, q: np.ndarray) -> np.ndarray:
+        return np.ascontiguousarray(q[np.append(1, self.axis.rows[element]), :2]).ravel()
+
+    def _closest(self, q: np.ndarray, data: Sequence[np.ndarray]) -> "_Place":
+        """Return the closest place on the axis, on the elements at the nearest node."""
+        nodes = self.axis.rows[:, :: self.position_step]
+        apart = ((q[nodes, :2] - q[1, :2]) ** 2).sum(axis=2).min(axis=1)
+        near = np.flatnonzero(apart <= apart.min()).tolist()
+        return min((self._on_element(element, q, data[element]) for element in near), key=lambda place: place.gap)
+
+    def _on_element(self, element: int, q: np.ndarray, data: np.ndarray) -> "_Place":
+        low, high = -np.inf if element == 0 else 0.0, np.inf if element == len(self.axis.rows) - 1 else 1.0
+        vectors, out, root, xi = self._vectors(element, q), np.empty(4), passes_of(self.connection).root, 0.5
+        assert root is not None
+        for _ in range(STEPS):
+            root(vectors, data, xi, out)
+            last, xi = xi, min(max(xi + out[0] / (out[1] if out[1] > LEAST * out[3] else out[3]), low), high)
+            if abs(xi - last) <= SAME:
                 break
-            xi = new
-        normal = np.array([-tangent[1], tangent[0]]) / np.sqrt(size)
-        every = np.concatenate([[1.0], -shape * scale]), np.concatenate([[0.0], slope * scale])
-        gap = float(apart @ apart)
-        return _Place(np.append(1, rows), *every, tangent, second, normal, float(apart @ normal), gap)
+        return _Place(element, data, xi, float(out[2]))
 
 
-@dataclass(frozen=True, eq=False)
-class _Place:
-    """A place on the axis: rows (k,) of q of the point and of vectors, with r_b - r = sum shape_i q_i, and so on."""
+class _Place(NamedTuple):
+    """A place xi on an element, its data, and the square of the distance from the point."""
 
-    rows: np.ndarray
-    shape: np.ndarray
-    slope: np.ndarray
-    tangent: np.ndarray
-    bend: np.ndarray
-    normal: np.ndarray
-    distance: float
+    element: int
+    data: np.ndarray
+    xi: float
     gap: float

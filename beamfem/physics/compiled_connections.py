@@ -24,9 +24,9 @@ from beamfem.physics.stations import GENERATED
 class Foreign:
     """A C function by its address, which is called as a `Routine` is: with arrays, and with numbers between them."""
 
-    def __init__(self, address: int, weights: int) -> None:
+    def __init__(self, address: int, weights: int, arrays: int = 7) -> None:
         self.address = address
-        kinds = [c_void_p] * 7 + [c_double] * weights + [c_void_p]
+        kinds = [c_void_p] * arrays + [c_double] * weights + [c_void_p]
         self._function = CFUNCTYPE(None, *kinds)(address)
 
     def __call__(self, *arguments: Any) -> None:
@@ -35,10 +35,11 @@ class Foreign:
 
 
 class Passes(NamedTuple):
-    """Compiled force and tangent."""
+    """Compiled force and tangent, and the equation of a place if there is one."""
 
     force: Routine | Foreign
     tangent: Routine | Foreign
+    root: Foreign | None = None
 
 
 @cache
@@ -54,12 +55,13 @@ def passes_of(connection: Connection) -> Passes:
         )
     if connection.compiled is not None:
         found = connection.compiled
-        if len(found) != 2 or not all(isinstance(each, int) and each > 0 for each in found):
+        if len(found) not in (2, 3) or not all(isinstance(each, int) and each > 0 for each in found):
             raise InputError(
                 f"compiled of {connection.name} must be the addresses of two C functions, for force and tangent, got "
                 f"{found}"
             )
-        return Passes(Foreign(connection.compiled[0], 0), Foreign(connection.compiled[1], 3))
+        force, tangent, *root = found
+        return Passes(Foreign(force, 0), Foreign(tangent, 3), *(Foreign(each, 1, arrays=2) for each in root))
     signatures = {"force": POINT_FORCE, "tangent": POINT_TANGENT}
     derived = [_derived(connection, what, signature) for what, signature in signatures.items()]
     try:
@@ -70,7 +72,7 @@ def passes_of(connection: Connection) -> Passes:
             f"force and tangent of {connection.name} cannot be derived from its energies: {error}. Write them with "
             "+, -, *, /, whole powers, f.sqrt and f.positive, and f.cos and f.sin of rotations"
         ) from error
-    return Passes(*derived)
+    return Passes(derived[0], derived[1])
 
 
 def _derived(connection: Connection, what: str, signature: Signature) -> Derived:

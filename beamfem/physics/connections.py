@@ -55,11 +55,13 @@ class Connection(NamedTuple):
         Multipliers follow the history variables in data, here and in `remember`.
     remember : callable, optional
         History variables after an accepted step, h(q, v, data, f), a tuple in the order of `memory`.
-    compiled : (int, int), optional
+    compiled : (int, int) or (int, int, int), optional
         Addresses of C functions in place of what is derived: force(q, v, a, own, turned, data, gravity, out) and
         tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out). All but the weights are pointers to doubles; own:
         multipliers and prescribed values, turned: cosine and sine of each rotation; out: the resisting forces, the
-        conditions and the reactions, or ck df/dq + cv df/dv + ca df/da row by row.
+        conditions and the reactions, or ck df/dq + cv df/dv + ca df/da row by row. Third, for parts on one of several
+        elements, h(q, data, xi, out) with h, -dh/dxi, what is least on the right element, and a scale of dh/dxi, of the
+        equation h = 0 for the place xi, which force and tangent then find in `turned`.
     prescribed : int, default 0
         Number of the conditions, the first ones, that are g(q) = u with values u that `PartAtPoints.prescribed` gives.
     one_sided : bool, default False
@@ -80,7 +82,7 @@ class Connection(NamedTuple):
     memory: tuple[str, ...] = ()
     force: Callable[..., tuple[Number, ...]] | None = None
     remember: Callable[..., tuple[Number, ...]] | None = None
-    compiled: tuple[int, int] | None = None
+    compiled: tuple[int, ...] | None = None
     prescribed: int = 0
     one_sided: bool = False
     amplitudes: int = 0

@@ -61,7 +61,7 @@ def test_a_motion_is_that_of_the_sparse_matrix(number, monkeypatch):
 @pytest.mark.parametrize("number", range(3 * len(KINDS) + 2))
 def test_its_tangent_is_that_of_the_sparse_matrix(number, monkeypatch, rng):
     found = []
-    for widest in (48, -1):
+    for widest in (64, -1):
         monkeypatch.setattr(layout, "WIDEST_BORDER", widest)
         system = System(list(of_all_kinds())[number], static=False)
         moved = system.reference + 1e-2 * np.random.default_rng(0).standard_normal(len(system.reference))
@@ -139,8 +139,8 @@ def test_an_error_in_a_force_ends_the_motion_with_the_states_before():
 
 
 def test_many_connectors_make_the_matrix_sparse():
-    own = beam(bf.CRBF(2), elements=30)
-    springs = [SpringDamper(own.at(k / 30), own.end, 10.0) for k in range(1, 21)]
+    own = beam(bf.CRBF(2), elements=40)
+    springs = [SpringDamper(own.at(k / 40), own.end, 10.0) for k in range(1, 40)]
     model = cantilever(own, [bf.Gravity((0.0, -9.81))], springs)
     bf.simulate(model, 0.01, 1e-3)
     assert system_of(model, static=False).unknowns.pattern is not None

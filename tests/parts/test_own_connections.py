@@ -159,7 +159,7 @@ def test_a_part_of_c_functions_is_the_one_of_its_energies():
 
 def test_parts_larger_than_the_room_of_compiled_code_are_refused():
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(2), SQUARE, STEEL)
-    points = tuple(beam.at(k / 16) for k in range(13))
-    large = bf.Connection("large", 13, 2, ("k",), compiled=(1, 1))
-    with pytest.raises(bf.InputError, match="large has more than 24 coordinates or conditions"):
+    points = tuple(beam.at(k / 16) for k in range(17))
+    large = bf.Connection("large", 17, 2, ("k",), compiled=(1, 1))
+    with pytest.raises(bf.InputError, match="large has more than 32 coordinates or conditions"):
         bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], connectors=[Part(points, large, (1.0,))]))

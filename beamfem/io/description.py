@@ -221,17 +221,21 @@ class _Writer:
             return [self.write(item) for item in value]
         if value is None or isinstance(value, bool | int | float | str):
             return value
-        if callable(value) and not (is_dataclass(value) and takes(value, 3)):
+        if callable(value) and not (is_dataclass(value) and _of_several(value)):
             return {"function": self.number(value)}
         return self.own_members(value)
 
     def number(self, function: Callable[[float], float]) -> int:
-        if takes(function, 3):
-            raise InputError("a function of time, angle and speed cannot be saved; make it a dataclass with __call__")
+        if _of_several(function):
+            raise InputError("a function of several numbers cannot be saved; make it a dataclass with __call__")
         if id(function) not in self.functions:
             self.functions[id(function)] = len(self.values), function  # kept, so that no other gets its identity
             self.values.append([function_value("saved function", function, at) for at in self.at])
         return self.functions[id(function)][0]
+
+
+def _of_several(function: Any) -> bool:
+    return takes(function, 2) or takes(function, 3)
 
 
 def _read(value: Any, beams: list[Beam], functions: list[Sampled]) -> Any:

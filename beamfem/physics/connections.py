@@ -8,6 +8,7 @@ as a function of time are g(q) = u, with u as a further coordinate, which a supp
 """
 
 from collections.abc import Callable
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 Number = Any  # a float, a complex number or a symbol
@@ -378,6 +379,25 @@ HINGE_FRICTION = Connection(
 )
 _LIMITS = ("low", "high", "stiffness", "damping")
 HINGE_STOP = Connection("hinge_stop", 2, 3, _LIMITS, None, _limits_potential, _limits_dissipation)
+
+
+@cache
+def spring_with_law(law: Function, grounded: bool) -> Connection:
+    """Return the definition of a spring whose force is law(elongation, f), with the data of the linear one."""
+    force = partial(_law_force, law, grounded)
+    return (GROUNDED_SPRING if grounded else SPRING)._replace(name="spring_with_law", potential=None, force=force)
+
+
+def _law_force(
+    law: Function, grounded: bool, q: list[Vector], v: list[Vector], data: Vector, f: Functions
+) -> tuple[Number, ...]:
+    ends = _to_ground(q, data) if grounded else q
+    length = _length(ends, f)
+    pull = law(length - data[2], f) / length
+    x, y = pull * (ends[1][0] - ends[0][0]), pull * (ends[1][1] - ends[0][1])
+    return (-x, -y) if grounded else (-x, -y, x, y)
+
+
 _SPRINGS = SPRING, GROUNDED_SPRING, COORDINATE_SPRING, TORSION_SPRING, CABLE, GROUNDED_CABLE, BUSHING
 _JOINTS = LINK, SLIDER, ROUGH_SLIDER, WELD, GEAR, MOTOR
 CONNECTIONS = MASS, BODY, *_SPRINGS, *_JOINTS, DRAG, STOP, ROUGH_STOP, HINGE_FRICTION, HINGE_STOP

@@ -170,3 +170,20 @@ def test_redundant_conditions_are_named_with_the_parts_that_cause_them():
         with pytest.raises(bf.InputError) as caught:
             solve(bf.Model([one, two], clamps, connectors=[needed, held]))
         assert "connectors (Link at (0, 0) and (0.5, 0)) are redundant" in str(caught.value)
+
+
+@pytest.mark.slow
+def test_a_link_does_not_drift_in_1e5_steps():
+    """Positions meet it to round-off; velocities to the error of the integrator, which does not grow."""
+    square, steel = bf.Rectangle(0.01, 0.01), bf.Material(2.1e11, 0.3, 7850.0)
+    left, right = (bf.Beam(bf.Line((x, 0), (x, -0.5 - 0.2 * x)), 2, bf.CRBF(2), square, steel) for x in (0.0, 1.0))
+    pins, weight = [bf.Pin(left.start), bf.Pin(right.start)], bf.Gravity((3.0, -9.81))
+    model = bf.Model([left, right], pins, [weight], connectors=[bf.Link(left.end, right.end)])
+    motion = bf.simulate(model, 100.0, step=1e-3, save_every=100)
+    apart, rate = (
+        getattr(motion, name)(right.end) - getattr(motion, name)(left.end) for name in ("position", "velocity")
+    )
+    assert np.abs(np.hypot(*apart.T) - np.hypot(1.0, 0.2)).max() < 1e-13
+    across = np.abs((apart * rate).sum(axis=1)) / np.abs(rate).max()
+    assert across.max() < 1e-6
+    assert across[-100:].max() < 2.0 * across[1:101].max()

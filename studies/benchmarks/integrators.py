@@ -14,14 +14,13 @@ from pathlib import Path
 import numpy as np
 
 import beamfem as bf
-from beamfem.view.plots import COLOURS, empty_figure, quiet, save_figure
+from beamfem.view.plots import COLOURS, MARKERS, empty_figure, quiet, save_figure
 from studies.benchmarks.peer_cases import pendulum
 from studies.benchmarks.peer_clock import once
 
 OUT = Path("out/bench")
 ERRORS = (1e-5, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9)
 _INSTANTS = 10
-_MARKERS = "o^sDvP*"
 
 
 @dataclass(frozen=True)
@@ -65,6 +64,9 @@ def soft() -> Case:
         bf.Gauss(4): (20, 30, 40, 60, 80, 100, 120, 160, 240),
         bf.Gauss(5): (20, 30, 40, 60, 80, 100, 120, 160),
         bf.Radau(3): (20, 40, 60, 80, 120, 160, 240, 320, 640),
+        bf.Bathe(): (100, 400, 1600, 6400, 25600),
+        bf.CentralDifferences(): (400, 1600, 6400, 25600),
+        bf.DormandPrince(): (120, 160, 240, 480),
     }
     return Case("printed pendulum", pendulum(bf.CRBF(2), 12), None, 0.5, steps, (bf.Gauss(4), 1000))
 
@@ -101,7 +103,14 @@ def draw(found: dict[str, dict[str, np.ndarray]], path: Path) -> None:
         quiet(own)
         for name, runs in integrators.items():
             number = names.index(name)
-            own.plot(runs[:, 1], runs[:, 0], f"{_MARKERS[number]}-", color=COLOURS[number], markersize=4, label=name)
+            own.plot(
+                runs[:, 1],
+                runs[:, 0],
+                f"{MARKERS[number]}-",
+                color=COLOURS[number % len(COLOURS)],
+                markersize=4,
+                label=name,
+            )
         own.set(xscale="log", yscale="log", xlabel="CPU time [ms], one thread")
         own.set_title(case, fontsize=10)
         own.legend(frameon=False, fontsize=7)

@@ -125,3 +125,14 @@ def test_steps_are_cut_where_a_motion_raises_the_highest_frequency():
     energy = motion.energy()
     assert motion.statistics.rejected > 0
     assert np.ptp(energy.total) < 0.02 * np.ptp(energy.kinetic)
+
+
+@pytest.mark.parametrize("method", [bf.Bathe(), bf.CentralDifferences(), bf.DormandPrince()])
+def test_friction_of_a_hinge_is_that_of_short_steps(method):
+    one, other = arm(bf.CRBF(2)), arm(bf.CRBF(2), (1, 0), (2, 0))
+    hinge, rough = bf.Hinge(one.end, other.start), bf.HingeFriction(one.end, other.start, 0.3, 50.0)
+    model = bf.Model([one, other], [bf.Clamp(one.start)], [bf.Gravity((0, -9.81))], joints=[hinge], connectors=[rough])
+    known = bf.simulate(model, 0.2, 1e-4, bf.GeneralizedAlpha(1.0))
+    motion = bf.simulate(model, 0.2, 1e-3 if method.order > 2 else 2e-4, method)
+    np.testing.assert_allclose(motion.position(other.end)[-1], known.position(other.end)[-1], atol=2e-6)
+    assert motion.energy().dissipated[-1] == pytest.approx(known.energy().dissipated[-1], rel=5e-3)

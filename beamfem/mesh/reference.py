@@ -66,7 +66,7 @@ def interpolate(grid: Grid, vectors: np.ndarray, element: np.ndarray, xi: np.nda
     slope = 1.0 / size[:, None]
 
     def sum_over(table: np.ndarray, values: np.ndarray) -> np.ndarray:
-        return np.einsum("qi,sqic->sqc", table, values)
+        return np.asarray((table[:, None] @ values)[:, :, 0])
 
     first = field.centreline(xi, 1) * slope
     if element_type.forces.turns_with == "r_x":

@@ -235,7 +235,7 @@ class _Writer:
 
 
 def _of_several(function: Any) -> bool:
-    return takes(function, 2) or takes(function, 3)
+    return takes(function, 3) or (takes(function, 2) and not takes(function, 1))
 
 
 def _read(value: Any, beams: list[Beam], functions: list[Sampled]) -> Any:

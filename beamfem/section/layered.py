@@ -147,7 +147,7 @@ class Layered:
 
     @property
     def _rectangles(self) -> list[tuple[Material, RectangleOutline]]:
-        places = zip(self.layers, pairwise(self._edges.tolist()), strict=True)
+        places = zip(self.layers, pairwise(self._edges), strict=True)
         return [(layer.material, RectangleOutline(self.width, low, high)) for layer, (low, high) in places]
 
     @property

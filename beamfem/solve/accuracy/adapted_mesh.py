@@ -8,6 +8,7 @@ from typing import TypeVar
 import numpy as np
 
 from beamfem.element.coordinates import Rotation
+from beamfem.element.element import Element
 from beamfem.element.fields import HIGHEST_ORDER, Lagrange
 from beamfem.equations.system import system_of
 from beamfem.errors import ConvergenceError, InputError, LimitPointError, LockingWarning
@@ -36,8 +37,10 @@ _MOST_MESHES = 16
 # orders below are raised first, by so much at a time, and up to the highest one where most elements would be divided
 _RAISED, _STEP = 4, 2
 _LITTLE = 100.0  # by how much a step from order 4 lowers an error as a rule; for more, two are taken
+_MUCH = 1000.0  # by how much it may lower one: if that is not enough, elements are divided as well
 _MOST_PARTS = 4  # of an element from one mesh to the next: far from the limit its order promises too much
 _TRUST = 1.5  # how many times as large as its estimate an error may be
+_SLOWEST = 0.1  # part of the promised rate of errors that is believed
 _SAFETY = 2.0  # by how much the next mesh is to fall below the accuracy
 _FALLS = 0.5  # what a mesh is to leave of the error of the one before; the shares are of no use otherwise
 _MOST_STALLED = 3  # meshes divided evenly whose error is not the smallest so far: it is round-off
@@ -83,7 +86,8 @@ def refined_until(
     # a result lists its elements, and has beams with numbers of them to be saved
     model = remeshed(model, [_listed(mesh) for mesh in model.meshes])
     iterations = elements = stalled = number = 0
-    lost: list[ConvergenceError] = []
+    pace = 1.0
+    lost, known = list[ConvergenceError](), list[int]()
     before = smallest = np.inf
     best: _Result | None = None
     evenly = False
@@ -96,7 +100,8 @@ def refined_until(
             if len(lost) > (_MOST_LIMITED if isinstance(reason, LimitPointError) else _MOST_LOST) or _agree(lost):
                 raise
             result, error, shares = None, np.inf, None
-        divided = sum(mesh.elements for mesh in model.meshes) > elements
+        parts = sum(mesh.elements for mesh in model.meshes) / max(elements, 1)
+        divided = parts > 1.0
         elements = sum(mesh.elements for mesh in model.meshes)
         if isinstance(result, Solution):
             iterations += result.iterations
@@ -110,10 +115,14 @@ def refined_until(
         stalled = stalled + 1 if evenly and divided and smallest <= error < np.inf else 0
         # shares are those of stress resultants, which may be exact where the interpolated axis is not
         evenly = shares is None or (divided and error > _FALLS * before)
-        before = error
+        rates = [_rate(mesh.beam.element) for mesh in model.meshes]
+        if rates == known and divided and error < before < np.inf:
+            # far from its limit a rate rises with each division: the next one is between it and the promise
+            pace = float(np.sqrt(np.clip(np.log(before / error) / np.log(parts) / np.mean(rates), _SLOWEST, 1.0)))
+        before, known = error, rates
         if error < smallest:
             smallest, best = error, result
-        model = refined(model, None if evenly else shares, _SAFETY * error / accuracy, fixed)
+        model = refined(model, None if evenly else shares, _SAFETY * error / accuracy, fixed, pace)
     falls = ", and falls no further" if stalled else ""
     raise ConvergenceError(
         f"the estimated error is at best {smallest:.2g} on {number} meshes{falls}; for an accuracy of {accuracy:g} it "
@@ -172,31 +181,45 @@ def static_attempt(solution: Solution, quantity: Quantity) -> tuple[Solution, fl
     return solution, change / size if size > 0.0 else change, error_shares(state, finer)
 
 
-def refined(model: Model, shares: Shares, excess: float, fixed: list[np.ndarray]) -> Model:
+def refined(model: Model, shares: Shares, excess: float, fixed: list[np.ndarray], pace: float = 1.0) -> Model:
     """Return a model with elements of higher order, or else shorter ones, so that they share an error evenly.
 
     shares (ne,): of the elements of each beam in the error, see `error_shares`, None to divide all
-    alike; excess: how many times too large it is; fixed: arc lengths [m] of each beam at which elements stay to end.
+    alike; excess: how many times too large it is; fixed: arc lengths [m] of each beam at which elements stay to end;
+    pace: rate at which errors fall by division, as part of what the orders promise.
     """
     elements = sum(mesh.elements for mesh in model.meshes)
     even = [np.full(mesh.elements, 1.0 / elements) for mesh in model.meshes]
     wanted = [share * elements * excess for share in shares or even]
-    return remeshed(model, [_refined(*each, shares is None) for each in zip(model.meshes, wanted, fixed, strict=True)])
+    evenly = shares is None
+    return remeshed(model, [_refined(*each, evenly, pace) for each in zip(model.meshes, wanted, fixed, strict=True)])
 
 
-def _refined(mesh: BeamMesh, wanted: np.ndarray, fixed: np.ndarray, evenly: bool) -> Beam:
+def _raisable(element: Element) -> bool:
+    rotates = isinstance(element.coordinates, Rotation) and element.integration == "reduced"
+    return type(element.field) is Lagrange and rotates
+
+
+def _rate(element: Element) -> int:
+    """Return the power of the length of elements with which errors fall."""
+    return 2 * element.field.degree if _raisable(element) else 2
+
+
+def _refined(mesh: BeamMesh, wanted: np.ndarray, fixed: np.ndarray, evenly: bool, pace: float) -> Beam:
     """Return a beam whose elements have at most their part of an error; wanted (ne,): by how much it is to fall."""
     beam, field = mesh.beam, mesh.beam.element.field
     if not (wanted > 1.0).any():
         return beam
-    rotates = isinstance(beam.element.coordinates, Rotation) and beam.element.integration == "reduced"
-    raisable = type(field) is Lagrange and rotates
-    rate = 2 * field.degree if raisable else 2
-    parts = np.clip(np.minimum(wanted, 1e300) ** (1.0 / rate), 1.0, _MOST_PARTS)
+    raisable, wanted = _raisable(beam.element), np.minimum(wanted, 1e300)
+    parts = np.clip(wanted ** (1.0 / (pace * _rate(beam.element))), 1.0, _MOST_PARTS)
     if raisable and (field.degree < _RAISED or (field.degree + _STEP <= HIGHEST_ORDER and np.median(parts) > 1.0)):
         low, steps = field.degree < _RAISED, 1 + int(np.median(wanted) > _LITTLE)
         order = min(field.degree + _STEP, _RAISED) if low else min(field.degree + _STEP * steps, HIGHEST_ORDER)
-        return replace(beam, element=of_order(beam.element, order))
+        beam = replace(beam, element=of_order(beam.element, order))
+        left = wanted / _MUCH ** ((order - field.degree) / _STEP)
+        if order < HIGHEST_ORDER or not (left > 1.0).any():
+            return beam
+        parts = np.clip(left ** (1.0 / _rate(beam.element)), 1.0, _MOST_PARTS)
     if evenly:
         parts = np.ceil(parts)
     # whole numbers of elements between fixed ends: if 1.2 times as many do, halves of all would be far too many

@@ -30,6 +30,7 @@ from beamfem.model.model import Model
 from beamfem.parts.at_points import AxisRows, OnElements, PartAlongBeam, PartAtPoints, Station
 from beamfem.physics.compiled_connections import passes_of
 from beamfem.physics.connections import Connection
+from beamfem.physics.stations import GENERATED
 from beamfem.validation import called, finite
 
 COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted
@@ -632,6 +633,8 @@ def _checked_connectors(model: Model) -> tuple[Connector, ...]:
     for connector in connectors:
         if connector.compiled is None:
             _require_finite(connector.alone)
+        elif connector.compiled not in GENERATED:
+            _require_finite_tangent(connector.alone)
     return tuple(connectors)
 
 
@@ -722,6 +725,16 @@ def _require_finite(item: Connector) -> None:
         at = replace(at, q=at.q + _TURNED, v=at.v + _TURNED, a=at.a + _TURNED)
     if not (np.isfinite(item.force(at)).all() and np.isfinite(item.energy(at)).all()):
         raise InputError(f"force or energy of {item.name} is not finite near the reference")
+
+
+def _require_finite_tangent(item: Connector) -> None:
+    """Raise InputError if the derivatives of a force that users define in formulas or C are not finite at the start."""
+    p, v, a = somewhere_near(item)
+    p[item.dofs] = item.undeformed
+    try:
+        item.tangent((p, v, a), TIMES[0], gravity_of(item), (1.0, 0.0, 0.0))
+    except LinAlgError:
+        raise InputError(f"force of {item.name} or its derivative is not finite in the reference") from None
 
 
 def same_connectors(own: Connectors, others: Connectors) -> dict[Connector, Connector]:

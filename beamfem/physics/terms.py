@@ -158,7 +158,11 @@ def source(name: str, arguments: str, purpose: str, opening: Sequence[str], resu
         indent = " " * (len(opening[-1]) - len(opening[-1].lstrip()))
 
     def named(part: Any) -> str:
-        return f"x{part.number}" if isinstance(part, Term) else part if isinstance(part, str) else repr(float(part))
+        if isinstance(part, Term | str):
+            return part if isinstance(part, str) else f"x{part.number}"
+        if not math.isfinite(part):
+            raise ValueError(f"the constant {part} is not finite")
+        return repr(float(part))
 
     for term in _through(results.values()):
         lines.append(f"{indent}{named(term)} = {_PRINTED[term.operation].format(*map(named, term.parts))}")

@@ -93,3 +93,20 @@ def test_a_law_of_a_class_is_saved_and_others_are_refused(tmp_path):
     bad = bf.SpringDamper(beam.end, (1.0, 1.0), lambda e, f: max(e, 0.0))
     with pytest.raises(bf.InputError, match="cannot be derived from its energies"):
         bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], loads, connectors=[bad]))
+
+
+@pytest.mark.parametrize(
+    ("law", "message"),
+    [
+        (lambda e, f: np.nan * e, "the constant nan is not finite"),
+        (lambda e, f: 1.0 / e, "force of SpringDamper or its derivative is not finite in the reference"),
+        (lambda e, f: 100.0 * f.sqrt(f.positive(e)) * e, "is not finite in the reference"),
+    ],
+    ids=["nan", "reciprocal", "root"],
+)
+@pytest.mark.parametrize("solve", [bf.solve_static, lambda model: bf.simulate(model, 0.01, step=1e-3)])
+def test_laws_that_are_not_finite_in_the_reference_are_refused(law, message, solve):
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), SQUARE, STEEL)
+    spring = bf.SpringDamper(beam.end, (1.0, 1.0), law)
+    with pytest.raises(bf.InputError, match=message):
+        solve(bf.Model([beam], [bf.Clamp(beam.start)], connectors=[spring]))

@@ -107,7 +107,7 @@ class Connector:
 
     @property
     def name(self) -> str:
-        return type(self.item).__name__
+        return type(self.given).__name__
 
     @cached_property
     def compiled(self) -> Connection | None:

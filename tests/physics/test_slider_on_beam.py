@@ -101,6 +101,9 @@ def test_it_is_saved_loaded_and_drawn_and_refuses_what_it_cannot_slide_on(tmp_pa
         bf.SliderOnBeam(slider.beam, slider.beam.end)
     with pytest.raises(bf.InputError, match="SliderOnBeam needs r_x as a coordinate"):
         pushed(bf.ShearRigid(), 0.01, steps=2)
+    twice = found.model.with_(connectors=[slider, bf.SliderOnBeam(slider.beam, slider.point)])
+    with pytest.raises(bf.InputError, match=r"SliderOnBeam at .* are redundant"):
+        bf.solve_static(twice)
 
 
 def test_a_mass_vibrates_with_the_beam_and_along_it():

@@ -140,6 +140,9 @@ class Beam:
         """Joints of a beam that a model adds with it, where a part acts on it; None of one that is listed."""
         return None
 
+    def require_place(self, fraction: float, parts: Sequence[Any]) -> None:
+        """Raise InputError if no part may act at a fraction of it in a model with some parts."""
+
     def __post_init__(self) -> None:
         if not fulfils(self.curve, Curve):
             raise InputError(f"curve of a Beam must be a curve such as Line, got {shown(self.curve)}")

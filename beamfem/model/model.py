@@ -241,12 +241,15 @@ class Model:
             warn_of_units(self.beams, self.loads, self.units, self._units)
 
     def _add_arms(self) -> None:
-        """Add the arms of rigid bodies on which parts act, with the joints that hold them."""
+        """Add the arms of bodies on which parts act, with the joints that hold them. Raises InputError."""
         parts = (*self.supports, *self.loads, *self.joints, *self.connectors, *self.masses)
         places = [getattr(part, name, None) for part in parts for name in ("place", "a", "b")]
         several = [getattr(part, "points", ()) for part in parts]
         places += [point for points in several if isinstance(points, tuple | list) for point in points]
-        held = {place.beam: place.beam.holding for place in places if isinstance(place, Point)}
+        points = [place for place in places if isinstance(place, Point)]
+        for point in points:
+            point.beam.require_place(point.fraction, parts)
+        held = {point.beam: point.beam.holding for point in points}
         arms = {beam: joints for beam, joints in held.items() if joints is not None and id(beam) not in self._numbers}
         if arms:
             del vars(self)["_numbers"]

@@ -1,9 +1,12 @@
 """An elastic body that moves with a floating frame of reference."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
+from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.model.part_units import UNIT
 from beamfem.parts.at_points import PartAtPoints
@@ -60,3 +63,11 @@ class Carrier(Beam):
     def holding(self) -> tuple[Rigid, ...]:
         """The joint with the beam that begins at the first interface, too."""
         return () if self.first is None else (Rigid(self.first.start, self.start),)
+
+    def require_place(self, fraction: float, parts: Sequence[Any]) -> None:
+        """Raise InputError for a place between interfaces, and if the body is not among the parts."""
+        if 0.0 < fraction < 1.0:
+            raise InputError("a part acts between interfaces of a floating body; reduce with an interface there")
+        bodies = (part for part in parts if isinstance(part, FloatingBody))
+        if not any(point.beam is self for body in bodies for point in body.points):
+            raise InputError("a part acts on a floating body that is not in the model; add it to masses")

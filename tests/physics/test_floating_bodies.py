@@ -186,3 +186,17 @@ def test_what_is_no_free_body_is_refused():
     gradients = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.ANCF(), SQUARE, bf.Material(2.1e11, 0.3, 7850.0))
     with pytest.raises(bf.InputError, match="rotations as coordinates"):
         bf.reduce(bf.Model([gradients]), [gradients.start, gradients.end], 2).floating_body()
+
+
+def test_points_of_a_body_that_is_not_in_the_model_and_between_its_interfaces_are_refused():
+    """Without the body, its interfaces are ends of beams without stiffness."""
+    body, other = (floating(rod(2.1e11), 0) for _ in range(2))
+    clamp, force = bf.Clamp(body.points[0]), bf.PointForce(body.points[1], (0.0, -1.0))
+    for masses in ([], [other], [bf.PointMass(body.points[1], 1.0)]):
+        with pytest.raises(bf.InputError, match="a floating body that is not in the model; add it to masses"):
+            bf.Model([], [clamp], [force], masses=masses)
+    model = bf.Model([], [clamp], [force], masses=[body])
+    with pytest.raises(bf.InputError, match="a floating body that is not in the model; add it to masses"):
+        model.with_(masses=[])
+    with pytest.raises(bf.InputError, match="between interfaces of a floating body"):
+        model.with_loads([bf.PointForce(body.points[0].beam.at(0.5), (0.0, -1.0))])

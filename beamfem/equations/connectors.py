@@ -634,7 +634,7 @@ def _checked_connectors(model: Model) -> tuple[Connector, ...]:
         if connector.compiled is None:
             _require_finite(connector.alone)
         elif connector.compiled not in GENERATED:
-            _require_finite_tangent(connector.alone)
+            _require_usable(connector.alone)
     return tuple(connectors)
 
 
@@ -727,12 +727,23 @@ def _require_finite(item: Connector) -> None:
         raise InputError(f"force or energy of {item.name} is not finite near the reference")
 
 
-def _require_finite_tangent(item: Connector) -> None:
-    """Raise InputError if the derivatives of a force that users define in formulas or C are not finite at the start."""
+def _require_usable(item: Connector) -> None:
+    """Raise InputError if derivatives of a force in formulas or C are not finite at the start, or it lacks a potential.
+
+    Motions judge their steps by the energy, in which the work of a force without its potential would be missing.
+    """
     p, v, a = somewhere_near(item)
+    gravity, still, definition = gravity_of(item), np.zeros_like(p), item.compiled
+    if definition is not None and item.item.conservative and type(item.item).energy is PartAtPoints.energy:
+        none = definition.potential is definition.kinetic is None and not definition.multipliers
+        if none and item.force_in((p, still, still), TIMES[0], gravity).any():
+            raise InputError(
+                f"{item.name} is conservative, but {definition.name} has a force at rest without its potential; give "
+                f"the potential as well, or {item.name} conservative = False"
+            )
     p[item.dofs] = item.undeformed
     try:
-        item.tangent((p, v, a), TIMES[0], gravity_of(item), (1.0, 0.0, 0.0))
+        item.tangent((p, v, a), TIMES[0], gravity, (1.0, 0.0, 0.0))
     except LinAlgError:
         raise InputError(f"force of {item.name} or its derivative is not finite in the reference") from None
 

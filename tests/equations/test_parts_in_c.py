@@ -162,3 +162,20 @@ def test_history_that_steps_change_in_compiled_code_is_that_of_python(python, mo
     assert (np.abs(one.p[-1, numbers]) > 1e-9).all()
     np.testing.assert_allclose(one.p, other.p, rtol=1e-9, atol=1e-12 * np.abs(other.p).max())
     np.testing.assert_allclose(one.energy().dissipated, other.energy().dissipated, rtol=1e-9, atol=1e-12)
+
+
+def test_a_conservative_force_without_its_potential_is_refused(tmp_path):
+    """Steps of motions are judged by the energy: without the potential, steps were cut for ever by Newmark's method."""
+
+    class Declared(Clutch):
+        conservative = True
+
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Rectangle(0.02, 0.01), bf.Material(2.1e11, 0.3, 7850.0))
+    connection = bf.Connection(
+        "clutch", 2, 3, NAMES, memory=("slip",), compiled=addresses("llvm", tmp_path), remember=slipped
+    )
+    part = Declared((beam.at(0.5), beam.end), (4e3, 2.0, 20.0), connection)
+    model = bf.Model([beam], [bf.Clamp(beam.start)], connectors=[part])
+    for solve in (bf.solve_static, lambda model: bf.simulate(model, 0.01, 1e-3, integrator=bf.Newmark())):
+        with pytest.raises(InputError, match="has a force at rest without its potential; give the potential"):
+            solve(model)

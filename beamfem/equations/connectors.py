@@ -31,7 +31,7 @@ from beamfem.parts.at_points import AxisRows, OnElements, PartAlongBeam, PartAtP
 from beamfem.physics.compiled_connections import passes_of
 from beamfem.physics.connections import Connection
 from beamfem.physics.stations import GENERATED
-from beamfem.validation import called, finite
+from beamfem.validation import called, finite, items
 
 COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted
 
@@ -148,7 +148,8 @@ class Connector:
                 f"{connection.name} is defined for {connection.points} point{'s' * (connection.points > 1)}, but "
                 f"{self.name} has {found}"
             )
-        numbers, names = self.item.data(self.reference), connection.data
+        given = called(f"data of {self.name}", self.item.data, self.reference)
+        numbers, names = items(f"data of {self.name}", given), connection.data
         if len(numbers) != len(names):
             raise InputError(
                 f"data of {self.name} must return {len(names)} numbers ({', '.join(names)}), got {len(numbers)}"
@@ -728,7 +729,7 @@ def _require_finite(item: Connector) -> None:
 
 
 def _require_usable(item: Connector) -> None:
-    """Raise InputError if derivatives of a force in formulas or C are not finite at the start, or it lacks a potential.
+    """Raise InputError if a part in formulas or C has numbers that are not finite at the start, or lacks a potential.
 
     Motions judge their steps by the energy, in which the work of a force without its potential would be missing.
     """
@@ -746,6 +747,8 @@ def _require_usable(item: Connector) -> None:
         item.tangent((p, v, a), TIMES[0], gravity, (1.0, 0.0, 0.0))
     except LinAlgError:
         raise InputError(f"force of {item.name} or its derivative is not finite in the reference") from None
+    with np.errstate(all="ignore"):
+        item.remember(item.at((p, v, a), TIMES[0], gravity))
 
 
 def same_connectors(own: Connectors, others: Connectors) -> dict[Connector, Connector]:

@@ -55,6 +55,8 @@ def connection_source(connection: Connection, what: str) -> str:
     if what == "remember":
         assert connection.remember is not None
         known = connection.remember(at, rates, (*data, *own[:k]), f)
+        if len(known) != len(connection.memory):
+            raise ValueError(f"remember must return {len(connection.memory)} numbers")
         to = {f"out[{number}]": result for number, result in enumerate(known)}
         return source(what, "q, v, a, own, turned, data, gravity, out", "the history variables", [], to)
     kinetic = connection.kinetic(at, rates, data, f) if connection.kinetic else 0.0

@@ -179,3 +179,29 @@ def test_a_conservative_force_without_its_potential_is_refused(tmp_path):
     for solve in (bf.solve_static, lambda model: bf.simulate(model, 0.01, 1e-3, integrator=bf.Newmark())):
         with pytest.raises(InputError, match="has a force at rest without its potential; give the potential"):
             solve(model)
+
+
+@pytest.mark.parametrize(
+    ("remember", "message"),
+    [
+        (lambda q, v, data, f: (data[3], data[3]), r"must return 1 finite numbers, got \[0. 0.\]"),
+        (lambda q, v, data, f: (1.0 / data[3],), "must return 1 finite numbers, got"),
+        (lambda q, v, data, f: data[3], "must return 1 finite numbers, got 0"),
+    ],
+    ids=["too many", "infinite", "no tuple"],
+)
+def test_history_of_a_wrong_number_or_that_is_not_finite_is_refused_before_a_motion(remember, message):
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Rectangle(0.02, 0.01), bf.Material(2.1e11, 0.3, 7850.0))
+    connection = bf.Connection("clutch", 2, 3, NAMES, memory=("slip",), force=forces, remember=remember)
+    part = Clutch((beam.at(0.5), beam.end), (4e3, 2.0, 20.0), connection)
+    with pytest.raises(InputError, match=f"remember of Clutch {message}"):
+        bf.simulate(bf.Model([beam], [bf.Clamp(beam.start)], connectors=[part]), 0.01, 1e-3)
+
+
+@pytest.mark.parametrize("numbers", [None, 3.0])
+def test_data_that_are_no_list_are_refused(numbers):
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Rectangle(0.02, 0.01), bf.Material(2.1e11, 0.3, 7850.0))
+    connection = bf.Connection("clutch", 2, 3, NAMES, memory=("slip",), force=forces, remember=slipped)
+    part = Clutch((beam.at(0.5), beam.end), numbers, connection)
+    with pytest.raises(InputError, match="data of Clutch must be a list"):
+        bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], connectors=[part]))

@@ -150,6 +150,19 @@ def test_gauss_is_symmetric_in_time_and_keeps_the_energy_of_a_soft_pendulum():
     np.testing.assert_allclose(back.position(arm.end)[-1], motion.position(arm.end)[0], atol=1e-7)
 
 
+def test_gauss_refuses_steps_that_gain_energy_where_they_do_not_resolve_vibrations():
+    """A step that converges to another solution has 1e7 times the energy of the fall."""
+    square, steel = bf.Rectangle(0.01, 0.01), bf.Material(2.1e11, 0.3, 7850.0)
+    plank = bf.Beam(bf.Line((0, 0), (1, -0.5)), 4, bf.CRBF(4), square, steel)
+    rod = bf.Beam(bf.Line((0.1, -0.05), (0.1, 0.05)), 1, bf.CRBF(2), square, steel)
+    clamped, fall = [bf.Clamp(plank.start), bf.Clamp(plank.end)], [bf.Gravity((0, -9.81))]
+    for stiffness, duration in ((1e6, 0.05), (1e5, 0.1)):
+        spring = bf.SpringDamper(plank.end, rod.start, stiffness)
+        model = bf.Model([plank, rod], clamped, fall, connectors=[spring], masses=[bf.PointMass(rod.start, 1.0)])
+        energy = bf.simulate(model, duration, 2e-3, bf.Gauss(2)).energy()
+        assert np.ptp(energy.total) < 0.02 * np.ptp(energy.potential)
+
+
 def test_accelerations_and_reactions_satisfy_the_equations_at_the_ends_of_gauss_steps():
     one, model = pushed(beam(bf.CRBF(2)))
     coarse, fine = (bf.simulate(model, 0.04, step, integrator=bf.Gauss(3)) for step in (2e-3, 5e-4))

@@ -17,6 +17,7 @@ _GROWN = 5.0  # times the largest kinetic energy so far, from a chunk to the nex
 _SMOOTH = 1e-6  # as _UNRESOLVED, of motions that grow smoothly from rest
 _SHARE = 0.01  # of the energy exchanged: what steps may change it by in all
 _SHARE_MOVED = 0.1  # the same where supports move, whose kinks excite vibrations at any step
+BROKEN = 0.5  # the same of methods that err by their order alone: beyond, steps have found another solution
 _DIFFERENCES = 3  # steps needed for third differences
 _MOST_DOUBT = 0.1  # of the energy exchanged: in work, which steps that fail do not resolve at all
 _ACCURACY = 1e-14  # of coordinates, that of the iterations
@@ -24,23 +25,24 @@ _FASTER = 1.1  # times the largest speed so far: of a state at which exchanged e
 
 
 class EnergyJudge:
-    """Judges chunks of steps; rule: of the scheme; end [s]: of the motion; start (3, n): its state at first.
+    """Judges chunks of steps; rule: of the scheme; end [s]: of the motion; start (3, n): its state at first;
+    share: of the energy exchanged, what steps may change it by in all.
 
-    A chunk is refused if it changes the energy less work by more than half of what is left of the share `_SHARE` of the
-    energy exchanged so far, and by more than its part of that share if it were spread evenly over the motion: so that
+    A chunk is refused if it changes the energy less work by more than half of what is left of the share of the energy
+    exchanged so far, and by more than its part of that share if it were spread evenly over the motion: so that
     changes add up to twice the share at most. Numerical damping may also remove up to 1 - rho^2 of the kinetic and
     strain energy in each step, with the spectral radius rho at infinite frequency. Energies of steps that were not cut
     are evaluated only where third differences of velocities, (w h)^3 times those of a vibration w, show that steps h do
     not resolve vibrations that matter, or where the next steps fail.
     """
 
-    def __init__(self, system: System, rule: np.ndarray, end: float, start: np.ndarray) -> None:
+    def __init__(self, system: System, rule: np.ndarray, end: float, start: np.ndarray, share: float = _SHARE) -> None:
         self._system, self._masses, self._radius = system, system.table(masses), radius_at_infinity(rule)
         self._duration = end
         self._damps = self._radius < 1.0 - 1e-6
         self._first = self._solution(np.zeros(1), start[None].copy())
         moved = any(callable(item.value) for item in system.prescribed)
-        self._share = _SHARE_MOVED if moved else _SHARE
+        self._share = _SHARE_MOVED if moved else share
         self._fastest, self._speed, self._speed_evaluated = self._first, 0.0, 0.0
         self._drift = self._total = 0.0
         self._parts = np.empty((3, 0))  # extreme kinetic, strain and potential energies so far
@@ -62,7 +64,8 @@ class EnergyJudge:
         )
 
     @cached_property
-    def _conservative(self) -> bool:
+    def conservative(self) -> bool:
+        """Whether energies need no work of loads and supports, which is by the reactions at the ends of steps."""
         return not (driven(self._first) or self._system.damped or self._system.history.laws)
 
     def accept(self, times: np.ndarray, states: np.ndarray, cut: bool, failed: bool, final: bool) -> int:
@@ -101,7 +104,7 @@ class EnergyJudge:
     def _first_refused(self, times: np.ndarray, states: np.ndarray, chunks: list[tuple[int, int]], final: bool) -> int:
         """Return where the first chunk of steps begins that is refused, or the number of steps."""
         self._evaluate_exchanged()
-        for group in [chunks] if self._conservative else _adjacent(chunks):
+        for group in [chunks] if self.conservative else _adjacent(chunks):
             rows = sorted({row for first, last in group for row in range(first, last + 1)})
             found = balance(self._solution(times[rows], states[rows]), _ACCURACY)
             place = {row: i for i, row in enumerate(rows)}
@@ -115,7 +118,7 @@ class EnergyJudge:
         energy, rows = found.energy, slice(first, last + 1)
         parts = _extremes(self._parts, energy.kinetic[rows], energy.strain[rows], energy.potential[rows])
         exchanged = max(float(np.ptp(parts, axis=1).max()), float(parts[0, 1]))
-        if self._conservative and not self._damps:
+        if self.conservative and not self._damps:
             self._drift = float(energy.total[first]) - self._total
         rises, losses = found.rise[rows] - found.rise[first], found.loss[rows] - found.loss[first]
         share = self._share * exchanged

@@ -342,7 +342,7 @@ def _cutter(plan: MotionPlan, state: np.ndarray, checkpoint: Checkpoint | None =
         cutter.size = cutter.largest = _steps(plan)
     if checkpoint is not None:
         cutter.cuts, cutter.further = checkpoint.counts[1:3].tolist()
-        if cutter.judge is not None:
+        if cutter.judge is not None and checkpoint.judge:
             cutter.judge.recall(checkpoint.judge)
         memory = dict(checkpoint.memory)
         cutter.memory = Memory(memory.pop("p"), memory) if memory else None

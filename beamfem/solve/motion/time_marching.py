@@ -9,7 +9,7 @@ from beamfem.equations.system import System
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.progress import progress
 from beamfem.solve.motion.cut_steps import Rows, StepCutter, keep_momentum
-from beamfem.solve.motion.energy_judgement import EnergyJudge
+from beamfem.solve.motion.energy_judgement import BROKEN, EnergyJudge
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.generalized_alpha import GeneralizedAlpha, Scheme, is_scheme
 from beamfem.solve.motion.saved_rows import SavedRows
@@ -153,6 +153,9 @@ def cutter_of(
         judged = GeneralizedAlpha(0.0 if integrator.order > 2 else 1.0)
     if judged is not None:
         judge = EnergyJudge(system, judged.rule(parts[0].step), end, state[:3])
+    elif has_stages(integrator) and not integrator.removed:  # Gauss; Radau damps what steps do not resolve
+        judge = EnergyJudge(system, GeneralizedAlpha(1.0).rule(parts[0].step), end, state[:3], BROKEN)
+        judge = judge if judge.conservative else None
     return StepCutter(system, integrator, record.statistics, record.pairs, end, size, largest, judge, relaxed)
 
 

@@ -1,10 +1,13 @@
 """Static solves to a given accuracy: true errors against much finer meshes, and what the result tells."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 import beamfem as bf
 from beamfem.solve.accuracy.adapted_mesh import refined
+from studies.stability import deep_arches, williams_toggle
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 SECTION = bf.Rectangle(0.02, 0.01)
@@ -135,7 +138,7 @@ def test_critical_loads_are_as_accurate_as_asked_for(accuracy):
     assert found.load_factors == pytest.approx(bf.solve_buckling(fine, 2).load_factors, rel=1.2 * (accuracy or 1e-4))
 
 
-@pytest.mark.parametrize("accuracy", [1e-3, 1e-5])
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-4, 1e-6])
 def test_limit_points_are_as_accurate_as_asked_for(accuracy):
     """Lee's frame; near its limit points displacements at a given load have errors without bound."""
     section, material = bf.Section(area=6.0, second_moment=2.0), bf.Material(7.2e6, 0.3, 2.7e-5)
@@ -157,6 +160,53 @@ def test_limit_points_are_as_accurate_as_asked_for(accuracy):
     assert found == pytest.approx(exact, abs=2.0 * accuracy * exact[0])
     again = bf.trace_equilibrium(frame.meshed(path), until=exact[0] / 2.0)
     assert again.model.beams[0].elements == path.model.beams[0].elements
+
+
+@pytest.mark.parametrize("accuracy", [1e-4, 1e-6])
+def test_limits_of_a_toggle_are_as_accurate_as_asked_for(accuracy):
+    """Williams' toggle, by collocation of the Reissner beam."""
+    toggle = williams_toggle.toggle(None, 1, 1)
+    path = bf.trace_equilibrium(toggle.meshed("auto"), until=90.0, accuracy=accuracy)
+    for found, (load, deflection, _) in zip(path.limit_points, williams_toggle.LIMITS, strict=True):
+        assert found.load_factor == pytest.approx(load, abs=accuracy * 90.0)
+        assert -found.displacement(toggle.beams[0].end)[1] == pytest.approx(deflection, abs=accuracy * 25.886)
+
+
+@pytest.mark.parametrize("accuracy", [1e-4, 1e-6])
+def test_limits_of_a_deep_arch_are_as_accurate_as_asked_for(accuracy):
+    """The clamped-hinged arch of 215 degrees, the elastica by collocation; L / h = 1e4, so that it hardly stretches."""
+    arch = deep_arches.arch("clamped-hinged", 1, 1, 1e4).meshed("auto")
+    path = bf.trace_equilibrium(arch, until=lambda state: deep_arches.crown(state)[1] > 1.3, accuracy=accuracy)
+    limit = path.limit_points[0]
+    assert limit.load_factor == pytest.approx(deep_arches.LIMITS["clamped-hinged"], rel=2.0 * accuracy)
+    size = 2.0 * deep_arches.HALF
+    assert deep_arches.crown(limit) == pytest.approx((0.61141465795, 1.13732063125), abs=2.0 * accuracy * size)
+
+
+@pytest.mark.parametrize("accuracy", [1e-4, 1e-6])
+def test_tips_of_cantilevers_are_as_accurate_as_asked_for(accuracy):
+    """P L^2 = 5 E I and L / h = 100, by collocation of the Reissner beam."""
+    section = bf.Rectangle(0.01, 0.01)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), section=section, material=STEEL)
+    force = bf.PointForce(beam.end, (0.0, 5.0 * 2e11 * section.second_moment))
+    found = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [force]), accuracy=accuracy)
+    assert found.displacement(beam.end)[-1] == pytest.approx((-0.38764432832607, 0.71385896416489), abs=accuracy)
+
+
+@pytest.mark.parametrize("accuracy", [1e-4, 1e-6])
+def test_slender_strips_with_thin_hinges_are_as_accurate_as_asked_for(accuracy):
+    """L / h = 1e5, half as thick on a hundredth of it, which bends most; the reference has 36 elements of order 6."""
+    found = []
+    for mesh in ({}, {"elements": 12, "element": bf.CRBF(6)}):
+        thick, thin = bf.Rectangle(1e-5, 1.0), bf.Rectangle(5e-6, 1.0)
+        parts = [(0.0, 0.495, thick), (0.495, 0.505, thin), (0.505, 1.0, thick)]
+        beams = [bf.Beam(bf.Line((a, 0), (b, 0)), section=each, material=STEEL, **mesh) for a, b, each in parts]
+        joints = [bf.Rigid(a.end, b.start) for a, b in pairwise(beams)]
+        force = bf.PointForce(beams[-1].end, (0.0, 3.0 * 2e11 * thick.second_moment))
+        model = bf.Model(beams, [bf.Clamp(beams[0].start)], [force], joints)
+        solution = bf.solve_static(model, accuracy=None if mesh else accuracy)
+        found.append(solution.displacement(beams[-1].end)[-1])
+    assert np.linalg.norm(found[0] - found[1]) < accuracy
 
 
 def test_motions_are_as_accurate_as_asked_for():

@@ -1,6 +1,7 @@
 """Warning of a mesh that is too coarse for the displacements of a static solution."""
 
 from dataclasses import replace
+from functools import lru_cache
 from math import comb
 
 import numpy as np
@@ -64,7 +65,7 @@ class _Table:
                 weights[own, 3] = h * mean[own] / ((2 * len(xi) - 3) * _PART)
             elif order == 1:
                 weights[own, 4] = np.where(alone[own], h / (12.0 * mean[own] * _JUMP), 0.0)
-            slopes = _differences(xi)
+            slopes = _differences(tuple(element.field.nodes))
             scales = start[own] / h, end[own] / h, mean[own] / h, 1.0 / h
             rows = first[own, None] + np.arange(len(xi) - 1)
             for column, (scale, slope) in enumerate(zip(scales, slopes, strict=True)):
@@ -87,10 +88,11 @@ def _joined(mesh: BeamMesh, parts: list[tuple[float, str]]) -> np.ndarray:
     result = np.ones(mesh.elements, dtype=bool)
     result[0] = False
     if len(mesh.node) > 1:
-        parted = np.array([at for at, name in parts if name != "PointForce"])
-        result[1:] = (mesh.node[1:, 0] == mesh.node[:-1, -1]) & (
-            distances(mesh.vertices[1:-1], parted * mesh.vertices[-1]) > _SAME * mesh.vertices[-1]
-        )
+        result[1:] = mesh.node[1:, 0] == mesh.node[:-1, -1]
+        parted = np.array([at for at, name in parts if name != "PointForce" and 0.0 < at < 1.0])
+        if len(parted):
+            length = mesh.vertices[-1]
+            result[1:] &= distances(mesh.vertices[1:-1], parted * length) > _SAME * length
     return result
 
 
@@ -112,12 +114,13 @@ def _turned(mesh: BeamMesh) -> np.ndarray:
     return np.angle(tangent[mesh.node[:, 1:]] / tangent[mesh.node[:, :-1]]).ravel()
 
 
-def _differences(xi: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return what the differences (m,) of a polynomial between its nodes xi (m + 1,) contribute to its slope.
+@lru_cache(maxsize=64)  # by the orders of elements, of which there are few
+def _differences(nodes: tuple[float, ...]) -> tuple[np.ndarray, ...]:
+    """Return what the differences (m,) of a polynomial between its nodes (m + 1,) contribute to its slope.
 
     They are the slope at xi = 0 and at 1, its weight in the energy, and the part of the highest degree at xi = 1.
     """
-    order = len(xi) - 1
+    xi, order = np.array(nodes), len(nodes) - 1
     # a polynomial by its values at all nodes but the first, where it is zero
     coefficients = np.linalg.inv(xi[1:, None] ** np.arange(1, order + 1)) @ np.tril(np.ones((order, order)))
     # in the monomial of degree n, the Legendre polynomial of that degree has the factor 1 / binomial(2 n, n)

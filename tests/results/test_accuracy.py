@@ -54,6 +54,25 @@ def test_a_quantity_may_be_what_is_accurate():
     assert solution.reaction(beam.start)[-1, 2] == pytest.approx(exact, rel=2e-5)
 
 
+@pytest.mark.parametrize("asked", [1e-3, 1e-8])
+def test_quantities_that_are_zero_but_for_round_off_are_exact(asked):
+    """Eleven meshes of round-off ended in a ConvergenceError."""
+    beam, model = model_of(bf.CRBF(2), 1, bent)
+
+    def moment(place):
+        return lambda s: s.section_forces(beam).moment[-1, place]
+
+    free = bf.solve_static(model, accuracy=asked, quantity=moment(-1))
+    assert abs(moment(-1)(free)) < 1e-10 * abs(moment(0)(free))
+    assert free.model.meshes[0].elements <= 4
+
+
+def test_small_quantities_are_refined_as_any_other():
+    beam, model = model_of(bf.CRBF(1), 1, lambda beam: [bf.PointForce(beam.end, (0.0, 1e-5 * EI))])
+    solution = bf.solve_static(model, accuracy=1e-3, quantity=lambda s: s.displacement(beam.end)[-1, 0])
+    assert solution.displacement(beam.end)[-1, 0] == pytest.approx(-1e-10 / 15.0, rel=1e-3)
+
+
 def test_elements_are_short_only_where_it_is_needed():
     """On a stiff foundation only the loaded end bends."""
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(4), SECTION, STEEL)

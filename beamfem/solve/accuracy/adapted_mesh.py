@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from itertools import pairwise
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from beamfem.errors import ConvergenceError, InputError, LimitPointError, Lockin
 from beamfem.mesh.beam_grid import distances
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.model_meshes import required_nodes
-from beamfem.model.beam import Beam
+from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
 from beamfem.results.locking import locking
 from beamfem.results.solution import Solution, State
@@ -46,6 +46,7 @@ _FALLS = 0.5  # what a mesh is to leave of the error of the one before; the shar
 _MOST_STALLED = 3  # meshes divided evenly whose error is not the smallest so far: it is round-off
 # meshes that may have no solution, or end at limit points, before a finer one does not
 _MOST_LOST, _MOST_LIMITED = 2, 5
+_NOISE = 10.0  # by how much a quantity is to exceed what round-off of the coordinates makes of it
 _SAME = 1e-9  # of the length of a beam: tolerance between places
 _SAME_LOAD = 1e-2  # relative difference of limit points that two meshes agree on
 
@@ -176,9 +177,25 @@ def static_attempt(solution: Solution, quantity: Quantity) -> tuple[Solution, fl
         off = largest_displacement_error(state, finer, between_nodes=True)
         return solution, off / system_of(solution.model, static=True).extent, position_shares(state, finer)
     change = float(np.abs(error(solution, quantity, last)).max())
-    evaluated = quantity(solution[last:]) if callable(quantity) else solution.displacement(quantity)[-1]
+    row = solution[last:]
+    evaluated = _evaluated(row, quantity)
     size = float(np.abs(evaluated).max())
+    if max(size, change) <= _NOISE * float(np.abs(_evaluated(_rounded(row), quantity) - evaluated).max()):
+        return solution, 0.0, None  # zero, as far as numbers can tell
     return solution, change / size if size > 0.0 else change, error_shares(state, finer)
+
+
+def _evaluated(row: Solution, quantity: Callable[[Solution], Any] | Point) -> np.ndarray:
+    return np.asarray(quantity(row) if callable(quantity) else row.displacement(quantity)[-1], dtype=float)
+
+
+def _rounded(row: Solution) -> Solution:
+    """Return a solution of one row with other round-off: every coordinate off by one part in 2^52, up or down."""
+    system = system_of(row.model, static=True)
+    signs = np.random.default_rng(0).choice((-1.0, 1.0), row.p.shape)
+    off = np.where(system.positions, system.extent, 1.0)
+    off[system.history.numbers] = 0.0
+    return replace(row, p=row.p + np.finfo(float).eps * signs * off)
 
 
 def refined(model: Model, shares: Shares, excess: float, fixed: list[np.ndarray], pace: float = 1.0) -> Model:

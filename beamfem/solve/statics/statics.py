@@ -92,7 +92,8 @@ def solve_static(
         the size of the model, or times the quantity: by higher orders, and shorter elements where most of it
         arises. The model of the result has the finer beams and takes the points and beams of this one.
     quantity : callable or Point, optional
-        What is to be accurate, as for `Solution.error`; by default all displacements.
+        What is to be accurate, as for `Solution.error`; by default all displacements. One that is zero but for
+        round-off, as the moment at a free end, counts as exact.
 
     Raises
     ------

@@ -101,7 +101,12 @@ def _unstable(state: bf.PathState) -> int:
 def reference(recipe: Recipe, meshes: bool = True) -> Reference | NoReference:
     """Return the end of the path, where it is the same in other steps and, unless the kind locks, on a finer mesh."""
     built = recipe.build()
-    first = followed(built)
+    try:
+        first = followed(built)
+    except bf.InputError as refused:
+        if "the body would overlap itself" not in str(refused):
+            raise
+        return NoReference(str(refused))  # the section of a steep wave reaches over its centre of curvature
     if isinstance(first, NoReference):
         return first
     again = followed(built, FIRST_STEP)

@@ -167,6 +167,7 @@ def test_the_guide_is_as_stiff_as_two_leaf_springs(printed):
     assert numbers(lines[0])[0] == pytest.approx(2.0 * 12.0 * rigidity.bending / 50.0**3 / softer, rel=1e-3)
     assert numbers(lines[1])[0] == pytest.approx(0.6 * 1.0**2 / 50.0, rel=1e-3)
     assert abs(numbers(lines[2])[0]) < 1e-5
+    # normal forces of the leaves add 0.9 %: their stress, and their moment by the deflection
     assert numbers(lines[3])[0] == pytest.approx(1200.0 / (3.0 * 2.0e5 * 0.2 / 50.0**2), rel=1e-2)
 
 
@@ -183,7 +184,7 @@ def test_the_tapered_leaf_is_an_elastica_of_variable_stiffness(printed):
         return solve_ivp(along, (0.0, 400.0), (tip, 0.0, 0.0), rtol=1e-10, atol=1e-10).y[:, -1]
 
     force, _ = fsolve(lambda at: (clamp(*at) - (0.0, 0.0, -120.0))[[0, 2]], (1000.0, -0.45))
-    assert numbers(lines[0])[0] == pytest.approx(force, rel=1e-3)
+    assert numbers(lines[0])[0] == pytest.approx(force, rel=5e-4)  # the elastica does not shear
 
 
 def test_the_leaf_pack_shares_its_load_as_linear_beams_do(printed):
@@ -208,7 +209,8 @@ def test_the_leaf_pack_shares_its_load_as_linear_beams_do(printed):
             right[pad] = 300.0 * flexibility(at, lengths[0])
     forces = np.linalg.solve(matrix, right)
     tip = 300.0 * flexibility(600.0, 600.0) - forces[0] * flexibility(600.0, 450.0)
-    assert numbers(lines[0])[0] == pytest.approx(tip, rel=3e-3)
+    assert numbers(lines[0])[0] == pytest.approx(tip, rel=3e-4)
+    # shear, left out here, takes 0.23 % from the force on the shortest leaf
     assert numbers(lines[1]) == pytest.approx(forces, rel=3e-3)
 
 

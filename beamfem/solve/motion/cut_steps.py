@@ -13,12 +13,12 @@ from beamfem.equations.motion_workspace import motion_workspace
 from beamfem.equations.system import System
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.results.solution_checks import advice
-from beamfem.solve.motion.collocation_steps import CollocationSteps
 from beamfem.solve.motion.compiled_steps import CompiledSteps, StepsInCalls
 from beamfem.solve.motion.energy_judgement import CHUNK, EnergyJudge
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.generalized_alpha import Scheme, is_scheme
 from beamfem.solve.motion.marching_by_step import Memory, OwnSteps
+from beamfem.solve.motion.marching_stages import StageSteps
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.stage_coefficients import coefficients, has_stages
 from beamfem.solve.motion.start_acceleration import initial_acceleration, mean_acceleration
@@ -280,7 +280,7 @@ def _steps(
     if has_stages(integrator):
         with motion_workspace(system) as space:
             begin, step = part.loads_from, part.step
-            yield CollocationSteps(system, space, coefficients(integrator), begin, step, statistics)
+            yield StageSteps(system, space, coefficients(integrator), begin, step, statistics)
         return
     if not is_scheme(integrator):
         solved = np.zeros(1, dtype=np.int64)

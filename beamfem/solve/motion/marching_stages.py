@@ -27,7 +27,7 @@ _KEPT = 0.1  # rate of convergence up to which factors are kept for the next ste
 _TOGETHER = 1e-11  # of the model: correction that ends an iteration on all stages
 
 
-class CollocationSteps(StepsInCalls):
+class StageSteps(StepsInCalls):
     """Marches through time steps; keeps factors and accelerations of the stages between calls.
 
     begin, step [s]: time at the start of the first step, and size of the steps.

@@ -58,9 +58,22 @@ Contents; see help(bf.Beam), for example, for details.
 """
 
 from importlib.metadata import version as _version
+from typing import Any as _Any
 
 import lazy_loader as _lazy_loader
 
 # the public names are those of the stub `__init__.pyi`; each is imported at its first use
-__getattr__, __dir__, __all__ = _lazy_loader.attach_stub(__name__, __file__)
+_imported, __dir__, __all__ = _lazy_loader.attach_stub(__name__, __file__)
+
+
+def __getattr__(name: str) -> _Any:
+    """Import a public name; errors about arguments of a class then start with its name, not with `__init__`."""
+    value = _imported(name)
+    if isinstance(value, type):
+        for maker in (value.__init__, value.__new__):
+            if getattr(maker, "__qualname__", "").startswith(f"{name}.") and hasattr(maker, "__code__"):
+                maker.__qualname__ = name
+    return value
+
+
 __version__ = _version("beamfem")

@@ -127,3 +127,10 @@ def test_examples_give_what_they_show(name, names, tmp_path, monkeypatch):
     example = doctest.DocTestParser().get_doctest(PUBLIC[name].__doc__, dict(names), name, None, 0)
     doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(example, out=told.append)
     assert not told, "".join(told)
+
+
+@pytest.mark.parametrize("name", [name for name in DESCRIBED if hasattr(bf, name)])
+def test_errors_about_arguments_start_with_the_public_name(name):
+    with pytest.raises((TypeError, bf.InputError)) as caught:
+        getattr(bf, name)(no_such_argument=1)
+    assert isinstance(caught.value, bf.InputError) or str(caught.value).startswith(f"{name}() ")

@@ -15,7 +15,7 @@ class Rayleigh:
 
     Each section force in a motion is C (eps + b eps'), and each mass dm resists its velocity v by a dm v. A vibration
     of angular frequency w has the damping ratio z = a / (2 w) + b w / 2. The strains eps are those of the elements, so
-    a rigid motion loses no energy to b. It does to a, which is for what the beam moves in, such as air. Statics, modes
+    a rigid motion loses no energy to b. It does lose energy to a, which represents a surrounding fluid. Statics, modes
     and buckling have no rates and ignore both.
 
     Parameters

@@ -145,7 +145,7 @@ class NotJoinedWarning(UserWarning):
 
 
 class SeveralTurnsWarning(UserWarning):
-    """An arc of more than one full turn, whose angles may be degrees; the filter of `warnings` silences it."""
+    """An arc of more than one full turn, whose angles may have been given in degrees."""
 
 
 class NotReadWarning(UserWarning):

@@ -45,9 +45,9 @@ def converge(
     Parameters
     ----------
     function : callable
-        Returns a number or a mapping of named numbers. One with the name of the quantity and `_error` behind, such as
-        "deflection_error", is an estimate of its error, to be added to it, as `Solution.error` returns it: the table
-        shows its effectivity, and it is the estimated error of a curve that has no other.
+        Returns a number or a mapping of named numbers. A number named like the quantity with the suffix `_error`, such
+        as "deflection_error", is an estimate of its error, to be added to it, as returned by `Solution.error`: the
+        table shows its effectivity, and it serves as the estimated error of a curve that has no other.
     quantity : str, optional
         Name of the number whose error is studied; the others become columns.
     refine : str

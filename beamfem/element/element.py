@@ -179,7 +179,7 @@ class Element:
 
     @cached_property
     def law_points(self) -> int:
-        """At how many points, the first ones, a law acts; 0 if its strains do not all count fully at the same."""
+        """Number of points, the first ones, where a section law is evaluated; 0 if strains are integrated differently."""
         block = self.coupled_fractions[:, :STRAINS, :STRAINS]
         count = int(block.any(axis=(1, 2)).sum())
         full = np.zeros_like(block)

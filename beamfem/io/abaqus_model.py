@@ -76,12 +76,12 @@ class AbaqusModel:
 def read_abaqus_model(path: str | PathLike[str], elements: int = 1, element: Element | None = None) -> AbaqusModel:
     """Return the planar model of an Abaqus input file, in its units.
 
-    Beams (B21, B22, B23 and the like, in the plane z = 0) and trusses (T2D2, hinged bars that do not buckle);
-    *BEAM SECTION (RECT, CIRC, PIPE, BOX, I) with the shear coefficients of Abaqus, *BEAM GENERAL SECTION, *SOLID
-    SECTION; *ELASTIC, *DENSITY, *EXPANSION, the first yield stress of *PLASTIC as strength; *BOUNDARY; *CLOAD; *DLOAD
-    of types PX, PY, P2 and GRAV. Loads and displacements are those at the end of the last step. Elements that follow
-    each other become one beam, and deflections are large, whether a step has NLGEOM or not. Files of CalculiX are read
-    alike, but the size of CIRC is the radius as in Abaqus, where CalculiX takes it for the diameter.
+    It reads beams in the plane z = 0 (B21, B22, B23 and the like) and trusses (T2D2, hinged bars that do not buckle);
+    *BEAM SECTION (RECT, CIRC, PIPE, BOX, I) with the shear coefficients of Abaqus, *BEAM GENERAL SECTION and *SOLID
+    SECTION; *ELASTIC, *DENSITY, *EXPANSION, and the first yield stress of *PLASTIC as strength; *BOUNDARY, *CLOAD, and
+    *DLOAD of types PX, PY, P2 and GRAV. Loads and displacements are those at the end of the last step. Elements in
+    sequence become one beam. Deflections are always large, with or without NLGEOM. CalculiX files can be read too, but
+    the size of a CIRC section is taken as the radius, as in Abaqus, not as the diameter.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def read_abaqus_model(path: str | PathLike[str], elements: int = 1, element: Ele
     Warns
     -----
     NotReadWarning
-        Names what else the file holds, such as amplitudes, constraints and releases, and what is read in another sense.
+        Names what is left out, such as amplitudes, constraints and releases, and what is interpreted differently.
 
     Examples
     --------

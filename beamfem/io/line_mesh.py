@@ -125,13 +125,13 @@ class LineMesh:
 def read_mesh(path: str | PathLike[str], *, merge: bool = False) -> LineMesh:
     """Return the lines of a mesh file, in its units.
 
-    Read are Gmsh .msh (physical groups of curves and points are the sets, by number if they have no name), Abaqus and
-    CalculiX .inp (beams and trusses, elsets and nsets), VTU, XDMF and whatever else meshio reads. Whole numbers on
-    cells or points, as VTU and XDMF hold them, are sets too: `name` where they are not zero, `name=k` where they are k;
-    of the centre lines that `Solution.to_vtk` writes only `beam=k`, `material=k` and `section=k`.
+    It reads Gmsh .msh (physical groups of curves and points become sets, named by number if they have no name), Abaqus
+    and CalculiX .inp (beams and trusses, elsets and nsets), VTU, XDMF and every other format of meshio. Integer data on
+    cells or points, as in VTU and XDMF, become sets too: `name` where they are not zero, `name=k` where they are k. The
+    centrelines that `Solution.to_vtk` writes have the sets `beam=k`, `material=k` and `section=k` only.
 
-    A line that ends inside another straight one, to 1e-5 of the size of the mesh, divides it into two cells that share
-    its end.
+    A line that ends inside a straight line (within 1e-5 of the size of the mesh) divides it into two cells that share
+    this node.
 
     Parameters
     ----------

@@ -137,11 +137,11 @@ class Beam:
 
     @property
     def holding(self) -> tuple[Any, ...] | None:
-        """Joints of a beam that a model adds with it, where a part acts on it; None of one that is listed."""
+        """Joints of a beam that the model adds by itself, such as the arm of a rigid body; None for any other."""
         return None
 
     def require_place(self, fraction: float, parts: Sequence[Any]) -> None:
-        """Raise InputError if no part may act at a fraction of it in a model with some parts."""
+        """Raise InputError if no part may act at this fraction of the beam in a model with these parts."""
 
     def __post_init__(self) -> None:
         if not fulfils(self.curve, Curve):

@@ -96,7 +96,7 @@ class Contribution(Protocol):
 class Remembering(Contribution, Protocol):
     """A contribution with history, such as friction.
 
-    History variables are part of the state: a rejected step restores them, and a result has them row by row.
+    History variables are part of the state: a rejected step restores them, and each row of a result contains them.
     """
 
     @property

@@ -43,7 +43,7 @@ class ImposedStrain(AlongBeam, Load):
     def heat(self, arc_length: np.ndarray) -> np.ndarray:
         """Return temperature on the axis [K] and its gradient over the section [K/m] (n, 2); zero unless overridden.
 
-        By it layers expand with their own coefficients.
+        Each layer of a section expands with its own coefficient.
         """
         return np.zeros((len(arc_length), 2))
 

@@ -86,7 +86,7 @@ class Load(ABC):
         """
 
     def acting(self, arc_length: np.ndarray) -> Mapping[str, np.ndarray]:
-        """Return what acts on beams from outside at arc lengths (n,) [m], along `axes`, without the load's factor.
+        """Return the external forces on beams at arc lengths (n,) [m], along `axes`, without the load's factor.
 
         "force" [N], "line_force" [N/m] or "acceleration" [m/s^2] (n, 2), and "moment" [N m] (n, 1), by name; nothing
         for imposed strains.

@@ -129,7 +129,7 @@ class Model:
     frame: RotatingFrame | None = None
 
     def with_loads(self, loads: Sequence[Load]) -> "Model":
-        """Return the model with other loads, which shares with it all that does not depend on them.
+        """Return the model with other loads; it shares with this one whatever does not depend on loads.
 
         The new model has the same mesh and numbering unless a load needs a node elsewhere, and the same tables of
         solvers if the loads differ only in their size: point loads at the same points, gravity, uniform loads along
@@ -402,7 +402,7 @@ class Model:
 
     @cached_property
     def acting(self) -> tuple[Load, ...]:
-        """The loads, and those that loads consist of; those that are even, which tables do not depend on, come last."""
+        """The loads, compound ones replaced by their parts; loads that no table depends on come last."""
         return tuple(
             sorted((part for part in self._parts_of_loads if isinstance(part, Load)), key=lambda load: load.even)
         )

@@ -253,18 +253,18 @@ class PartAlongBeam:
         return self.beam.start, self.beam.end
 
     def at_nodes(self, points: Sequence[Point], lengths: np.ndarray) -> tuple[PartAtPoints, ...]:
-        """Return what acts at the nodes of the beam, by default nothing; lengths (n,): that belong to each [m]."""
+        """Return the parts at the nodes of the beam, by default none; lengths (n,): tributary lengths [m]."""
         return ()
 
     def at_stations(self, stations: Sequence[Station]) -> tuple[PartAtPoints, ...]:
-        """Return what acts at each quadrature point of the beam, by default nothing, on the points of its station.
+        """Return the parts at the quadrature points of the beam, by default none, each on the points of its station.
 
         Fields of order k have stations, the cubic one with r_x has none.
         """
         return ()
 
     def on_axis(self, axis: AxisRows) -> Contribution:
-        """Return what acts on all vectors of the axis and on the second of its points, which is on another beam."""
+        """Return the part on all nodal vectors of the axis and on its second point, which is on another beam."""
         raise NotImplementedError
 
     def shapes(self) -> tuple[ConnectorShape, ...]:

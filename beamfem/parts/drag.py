@@ -36,9 +36,9 @@ class DragAtNode(PartAtPoints):
 
 @dataclass(frozen=True, slots=True)
 class Drag(PartAlongBeam):
-    """Drag along a beam, - c |v| v per unit length [N/m] at the velocity v, as of a fluid at rest.
+    """Drag of a fluid at rest along a beam, -c |v| v per unit length [N/m] at the velocity v.
 
-    It acts at the nodes, each with its weight of the quadrature: exact to degree 2 k - 1 on elements of order k.
+    It is lumped at the nodes by Gauss-Lobatto quadrature, exact to degree 2 k - 1 on elements of order k.
 
     Parameters
     ----------
@@ -66,5 +66,5 @@ class Drag(PartAlongBeam):
         convert(self, not_negative, "coefficient")
 
     def at_nodes(self, points: Sequence[Point], lengths: np.ndarray) -> tuple[PartAtPoints, ...]:
-        """Return what acts at the nodes of the beam; lengths (n,): that belong to each [m]."""
+        """Return the parts at the nodes of the beam, with their tributary lengths (n,) [m]."""
         return tuple(map(DragAtNode, points, (self.coefficient * lengths).tolist()))

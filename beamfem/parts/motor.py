@@ -205,7 +205,7 @@ class Motor(CompositeLoad):
         return Integral(self.speed) if self.angle is None else self.angle  # type: ignore[arg-type]
 
     def changed(self, change: Callable[[Value], Value]) -> "Motor":
-        """Return the motor with another angle or torque, what `change` returns for its own."""
+        """Return the motor with its angle or torque replaced by `change` of it."""
         if self.controlled:
             return self
         if self.torque is None:

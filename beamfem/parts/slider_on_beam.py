@@ -62,7 +62,7 @@ class SliderOnBeam(PartAlongBeam):
         return self.beam.start, self.point
 
     def on_axis(self, axis: AxisRows) -> "OnAxis":
-        """Return what acts on the nodes of the beam and on the point."""
+        """Return the part that acts on the nodes of the beam and on the point."""
         return OnAxis(axis)
 
     def shapes(self) -> tuple[ConnectorShape, ...]:

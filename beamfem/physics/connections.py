@@ -52,23 +52,24 @@ class Connection(NamedTuple):
     memory : tuple of str, default ()
         Names of its history variables, zero at the start; they follow the numbers in the data of all functions.
     force : callable, optional
-        Resisting forces f(q, v, data, f) that have no energy, as of friction: a tuple with one for each coordinate.
+        Resisting forces f(q, v, data, f) without an energy, such as friction: a tuple with one for each coordinate.
         Multipliers follow the history variables in data, here and in `remember`.
     remember : callable, optional
         History variables after an accepted step, h(q, v, data, f), a tuple in the order of `memory`.
     compiled : (int, int) or (int, int, int), optional
-        Addresses of C functions in place of what is derived: force(q, v, a, own, turned, data, gravity, out) and
-        tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out). All but the weights are pointers to doubles; own:
-        multipliers and prescribed values, turned: cosine and sine of each rotation; out: the resisting forces, the
-        conditions and the reactions, or ck df/dq + cv df/dv + ca df/da row by row. Third, for parts on one of several
-        elements, h(q, data, xi, out) with h, -dh/dxi, what is least on the right element, and a scale of dh/dxi, of the
-        equation h = 0 for the place xi, which force and tangent then find in `turned`.
+        Addresses of C functions used instead of derived code: force(q, v, a, own, turned, data, gravity, out) and
+        tangent(q, v, a, own, turned, data, gravity, ck, cv, ca, out). The weights ck, cv, ca are doubles, everything
+        else pointers to doubles. own: multipliers and prescribed values; turned: cosine and sine of each rotation; out:
+        resisting forces, conditions and reactions, or ck df/dq + cv df/dv + ca df/da row by row. For parts that slide
+        over elements, a third function h(q, data, xi, out) defines the place xi by h = 0; it writes h, -dh/dxi, a
+        number that is least on the element where the place is, and a scale of dh/dxi. Force and tangent then receive
+        xi in `turned`.
     prescribed : int, default 0
-        Number of the conditions, the first ones, that are g(q) = u with values u that `PartAtPoints.prescribed` gives.
+        Number of conditions (the first ones) of the form g(q) = u, with the values u of `PartAtPoints.prescribed`.
     one_sided : bool, default False
         Whether its conditions are g(q) <= 0, see `Contribution`.
     amplitudes : int, default 0
-        Number of further coordinates [m] of its own, which no beam has; q and v have them as a last item.
+        Number of additional coordinates [m] that belong to the part itself; they are the last item of q and v.
     """
 
     name: str

@@ -24,7 +24,7 @@ from beamfem.section.law import THICKNESS, ConstitutiveLaw, ThicknessLaw
 class Fields:
     """Fields at points of a beam's axis; the leading shape (...) is (steps,) or (steps, points).
 
-    Where two elements meet or a load acts, what jumps is that on the side towards the beam's end.
+    Where a field jumps, between elements or at a load, its value is that on the side towards the beam's end.
 
     Parameters
     ----------

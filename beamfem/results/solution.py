@@ -102,7 +102,7 @@ class Solution:
     at : array, (steps,)
         Load factors, or times [s].
     p, v, a : array, (steps, n)
-        Coordinates and their rates. Like `at`, they are read-only, since what is computed from them is kept; for other
+        Coordinates and their rates. Like `at`, they are read-only, since derived results are cached; for other
         values, `dataclasses.replace(solution, p=...)` makes another solution.
     statistics : Statistics
         How the solve went.
@@ -261,9 +261,9 @@ class Solution:
         ----------
         quantity : callable or Point, optional
             A function of a solution of one row that returns a number, or an array of the same shape on every mesh, and
-            finds points, beams, supports and connectors by those of this model; or a point, for its displacement [m].
+            may use the points, beams, supports and connectors of this model; or a point, for its displacement [m].
             By default the largest displacement [m]. For largest values along a beam take `SectionForces.peak` and
-            `BeamStress.peak`: a maximum of stations misses what lies between them, on every mesh something else.
+            `BeamStress.peak`: the maximum over stations misses values between them, and differs from mesh to mesh.
         row : int, default -1
             Row of the solution.
 
@@ -356,10 +356,10 @@ class Solution:
     def joint_force(self, joint: Joint | Contribution | Load) -> np.ndarray:
         """Return fx, fy [N] and m [N m] that a joint exerts on its second point `b`, in global axes (steps, 3).
 
-        On `a` it exerts the opposite force. Of `Hinge`, `Rigid` and other joints at which beams share coordinates, the
-        force balances all else that acts on the nodes on the side of `b`: elements with their inertia, loads, supports
-        and connectors there; a joint without a common angle transmits no moment. Of connectors with two points, such as
-        `Link`, `Slider`, `Weld` and `Gear`, it is the force on the second one, and of a `Motor` its torque.
+        It exerts the opposite force on `a`. For `Hinge`, `Rigid` and other joints at which beams share coordinates, the
+        force follows from equilibrium of the nodes on the side of `b` with their elements, inertia, loads, supports and
+        connectors; a hinge transmits no moment. For connectors with two points, such as `Link`, `Slider`, `Weld` and
+        `Gear`, it is the force on the second point, for a `Motor` its torque.
 
         Parameters
         ----------
@@ -746,9 +746,9 @@ class Solution:
         """Return an xarray.Dataset of results along a beam, or along all beams, over the steps.
 
         Positions, rotations, section forces, stresses if sections have them, and energies; the statistics are its
-        attributes. Of one beam the arc length is a dimension: at an end that two elements share, the station before it
-        stands one last digit lower, so that both sides are kept. errors: with `error_shares` of each row, which take a
-        solve each. Raises InputError for a beam of another model, MissingPackageError without xarray.
+        attributes. For one beam the arc length is a dimension: at a node between elements there are two stations, the
+        first one lower by one unit in the last place. errors: include `error_shares`, which cost one solve a row.
+        Raises InputError for a beam of another model, MissingPackageError without xarray.
 
         Examples
         --------
@@ -763,10 +763,10 @@ class Solution:
     def to_pandas(self, beam: Beam | None = None, *, forces: bool = False, errors: bool = False) -> Any:
         """Return a pandas.DataFrame of results along a beam, or along all beams, with a row for each step and station.
 
-        Its index is time [s] or load_factor, number of the beam and arc_length [m]. Both sides of an end that two
-        elements share have a row: the arc length of the one before it, like the load factor of the row before a jump,
-        is smaller by one last digit, so that no row of the index is there twice. errors: with `error_shares` of each
-        row, which take a solve each.
+        Its index is time [s] or load_factor, number of the beam and arc_length [m]. A node between two elements has two
+        rows, one for each side. To keep the index unique, the arc length of the first one, like the load factor of the
+        row before a jump, is lower by one unit in the last place. errors: include `error_shares`, which cost one solve
+        a row.
 
         With `forces`, there is a row for each step and point at which a support, connector or joint acts, with role and
         kind of the part, position x, y [m], and what it exerts on the beam there, fx, fy [N] and moment [N m]. Raises

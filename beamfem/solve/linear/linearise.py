@@ -30,8 +30,8 @@ def linearise(model: Model, about: State | Solution | None = None, loads: Sequen
     """Linearise the equations of motion about a state, M z'' + C z' + K z = B f.
 
     M, C and K are the derivatives of the residual by p'', p' and p, the exact tangents of the state with its loads:
-    geometric stiffness, dampers, and for a moving state gyroscopic terms. Prescribed coordinates are eliminated, and
-    so are those that conditions determine, of multipliers and inclined rollers; K has the curvature of the conditions
+    geometric stiffness, dampers, and for a moving state gyroscopic terms. Prescribed coordinates are eliminated, as are
+    those that constraints with multipliers and inclined rollers determine; K includes the curvature of the constraints
     times their multipliers.
 
     Parameters

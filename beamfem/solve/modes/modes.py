@@ -258,9 +258,9 @@ class Modes:
     def start(self, mode: int = 0, amplitude: float | None = None) -> State:
         """Return the state in which the motion of a mode begins, the first row of its `solution`; `simulate` takes it.
 
-        It is at rest with the shape added, but moves without displacement if the mode is rigid, and with the growth and
-        phases of a mode that grows or is complex. amplitude [m]: largest displacement of a node; of a rigid mode
-        largest velocity [m/s]. Raises InputError for a mode that does not exist.
+        The model is displaced by the shape and at rest. A rigid mode starts undisplaced with a velocity; a growing or
+        complex mode has both. amplitude: largest displacement of a node [m], for a rigid mode largest velocity [m/s].
+        Raises InputError for a mode that does not exist.
 
         >>> struck = bf.solve_modes(model, count=2).start(mode=1, amplitude=1e-3)
         >>> motion = bf.simulate(model.with_loads([]), duration=0.01, step=1e-4, start=struck)

@@ -57,8 +57,8 @@ def simulate(
 ) -> Solution:
     """Integrate the equations of motion over time, with a fixed step, or with steps that follow a tolerance.
 
-    Steps that do not converge, or that change the energy by more than work explains, are redone with a quarter of their
-    size, from up to 8 steps before; afterwards they have their size again. `statistics.rejected` counts how often.
+    Steps that do not converge, or that change the energy by more than work explains, are repeated with a quarter of
+    their size, from up to 8 steps before; after them the step has its size again. `statistics.rejected` counts them.
 
     Parameters
     ----------
@@ -73,31 +73,31 @@ def simulate(
         such as Newmark's method, or any other `Integrator`.
     start : State or Solution, optional
         State to start from: a state of any solution, static or a motion, or a solution for its last state; by default
-        the reference at rest. It may come from a model with other supports or connectors, which have to hold its points
-        where they are; velocities that they stop are lost at once, as in a plastic impact.
+        the reference at rest. It may come from a model with other supports or connectors, if the state satisfies those
+        of this model; velocities that they prevent are lost at once, as in a plastic impact.
     velocity : RigidVelocity or callable, optional
         Initial velocity: of a rigid motion, or a function of the reference position (2,) [m] of the axis, which returns
         (vx, vy) [m/s]. With a function, sections do not rotate at first, unless their element ties them to the axis.
     save_every : int, default 1
         Keep every n-th state and the last one.
     tolerance : float, [-], optional
-        Error of positions that estimates of all steps add up to at most, relative to the size of the model. The steps
-        are as long as it allows; each is a row, unless `step` or `save_at` is given. A user-defined `Integrator` needs
-        the attribute `order` for it.
+        Largest error of positions relative to the size of the model, as the sum of the estimates of all steps. Steps
+        are as long as it allows; each is a row, unless `step` or `save_at` is given. A user-defined `Integrator` must
+        have an attribute `order`.
     save_at : array, [s], (rows,), optional
-        Times of the rows, ascending, between the ends of steps as well.
+        Ascending times of the rows; they need not be ends of steps.
     events : sequence of Event, optional
         Functions of the state whose crossings of zero are recorded in the `events` of the solution, or end the motion.
     accuracy : float, [-], optional
         Refine the mesh, as `solve_static` does, until positions are off by at most this number times the size of the
         model, by an estimate of the error of the mesh alone; each mesh costs two motions.
     file : path, optional
-        HDF5 file for the rows, which then need no memory while the motion runs; `resume` goes on with it where it was
-        interrupted, and `load` reads it at any time. It is for motions of any length: they are divided into sections
-        of up to 1000 steps, whose tangents are factorised anew.
+        HDF5 file for the rows, which then take no memory while the motion runs; `resume` continues an interrupted
+        motion, and `load` reads the file at any time. Tangents are factorised anew every 1000 steps at the latest, so
+        the last digits differ from those of a motion without a file.
     watch : bool, default False
-        Whether to show the motion while it runs, in a window, or below the cell of a notebook, as often as 5 % of the
-        time allow. Without both nothing is shown.
+        Whether to show the motion while it runs, in a window or below the cell of a notebook, updated as often as 5 %
+        of the run time allow. Without a display and a notebook nothing is shown.
 
     Returns
     -------

@@ -118,8 +118,8 @@ def resume(
     """Continue a motion that `simulate` wrote into a file, to its end or beyond.
 
     A run that was interrupted or killed continues from the last checkpoint in its file, written about once a second,
-    and ends with the same numbers as one that was not. What is given must be what the motion was begun with; functions
-    of time, user-defined integrators and events cannot be read from a file.
+    and ends with the same numbers as an uninterrupted one. Functions of time, user-defined integrators and events are
+    not in the file: pass the same ones as to `simulate`.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def resume(
         The integrator, by default that of the file. A user-defined one that keeps more than the state from step to step
         needs methods `memory()`, which returns arrays by name, and `recall(memory)`.
     duration : float, [s], optional
-        Time to simulate in all; a longer one than that of the file extends the motion.
+        Total time to simulate; a longer one than that of the file extends the motion.
     watch : bool, default False
         Whether to show the motion while it runs, see `simulate`.
 
@@ -154,7 +154,7 @@ def resume(
     Warns
     -----
     LongRunWarning
-        If the motion was complete already, which then is returned as it is, and as in `simulate`.
+        If the motion was already complete (it is returned unchanged), and as in `simulate`.
 
     Examples
     --------

@@ -89,11 +89,11 @@ def solve_static(
         either side is taken; `statistics.ended` names it, and a small imperfection chooses it.
     accuracy : float, [-], optional
         Refine the mesh until the estimated error of the last row, see `Solution.error`, is at most this number times
-        the size of the model, or times the quantity: by higher orders, and shorter elements where most of it
-        arises. The model of the result has the finer beams and takes the points and beams of this one.
+        the size of the model, or times the quantity: by higher orders, and by shorter elements where most of it
+        arises. The result belongs to a model with finer beams; points and beams of this model can be used with it.
     quantity : callable or Point, optional
-        What is to be accurate, as for `Solution.error`; by default all displacements. One that is zero but for
-        round-off, as the moment at a free end, counts as exact.
+        Result that `accuracy` refers to, as for `Solution.error`; by default all displacements. A quantity that is zero
+        up to round-off, such as the moment at a free end, counts as exact.
 
     Raises
     ------

@@ -179,7 +179,7 @@ class Element:
 
     @cached_property
     def law_points(self) -> int:
-        """Number of points, the first ones, where a law is evaluated; 0 if strains are integrated at different points."""
+        """Number of points (the first ones) where a law is evaluated; 0 if strains are integrated at different ones."""
         block = self.coupled_fractions[:, :STRAINS, :STRAINS]
         count = int(block.any(axis=(1, 2)).sum())
         full = np.zeros_like(block)

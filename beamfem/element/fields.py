@@ -82,10 +82,13 @@ def d_slots(field: Field) -> np.ndarray:
     return slots(field.vectors, len(field.nodes), ("r_y",))
 
 
+@lru_cache
 def slots(vectors: tuple[str, ...], nodes: int, wanted: tuple[str, ...]) -> np.ndarray:
     """Return the indices (k,) of the wanted nodal vectors among those of an element."""
-    indices = np.array([n * len(vectors) + i for n in range(nodes) for i, name in enumerate(vectors) if name in wanted])
-    return indices.astype(np.int64)
+    chosen = [n * len(vectors) + i for n in range(nodes) for i, name in enumerate(vectors) if name in wanted]
+    indices = np.array(chosen, dtype=np.int64)
+    indices.setflags(write=False)
+    return indices
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ def nodal_vectors(
     v (steps, n): rates p', for the rates e' = B p' in place of e.
     """
     dof, frame, kinds = _nodes(mesh, some)
-    table = p[:, dof]
+    table = p.take(dof, axis=1)
     result = np.empty((*table.shape[:2], len(mesh.vectors), 2))
     for node_kind, nodes in kinds:
         own = node_kind, mesh.vectors, table[:, nodes]
@@ -49,7 +49,7 @@ def _nodes(mesh: BeamMesh, some: np.ndarray | None) -> tuple[np.ndarray, np.ndar
 def axis(mesh: BeamMesh, vectors: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:
     """Interpolate nodal vectors (steps, nodes, vectors, 2) at points (element, xi), both (points,)."""
     own = mesh.node[element]
-    local = vectors[:, own].reshape(len(vectors), len(element), own.shape[1] * vectors.shape[2], 2)
+    local = vectors.take(own, axis=1).reshape(len(vectors), len(element), own.shape[1] * vectors.shape[2], 2)
     return interpolate(mesh, local, element, xi)
 
 

@@ -1,6 +1,7 @@
 """Judgement of time steps by energy, which must change by the work that is done."""
 
 from collections.abc import Mapping
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -174,11 +175,16 @@ def _adjacent(chunks: list[tuple[int, int]]) -> list[list[tuple[int, int]]]:
 
 
 def radius_at_infinity(rule: np.ndarray) -> float:
-    """Return the spectral radius of a scheme for x'' + w^2 x = 0 as w grows beyond all bounds.
+    """Return the spectral radius of a scheme for x'' + w^2 x = 0 as w grows beyond all bounds."""
+    return _radius(*rule[2:].tolist())
+
+
+@lru_cache(maxsize=64)
+def _radius(alpha_f: float, gamma: float, beta: float) -> float:
+    """Return the spectral radius, see `radius_at_infinity`.
 
     There x = 0, so that beta r^2 + (1/2 - 2 beta + gamma) r + 1/2 + beta - gamma = 0 and, for p'' by its mean,
     (1 - alpha_f) r + alpha_f = 0.
     """
-    _, _, alpha_f, gamma, beta = (float(value) for value in rule)
     roots = np.roots([beta, 0.5 - 2.0 * beta + gamma, 0.5 + beta - gamma])
     return float(np.abs([alpha_f / (1.0 - alpha_f), *roots]).max())

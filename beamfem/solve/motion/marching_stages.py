@@ -47,24 +47,9 @@ class StageSteps(StepsInCalls):
         self._routine = march_explicit if rule.explicit else march_stages
         found = space.stages.pop(rule, None)
         self._stages = own = space.stages[rule] = _stages(system, space, rule) if found is None else found
-        of_p, z = h * h * rule.of_p, h * rule.values
-        planes = [(each.real**2, each.real, 1.0) for each in z[: rule.real]]
-        for each in z[rule.real :]:
-            planes += [((each**2).real, each.real, 1.0), ((each**2).imag, each.imag, 0.0)]
-        own.fill(
-            time_step=h,
-            elapsed=0.0,
-            rate=0.0,
-            known=0,
-            factored=0,
-            solved=0,
-            of_p=of_p,
-            of_v=h * rule.of_v,
-            of_begin=rule.of_begin * (h * h, h),
-            to_multipliers=of_p if rule.explicit else np.linalg.inv(of_p),
-            at_end=rule.at_end * [[h * h], [h], [1.0]],
-            weights=np.zeros((own.stages, 3)) if rule.explicit else np.array(planes),
-        )
+        own.fill(elapsed=0.0, rate=0.0, known=0, factored=0, solved=0)
+        if own.time_step != h:
+            _fill_step(own, rule, h)
         self._coupled = CoupledPlanes(system, space, own) if is_coupled(system) else None
         space.solver.fill(limits=MotionLimits(), statistics=statistics)
         space.assembler.weigh((1.0, 1.0, 1.0), h, moving=True)
@@ -166,6 +151,23 @@ class StageSteps(StepsInCalls):
                 counted[0] = 0
             return True
         return False
+
+
+def _fill_step(own: Stages, rule: Coefficients, h: float) -> None:
+    """Set the size of the steps [s], and what follows from it."""
+    of_p, z = h * h * rule.of_p, h * rule.values
+    planes = [(each.real**2, each.real, 1.0) for each in z[: rule.real]]
+    for each in z[rule.real :]:
+        planes += [((each**2).real, each.real, 1.0), ((each**2).imag, each.imag, 0.0)]
+    own.fill(
+        time_step=h,
+        of_p=of_p,
+        of_v=h * rule.of_v,
+        of_begin=rule.of_begin * (h * h, h),
+        to_multipliers=of_p if rule.explicit else np.linalg.inv(of_p),
+        at_end=rule.at_end * [[h * h], [h], [1.0]],
+        weights=np.zeros((own.stages, 3)) if rule.explicit else np.array(planes),
+    )
 
 
 def _stages(system: System, space: MotionWorkspace, rule: Coefficients) -> Stages:

@@ -158,7 +158,8 @@ def _wanted(settings: MotionSettings, times: np.ndarray) -> np.ndarray | None:
             if settings.save_every != 1:
                 raise InputError("save_every counts fixed steps; give a step or save_at for rows at given times")
             return None
-        return np.unique(np.append(times[:: settings.save_every], times[-1]))
+        rows = times[:: settings.save_every]
+        return rows if rows[-1] == times[-1] else np.append(rows, times[-1])
     at, near = np.array(settings.save_at), 1e-9 * times[-1]
     if at[0] < -near or at[-1] > times[-1] + near:
         raise InputError(f"save_at must lie within the motion, from 0 to {times[-1]:g}, got {at[0]:g} to {at[-1]:g}")

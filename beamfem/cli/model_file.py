@@ -201,7 +201,7 @@ def read_model_file(path: str | PathLike[str]) -> Job:
         if not source.values.get("beams") and set(source.values) <= set(_FILE.keys):
             raise InputError("a model needs at least one beam, a table headed [beams.NAME]")
         given = build(_FILE, source.values, names)
-        with fault_at(table=given.keys() & {"units"}):
+        with fault_at(table=given.keys() & {"units", "redundant_conditions"}):
             model = _model(list(names.parts["beams"].values()), list(names.parts["bodies"].values()), given, source)
         analysis = given.get("analysis", Analysis("static", {}))
         for number, output in enumerate(outputs := given.get("outputs", [])):
@@ -235,8 +235,8 @@ def _model(beams: list[Beam], bodies: list[RigidBody], given: dict[str, Any], so
 
     acting = {section: given[section] for section in ACTING if section in given}
     try:
-        units = {key: given[key] for key in ("units",) if key in given}
-        return made(**units, **{section: list(chain.from_iterable(parts)) for section, parts in acting.items()})
+        whole = {key: given[key] for key in ("units", "redundant_conditions") if key in given}
+        return made(**whole, **{section: list(chain.from_iterable(parts)) for section, parts in acting.items()})
     except InputError:
         for section, parts in acting.items():
             for number in range(len(parts)):
@@ -278,6 +278,7 @@ _FILE = Keyed(
     {
         "title": (str, ""),
         "units": (str, ""),
+        "redundant_conditions": (str, ""),
         **{section: (_named(section), None) for section in NAMED},
         "analysis": (reader(partial(part, ANALYSES, default="static")), None),
         "outputs": (list[reader(partial(build, Output))], None),  # type: ignore[misc]

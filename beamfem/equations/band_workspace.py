@@ -19,7 +19,7 @@ _KEPT = 100_000  # entries of the largest tangent for which allocation is a noti
 def newton_solver(system: System) -> NewtonSolver:
     """Return the solver of a model without workspace."""
     fields, scale = system.solver_fields, system.scale.copy()
-    scale[system.connectors.multipliers] = 0.0  # their rows are no forces
+    scale[system.connectors.every_multiplier] = 0.0  # their rows are no forces
     return NewtonSolver(routines=_routines(fields["half"]), **fields | {"scale": scale})
 
 

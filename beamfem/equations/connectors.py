@@ -1,7 +1,7 @@
 """Connectors in a model: forces, tangents by complex steps, energies and momenta."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -425,16 +425,26 @@ _NO_NUMBERS, _NOTHING = np.empty(0, dtype=np.int64), np.empty(0)
 
 @dataclass(frozen=True, eq=False)
 class Connectors:
-    """All connectors of a model."""
+    """All connectors of a model.
+
+    left_out (d,): numbers of the multipliers of redundant conditions, which are no unknowns.
+    """
 
     model: Model
     static: bool
     items: tuple[Connector, ...]
+    left_out: np.ndarray = field(default_factory=lambda: _NO_NUMBERS)
+
+    @cached_property
+    def every_multiplier(self) -> np.ndarray:
+        """Numbers of all multipliers."""
+        return np.concatenate([_NO_NUMBERS, *(item.multipliers for item in self.items)])
 
     @cached_property
     def multipliers(self) -> np.ndarray:
-        """Numbers (k,) of the multipliers."""
-        return np.concatenate([_NO_NUMBERS, *(item.multipliers for item in self.items)]) if self.items else _NO_NUMBERS
+        """Numbers (k,) of the multipliers that are unknowns."""
+        every = self.every_multiplier
+        return every[~np.isin(every, self.left_out)] if len(self.left_out) else every
 
     @cached_property
     def one_sided(self) -> np.ndarray:

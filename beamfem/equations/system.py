@@ -1,7 +1,7 @@
 """The numerical data of a model: coordinates, blocks of elements, prescribed coordinates and loads at a time."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 from typing import Any, TypeVar
 
@@ -23,6 +23,14 @@ from beamfem.equations.model_coordinates import (
     stress_free,
 )
 from beamfem.equations.parts_at_points import Alike, PartsInPython, by_kind, springs_to_ground
+from beamfem.equations.redundant_conditions import (
+    Coordinates,
+    dependent_on_others,
+    gradients_of,
+    in_words,
+    unmet,
+    with_least_norm,
+)
 from beamfem.equations.strain_rates import StrainRates, strain_rates
 from beamfem.errors import InputError
 from beamfem.kernels.block import Block, Layout, Stations
@@ -270,7 +278,7 @@ class System:
         border: int | None = layout.WIDEST_BORDER
         if self.inclined:
             border = 0 if self.static else None
-        known = np.concatenate((self.prescribed_dofs, self.history.numbers))
+        known = np.concatenate((self.prescribed_dofs, self.history.numbers, connectors.left_out))
         constrained = [*self.prescribed_dofs.tolist(), *(dof for dof, _ in self.inclined)] if self.static else []
         couplings = layout.Couplings(coupled, multipliers, border, connectors.bodies)
         order = self.blocks, self.model.size, known, joined, couplings
@@ -279,7 +287,37 @@ class System:
     @cached_property
     def connectors(self) -> Connectors:
         """User-defined contributions of the model. Raises InputError for a force that is not analytic."""
-        return connectors_of(self.model, self.static)
+        found = connectors_of(self.model, self.static)
+        return found if self.model.redundant_conditions == "error" else replace(found, left_out=self._left_out)
+
+    @shared_table
+    def _left_out(self) -> np.ndarray:
+        """Multipliers of conditions that depend on others in the reference."""
+        found, start = connectors_of(self.model, self.static), stress_free(self.model, self.blocks)
+        start[found.memory] = found.start
+        return dependent_on_others(gradients_of(found, start, self.held))[0]
+
+    @shared_table
+    def held(self) -> Coordinates:
+        """Natural units of the coordinates, and what supports hold."""
+        return Coordinates(np.where(self.positions, self.extent, 1.0), self.prescribed_dofs, self.inclined)
+
+    def finished(self, states: np.ndarray, times: Sequence[float]) -> np.ndarray:
+        """Return states p (m, n) with multipliers of least norm where conditions are redundant.
+
+        Raises InputError if one of these is not met at one of the times or load factors.
+        """
+        if not len(self.connectors.left_out):
+            return states
+        for p, time in zip(states, times, strict=True):
+            if parts := unmet(self.connectors, p, time, self.extent):
+                raise InputError(
+                    f"conditions of connectors ({in_words(parts)}) are redundant in the reference, but not at "
+                    f"{'load factor' if self.static else 'time'} {time:g}, where they are not met: draw the model in a "
+                    "state in which they are independent"
+                )
+        found = [with_least_norm(self.connectors, p, self.held, self.extent) for p in states]
+        return np.array(found).reshape(states.shape)
 
     @cached_property
     def history(self) -> History:
@@ -328,7 +366,7 @@ class System:
 
         Multipliers [N] are scaled by a force that strains an element by one, so that path lengths measure movement.
         """
-        result, multipliers = np.where(self.positions, self.extent, 1.0), self.connectors.multipliers
+        result, multipliers = self.held.scale.copy(), self.connectors.multipliers
         if len(multipliers):
             result[multipliers] = self.extent * self.residual_errors[0].max()
         result[self.history.numbers] = _NO_MOVEMENT

@@ -22,7 +22,7 @@ from beamfem.model.parts_by_role import parts_in
 from beamfem.model.rotating_frame import RotatingFrame
 from beamfem.model.supports import LineSupport, PointSupport, Support, SupportsAlong
 from beamfem.units import Units, units_of
-from beamfem.validation import items, members, of_package, shown
+from beamfem.validation import items, members, of_package, one_of, shown
 
 if TYPE_CHECKING:
     from beamfem.mesh.beam_mesh import BeamMesh
@@ -111,6 +111,10 @@ class Model:
         Concentrated masses, `PointMass` and `RigidBody`.
     frame : RotatingFrame, optional
         Frame of reference that rotates, by default one at rest.
+    redundant_conditions : {"error", "least_norm"}, default "error"
+        What happens if conditions of joints and connectors depend on each other or on supports, so that their
+        multipliers are not unique: an error that names them, or the multipliers of least norm, moments divided by the
+        size of the model. They have to depend on each other in the reference and wherever the model moves.
 
     Examples
     --------
@@ -127,6 +131,7 @@ class Model:
     units: str = _UNNAMED
     masses: Sequence[Contribution] = ()
     frame: RotatingFrame | None = None
+    redundant_conditions: str = "error"
 
     def with_loads(self, loads: Sequence[Load]) -> "Model":
         """Return the model with other loads; it shares with this one whatever does not depend on loads.
@@ -208,6 +213,7 @@ class Model:
         self._add_arms()
         if not isinstance(self.frame, RotatingFrame | None):
             raise InputError(f"frame of a Model must be a RotatingFrame, got {shown(self.frame)}")
+        one_of("redundant_conditions", self.redundant_conditions, ("error", "least_norm"))
         if not self.beams:
             raise InputError("a Model needs at least one beam")
         if len({id(beam) for beam in self.beams}) < len(self.beams):

@@ -81,15 +81,15 @@ def with_imperfection(model: Model, modes: Any, size: float, mode: int = 0) -> M
     beams = [crooked[id(beam)].beam for beam in model.beams]
     for beam, same in zip(getattr(model, "original", ()), model.beams, strict=False):
         crooked[id(beam)] = crooked[id(same)]
-    parts = (model.supports, model.loads, model.joints, model.connectors, model.masses)
-    supports, loads, joints, connectors, masses = ([_placed(item, crooked) for item in part] for part in parts)
-    for connector in (*connectors, *masses):
+    names = ("supports", "loads", "joints", "connectors", "masses")
+    parts = {name: [_placed(item, crooked) for item in getattr(model, name)] for name in names}
+    for connector in (*parts["connectors"], *parts["masses"]):
         if any(id(point.beam) in crooked for point in connector.points):
             raise InputError(
                 f"the points of {type(connector).__name__} cannot be moved to the imperfect model: make it a dataclass "
                 "with points, or tuples of points, as its fields"
             )
-    return Model(beams, supports, loads, joints, connectors, model.units, masses)
+    return Model(beams, **parts, units=model.units, frame=model.frame, redundant_conditions=model.redundant_conditions)
 
 
 def _shape(model: Model, modes: Any, mode: int) -> tuple[np.ndarray, np.ndarray]:

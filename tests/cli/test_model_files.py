@@ -500,3 +500,18 @@ vector = [10, 0]
     supports = [bf.Clamp(beam.start), bf.Roller(place)]
     solution = bf.solve_static(bf.Model([beam], supports, [bf.PointForce(place, (10.0, 0.0))], masses=[body]))
     assert bf.solve_static(job.model).p[-1] == pytest.approx(solution.p[-1], abs=1e-14)
+
+
+def test_redundant_links_of_a_file_are_solved_on_request(tmp_path):
+    other = (
+        ARM.partition("[beams.arm]")[2].replace("arm", "leg").replace("[0, 0], end = [1, 0]", "[0, 1], end = [1, 1]")
+    )
+    link = '[[connectors]]\nkind = "link"\na = "arm.end"\nb = "leg.end"\n'
+    file = tmp_path / "links.toml"
+    file.write_text(f"{ARM}[beams.leg]{other}{2 * link}")
+    with pytest.raises(bf.InputError, match=r"link. at .* are redundant"):
+        read_model_file(file).solve()
+    file.write_text('redundant_conditions = "least_norm"\n' + file.read_text())
+    job = read_model_file(file)
+    one, two = (job.solve().solution.multipliers(tie)[-1, 0] for tie in job.model.connectors)
+    assert one == pytest.approx(two, rel=1e-9)

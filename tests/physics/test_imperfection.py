@@ -179,3 +179,10 @@ def test_what_makes_no_imperfection_is_refused():
         model.with_imperfection(buckling, np.nan)
     with pytest.raises(bf.InputError, match="displaces no point"):
         model.with_imperfection(np.zeros(model.size), 1e-3)
+
+
+def test_it_keeps_the_rotating_frame_and_the_units():
+    blade = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(3), SQUARE, STEEL)
+    turning = bf.Model([blade], [bf.Clamp(blade.start)], units="N, m", frame=bf.RotatingFrame(10.0))
+    crooked = turning.with_imperfection(bf.solve_modes(turning, 1), size=1e-4)
+    assert (crooked.frame, crooked.units) == (turning.frame, "N, m")

@@ -64,7 +64,7 @@ def stopped_by_conditions(system: System, p: np.ndarray, v: np.ndarray, time: fl
     zeros, multipliers = np.zeros(len(p)), system.connectors.multipliers
     mass = linearise(system, p, zeros, zeros, 0.0, INERTIA)[1]
     right, result = np.zeros(len(system.free_dofs)), zeros.copy()
-    right[-len(multipliers) :] = -system.connectors.conditions(p, v, time)[1]
+    right[-len(multipliers) :] = -_rates(system, p, v, time)
     result[system.free_dofs] = _with_conditions(system, p, mass, right, time)
     result[multipliers] = 0.0
     return result
@@ -91,13 +91,16 @@ def _change_of_rates(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray
     size = min(_SHORT / speed if speed else np.inf, np.sqrt(_SHORT / push) if push else np.inf)
     if changing and time is not None:
         size = min(size, SHORT_TIME)
-        at = [
-            system.connectors.conditions(p + t * v + 0.5 * t**2 * a, v + t * a, time + t)[1]
-            for t in (0.0, size, 2.0 * size)
-        ]
+        at = [_rates(system, p + t * v + 0.5 * t**2 * a, v + t * a, time + t) for t in (0.0, size, 2.0 * size)]
         return np.asarray((4.0 * at[1] - 3.0 * at[0] - at[2]) / (2.0 * size))
-    ends = [system.connectors.conditions(p + t * v + 0.5 * t**2 * a, v + t * a, 0.0)[1] for t in (size, -size)]
+    ends = [_rates(system, p + t * v + 0.5 * t**2 * a, v + t * a, 0.0) for t in (size, -size)]
     return np.asarray((ends[0] - ends[1]) / (2.0 * size))
+
+
+def _rates(system: System, p: np.ndarray, v: np.ndarray, time: float) -> np.ndarray:
+    """Return the rates G p' + dg/dt (k,) of the conditions whose multipliers are unknowns."""
+    rates = system.connectors.conditions(p, v, time)[1]
+    return rates[system.connectors.multipliers - system.model.coordinates]
 
 
 def impact(system: System, p: np.ndarray, change: np.ndarray) -> np.ndarray:

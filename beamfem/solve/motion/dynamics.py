@@ -256,4 +256,5 @@ def _solution(
     taken = done + record.further
     summary = Statistics(record.statistics.iterations, taken, record.cuts, ended, status, rule=rule)
     p, v, a = states.swapaxes(0, 1)
+    p = system.finished(p, times[stored_steps].tolist())
     return Solution(system.model, False, times[stored_steps], p, v, a, summary, turned=rotations)

@@ -61,6 +61,7 @@ class SavedRows:
         rows = before + np.searchsorted(times, [time for _, time in found])
         events = tuple(Occurrence(*each, row) for each, row in zip(found, rows.tolist(), strict=True))
         states = np.array(self.states).reshape(len(times), 3, self.system.model.size)
+        states[:, 0] = self.system.finished(states[:, 0], self.times)
         rotations = np.array(self.rotations).reshape(len(times), len(self.pairs))
         self.times, self.states, self.rotations, self.watch.found = [], [], [], []
         return times, states, rotations, events

@@ -178,7 +178,7 @@ def balance_of(system: System, p: np.ndarray, load_factor: float) -> Balance:
     free = np.abs(system.along_free(unbalanced)) * system.scale[system.free_dofs]
     multipliers = system.connectors.multipliers
     if len(multipliers):
-        forces[multipliers] = free[system.unknowns.free[multipliers]] = 0.0
+        forces[system.connectors.every_multiplier] = free[system.unknowns.free[multipliers]] = 0.0
     largest, force = float(np.max(free, initial=0.0)), float(np.max(forces, initial=0.0))
     gap = _largest_gap(system, p, load_factor, unbalanced) if len(multipliers) else 0.0
     force = max(force, load_size(system, load_factor))  # without reactions the largest load counts

@@ -85,9 +85,9 @@ class PathRecord:
 
     def state(self, y: np.ndarray, stability: bool | None = False) -> PathState:
         """Return the state of y (n + 1,), coordinates and load factor; stability: whether it is stable, if known."""
-        zeros = np.zeros(self.model.size)
+        zeros, (p,) = np.zeros(self.model.size), system_of(self.model, static=True).finished(y[None, :-1], [y[-1]])
         turned = self._turned(y)
-        return PathState(y[:-1], zeros, zeros, float(y[-1]), self.model, stability=stability, turned=turned)
+        return PathState(p, zeros, zeros, float(y[-1]), self.model, stability=stability, turned=turned)
 
     def _turned(self, y: np.ndarray) -> np.ndarray:
         """Return the rotations (m,) [rad] of `first_turns` in y (n + 1,), continued from the last point."""
@@ -103,7 +103,7 @@ class PathRecord:
             ended += f"; round-off leaves {digits:.0f} digits of the forces"
         statistics = Statistics(self.iterations, len(rows) - 1, self.cuts, ended, self.status, digits=digits)
         zeros = np.zeros((len(rows), self.model.size))
-        states = rows[:, :-1], zeros, zeros.copy()
+        states = system.finished(rows[:, :-1], rows[:, -1].tolist()), zeros, zeros.copy()
         return Path(
             self.model,
             True,

@@ -9,11 +9,11 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import ArpackError, eigsh
 
 from beamfem.equations.connectors import Connector
-from beamfem.equations.equations import STATICS
+from beamfem.equations.redundant_conditions import dependent_on_others, gradients_of
+from beamfem.equations.redundant_conditions import in_words as in_words_of
 from beamfem.equations.rigid_velocity import RigidVelocity, set_rigid_rates
 from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, FreeMotionError, InputError
-from beamfem.linalg.lapack import qr, solve_triangular
 from beamfem.model.beam import Point, beam_in_words
 from beamfem.model.contribution import is_one_sided
 from beamfem.model.missing_joints import Pair, in_words, unjoined_ends
@@ -231,8 +231,6 @@ def describe(translation: np.ndarray, turn: float, origin: np.ndarray, reach: fl
     return f"turns about ({x:.6g}, {y:.6g})"
 
 
-_DEPENDENT = 1e-10  # of a condition of unit size: its part that is independent of all others
-_SHARE = 1e-6  # of another condition in one that depends on it
 _INDEPENDENT = "independent"
 
 
@@ -241,49 +239,22 @@ def require_independent(system: System, p: np.ndarray) -> None:
     reference = p is system.reference
     if not len(system.connectors.multipliers) or (reference and _INDEPENDENT in system.tables):
         return
-    if redundant(system, p):
+    if len(_redundant(system, p)[0]) > len(system.connectors.left_out):
         raise InputError(dependent(system, p))
     if reference:
         system.tables[_INDEPENDENT] = True
 
 
-def redundant(system: System, p: np.ndarray) -> list[Connector]:
-    """Return the connectors whose conditions depend on each other, or on supports and joints, in a state p (n,)."""
-    zeros, lasting = np.zeros(len(p)), (item for item in system.connectors.items if not is_one_sided(item.item))
-    items = [item for item in lasting if len(item.multipliers)]
-    if not items:
-        return []
-    rows, owners = [], []
-    for item in items:
-        first, count = len(item.dofs), len(item.multipliers)
-        tangent = item.tangent((p, zeros, zeros), 0.0, np.zeros(2), STATICS)[first : first + count, :first]
-        gradients = np.zeros((count, len(p)))
-        np.add.at(gradients.T, item.dofs, (tangent * system.scale[item.dofs]).T)
-        rows.append(gradients)
-        owners += [item] * count
-    free = np.vstack(rows)[:, system.free_dofs]
-    for first, normal in zip(*system.rotated, strict=True):
-        free[:, first : first + 2] -= np.outer(free[:, first : first + 2] @ normal, normal)
-    sizes = np.linalg.norm(free, axis=1)
-    held = sizes <= _DEPENDENT * np.linalg.norm(np.vstack(rows), axis=1)
-    conditions = np.where(held, 0.0, free.T) / np.where(held, 1.0, sizes)
-    triangle, order = qr(conditions, mode="r", pivoting=True)
-    rank = int(np.count_nonzero(np.abs(np.diagonal(triangle)) > _DEPENDENT))
-    if rank == len(owners):
-        return []
-    involved = order[rank:].tolist()
-    if rank > 0:  # LAPACK refuses empty matrices
-        shares = np.abs(solve_triangular(triangle[:rank, :rank], triangle[:rank, rank:])).max(axis=1)
-        involved += order[:rank][shares > _SHARE].tolist()
-    return [item for item in items if any(owners[number] is item for number in involved)]
+def _redundant(system: System, p: np.ndarray) -> tuple[np.ndarray, list[Connector]]:
+    """Return the multipliers of redundant conditions in a state p (n,), and the connectors involved."""
+    return dependent_on_others(gradients_of(system.connectors, p, system.held))
 
 
 def dependent(system: System, p: np.ndarray) -> str:
     """Return the message that conditions of connectors are linearly dependent in a state p (n,)."""
-    found = redundant(system, p) or [item for item in system.connectors.items if len(item.multipliers)]
-    places = (" and ".join("({:g}, {:g})".format(*point.reference) for point in item.given.points) for item in found)
-    names = ", ".join(dict.fromkeys(f"{item.name} at {place}" for item, place in zip(found, places, strict=True)))
+    found = _redundant(system, p)[1] or [item for item in system.connectors.items if len(item.multipliers)]
     return (
-        f"conditions of connectors ({names}) are redundant, among themselves or with supports and joints: their "
-        "multipliers are not unique; leave out those that are not needed"
+        f"conditions of connectors ({in_words_of(found)}) are redundant, among themselves or with supports and joints: "
+        "their multipliers are not unique; leave out those that are not needed, or ask for those of least norm, "
+        'redundant_conditions="least_norm" of the model'
     )

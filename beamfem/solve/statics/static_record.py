@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from beamfem.equations.system import system_of
 from beamfem.errors import RoundOffWarning, UnstableWarning, warn
 from beamfem.model.model import Model
 from beamfem.precision.roundoff import FEW_DIGITS
@@ -60,6 +61,7 @@ class StaticRecord:
         Warns of few accurate digits and, for complete solves, of unstable rows; incomplete ones raise an error anyway.
         """
         load_factors, states = np.array([row[0] for row in self.rows]), np.array([row[1] for row in self.rows])
+        states = system_of(self.model, static=True).finished(states, load_factors.tolist())
         counts = [count for _, _, count in self.rows]
         unstable = [is_unstable(self.symmetric, count) for count in counts]
         status = Status.STOPPED if not complete else Status.COMPLETED

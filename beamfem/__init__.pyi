@@ -109,6 +109,7 @@ from .parts.rigid_body import RigidBody as RigidBody
 from .parts.roller import Roller as Roller
 from .parts.slider import Slider as Slider
 from .parts.slider_on_beam import SliderOnBeam as SliderOnBeam
+from .parts.slider_stop import SliderStop as SliderStop
 from .parts.spring import Spring as Spring
 from .parts.spring_damper import SpringDamper as SpringDamper
 from .parts.stop import Stop as Stop

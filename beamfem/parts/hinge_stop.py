@@ -2,24 +2,20 @@
 
 from dataclasses import dataclass, field
 
-import numpy as np
-
-from beamfem.errors import InputError
-from beamfem.model.beam import Point, require_point_of
+from beamfem.model.beam import Point
 from beamfem.model.load_shapes import Spiral
 from beamfem.model.part_units import UNIT
-from beamfem.parts.at_points import PartAtPoints
-from beamfem.physics.connections import HINGE_STOP, Connection
-from beamfem.validation import convert, finite, not_negative, optional, positive
-
-_NEVER = 1e9  # [rad]
+from beamfem.parts.end_stop import EndStop
+from beamfem.physics.connections import BOUNCING_HINGE_STOP, HINGE_STOP, Connection
 
 
 @dataclass(frozen=True, slots=True)
-class HingeStop(PartAtPoints):
+class HingeStop(EndStop):
     """End stops of a hinge: stiff one-sided torsion springs that keep the angle t_b - t_a between two limits.
 
-    At the excess d beyond a limit the moment is k d (1 + c dd/dt) towards it (Hunt and Crossley 1975).
+    At the excess d beyond a limit the moment is k d (1 + c dd/dt) towards it (Hunt and Crossley 1975). With a
+    coefficient of restitution e it is k d, and k / e^2 (d - (1 - e^2) d_max) on the way back from the largest excess
+    d_max, so that bodies of any mass and speed bounce with e times their relative speed (Walton and Braun 1986).
 
     Parameters
     ----------
@@ -31,6 +27,8 @@ class HingeStop(PartAtPoints):
         Stiffness k > 0.
     damping : float, [s/rad], default 0
         Damping c; a body that hits at the angular velocity w bounces with about 1 - 2 c w / 3 of it.
+    restitution : float, [-], optional
+        Coefficient of restitution e, above 0 and up to 1, in place of a damping.
 
     Raises
     ------
@@ -51,33 +49,12 @@ class HingeStop(PartAtPoints):
     high: float | None = field(default=None, metadata={UNIT: "rad"})
     stiffness: float = field(kw_only=True, metadata={UNIT: "N m/rad"})
     damping: float = field(default=0.0, kw_only=True, metadata={UNIT: "s/rad"})
-
-    def __post_init__(self) -> None:
-        require_point_of(self, "a")
-        require_point_of(self, "b")
-        convert(self, optional(finite), "low", "high")
-        convert(self, positive, "stiffness")
-        convert(self, not_negative, "damping")
-        if self.low is None and self.high is None:
-            raise InputError("HingeStop needs one of its limits low and high")
-        low, high, _, _ = self.data(np.zeros((2, 3)))
-        if low > high:
-            raise InputError(f"low of HingeStop must not be above high, got {low:g} and {high:g}")
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """Both points."""
-        return self.a, self.b
+    restitution: float | None = field(default=None, kw_only=True)
 
     @property
     def connection(self) -> Connection:
-        """End stops."""
-        return HINGE_STOP
-
-    def data(self, reference: np.ndarray) -> tuple[float, ...]:
-        """Return both limits, stiffness and damping."""
-        low, high = (-_NEVER if self.low is None else self.low), (_NEVER if self.high is None else self.high)
-        return low, high, self.stiffness, self.damping
+        """End stops, with history only where there is a coefficient of restitution."""
+        return HINGE_STOP if self.restitution is None else BOUNCING_HINGE_STOP
 
     def shapes(self) -> tuple[Spiral, ...]:
         """Return the shape to draw."""

@@ -10,8 +10,9 @@ from beamfem.model.contribution import At
 from beamfem.model.load_shapes import Wall
 from beamfem.model.part_units import UNIT
 from beamfem.parts.at_points import PartAtPoints
-from beamfem.physics.connections import ROUGH_STOP, STOP, Connection
-from beamfem.validation import convert, not_negative, positive, squared, vector
+from beamfem.parts.end_stop import rebound_of, require_rebound
+from beamfem.physics.connections import BOUNCING_STOP, ROUGH_STOP, STOP, Connection
+from beamfem.validation import convert, not_negative, squared, vector
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,7 +20,8 @@ class Stop(PartAtPoints):
     """A straight, rigid wall that keeps a point on the side of its normal, by a stiff one-sided spring with friction.
 
     At the penetration d = max(-gap, 0) its pressure is k d (1 + c dd/dt) (Hunt and Crossley 1975). Friction sticks with
-    the stiffness k and slips at the limit mu k d, in statics from step to step.
+    the stiffness k and slips at the limit mu k d, in statics from step to step. Bodies may bounce with a coefficient of
+    restitution instead, as off a `HingeStop`.
 
     Parameters
     ----------
@@ -35,6 +37,8 @@ class Stop(PartAtPoints):
         Damping c; a body that hits at the speed v bounces with about 1 - 2 c v / 3 of it.
     friction : float, [-], default 0
         Coefficient of friction mu.
+    restitution : float, [-], optional
+        Coefficient of restitution, above 0 and up to 1, in place of damping and friction.
 
     Raises
     ------
@@ -55,20 +59,23 @@ class Stop(PartAtPoints):
     stiffness: float = field(metadata={UNIT: "N/m"})
     damping: float = field(default=0.0, metadata={UNIT: "s/m"})
     friction: float = 0.0
+    restitution: float | None = None
 
     def __post_init__(self) -> None:
         require_point_of(self, "point")
         convert(self, vector, "place")
         convert(self, squared(vector), "normal")
-        convert(self, positive, "stiffness")
-        convert(self, not_negative, "damping", "friction")
+        require_rebound(self)
+        convert(self, not_negative, "friction")
+        if self.restitution is not None and self.friction:
+            raise InputError("Stop takes a coefficient of restitution or friction, got both")
         if not any(self.normal):
             raise InputError("the normal of a Stop must not be zero")
 
     @property
     def conservative(self) -> bool:  # type: ignore[override]
-        """Whether its force at rest has a potential: without friction."""
-        return self.friction == 0.0
+        """Whether its force at rest has a potential: without friction and loss."""
+        return self.friction == 0.0 and self.restitution is None
 
     @property
     def points(self) -> tuple[Point, ...]:
@@ -77,14 +84,16 @@ class Stop(PartAtPoints):
 
     @property
     def connection(self) -> Connection:
-        """A wall, with history only where there is friction."""
-        return ROUGH_STOP if self.friction else STOP
+        """A wall, with history only where there is friction or a coefficient of restitution."""
+        return ROUGH_STOP if self.friction else STOP if self.restitution is None else BOUNCING_STOP
 
     def data(self, reference: np.ndarray) -> tuple[float, ...]:
         """Return stiffness, damping, friction, place, unit normal, and the point in the reference."""
         nx, ny = (np.array(self.normal) / np.hypot(*self.normal)).tolist()
         x, y, _ = reference[0].tolist()
-        return self.stiffness, self.damping, self.friction, float(self.place[0]), float(self.place[1]), nx, ny, x, y
+        place = float(self.place[0]), float(self.place[1])
+        rebound = () if self.restitution is None else (rebound_of(self),)
+        return self.stiffness, self.damping, self.friction, *place, nx, ny, x, y, *rebound
 
     def energy(self, at: At) -> tuple[float, float]:
         """Return the kinetic and the potential energy [J], with that of the friction that sticks."""

@@ -208,11 +208,16 @@ def _bushing_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functi
     return (data[0] * u * u + data[1] * v * v + data[2] * turn * turn) / 2
 
 
-def _bushing_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
+def _rates_in_frame(q: list[Vector], v: list[Vector], f: Functions) -> Vector:
+    """Return the rates of `_in_frame`."""
     c, s = f.cos(q[0][2]), f.sin(q[0][2])
     (along, across), turning = _in_frame(q, f), v[0][2]
-    x, y, rate = v[1][0] - v[0][0], v[1][1] - v[0][1], v[1][2] - turning
-    u, w = c * x + s * y + turning * across, c * y - s * x - turning * along
+    x, y = v[1][0] - v[0][0], v[1][1] - v[0][1]
+    return c * x + s * y + turning * across, c * y - s * x - turning * along
+
+
+def _bushing_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
+    (u, w), rate = _rates_in_frame(q, v, f), v[1][2] - v[0][2]
     return (data[3] * u * u + data[4] * w * w + data[5] * rate * rate) / 2
 
 
@@ -315,25 +320,86 @@ def _friction_remember(q: list[Vector], v: list[Vector], data: Vector, f: Functi
     return data[2] + slipped, data[3] + moment * slipped
 
 
-def _excess(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, Number]:
-    """Return by how much the angle is below its lower and above its upper limit."""
-    turn = q[1][2] - q[0][2]
-    return f.positive(data[0] - turn), f.positive(turn - data[1])
+def _turn(q: list[Vector], data: Vector, f: Functions) -> Number:
+    return q[1][2] - q[0][2]
 
 
-def _limits_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
+def _turning(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
+    return v[1][2] - v[0][2]
+
+
+def _slide(q: list[Vector], data: Vector, f: Functions) -> Number:
+    """Return r_b - r_a along an axis that turns with a."""
+    along, across = _in_frame(q, f)
+    return data[5] * along + data[6] * across
+
+
+def _sliding(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
+    along, across = _rates_in_frame(q, v, f)
+    return data[5] * along + data[6] * across
+
+
+def _excess(measure: Function, q: list[Vector], data: Vector, f: Functions) -> tuple[Number, Number]:
+    """Return by how much a measure is below its lower and above its upper limit."""
+    at = measure(q, data, f)
+    return f.positive(data[0] - at), f.positive(at - data[1])
+
+
+def _limits_potential(measure: Function, q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
     """Return k d^2 / 2 on both sides."""
-    low, high = _excess(q, data, f)
+    low, high = _excess(measure, q, data, f)
     return data[2] * (low * low + high * high) / 2
 
 
-def _limits_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
+def _limits_dissipation(
+    measure: Function, rate_of: Function, q: list[Vector], v: list[Vector], data: Vector, f: Functions
+) -> Number:
     """Return k c d (dd/dt)^2 / 2 (Hunt and Crossley 1975)."""
-    rate, (low, high) = v[1][2] - v[0][2], _excess(q, data, f)
+    rate, (low, high) = rate_of(q, v, data, f), _excess(measure, q, data, f)
     return data[2] * data[3] * (low + high) * rate * rate / 2
 
 
-_LEAST = 1e-300  # [m^2/s^2], so that the derivative of |v| v is zero at rest
+def _rebound(stiffness: Number, square: Number, depth: Number, deepest: Number, f: Functions) -> Number:
+    """Return the energy of a spring that is steeper below its deepest state, so that e^2 of its work is given back.
+
+    Loads: F = k d; below the deepest state: F = k / e^2 (d - (1 - e^2) d_deepest) (Walton and Braun 1986).
+    """
+    steep, back, beyond = stiffness / square, f.positive(depth - (1 - square) * deepest), f.positive(depth - deepest)
+    return (steep * back * back - (steep - stiffness) * beyond * beyond) / 2
+
+
+def _deepest(stiffness: Number, square: Number, depth: Number, deepest: Number, f: Functions) -> tuple[Number, Number]:
+    """Return the new deepest state, zero without contact, and the energy that is lost."""
+    beyond = f.positive(depth - deepest)
+    lost = stiffness * (1 - square) * beyond * (2 * deepest + beyond) / 2
+    return (deepest + beyond) * depth / (depth + _LEAST), lost
+
+
+def _limits_rebound(
+    measure: Function, first: int, q: list[Vector], data: Vector, gravity: Vector, f: Functions
+) -> Number:
+    depths = zip(_excess(measure, q, data, f), data[first : first + 2], strict=True)
+    return sum(_rebound(data[2], data[4], depth, deepest, f) for depth, deepest in depths)
+
+
+def _limits_remember(
+    measure: Function, first: int, q: list[Vector], v: list[Vector], data: Vector, f: Functions
+) -> tuple[Number, ...]:
+    depths = zip(_excess(measure, q, data, f), data[first : first + 2], strict=True)
+    (low, lost), (high, other) = (_deepest(data[2], data[4], depth, deepest, f) for depth, deepest in depths)
+    return low, high, data[first + 2] + lost + other
+
+
+def _stop_rebound(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
+    return _rebound(data[0], data[9], _penetration(q, data, f), data[10], f)
+
+
+def _stop_deepest(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
+    deepest, lost = _deepest(data[0], data[9], _penetration(q, data, f), data[10], f)
+    return deepest, data[11] + lost
+
+
+_LEAST = 1e-300  # [m^2/s^2], so that the derivative of |v| v is zero at rest; also a depth that is none
 
 
 def _drag_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
@@ -378,8 +444,37 @@ ROUGH_STOP = STOP._replace(name="rough_stop", memory=_SLIP, force=_stop_force, r
 HINGE_FRICTION = Connection(
     "hinge_friction", 2, 3, ("stiffness", "torque"), memory=_SLIP, force=_friction_force, remember=_friction_remember
 )
-_LIMITS = ("low", "high", "stiffness", "damping")
-HINGE_STOP = Connection("hinge_stop", 2, 3, _LIMITS, None, _limits_potential, _limits_dissipation)
+BOUNCING_STOP = Connection(
+    "bouncing_stop",
+    1,
+    2,
+    (*_STOP, "rebound"),
+    None,
+    _stop_rebound,
+    memory=("deepest", "dissipated"),
+    remember=_stop_deepest,
+)
+
+
+def _limits(name: str, measure: Function, rate_of: Function, further: tuple[str, ...]) -> tuple[Connection, Connection]:
+    """Return the definitions of end stops of a measure, with damping and with a coefficient of restitution."""
+    data = ("low", "high", "stiffness", "damping", "rebound", *further)
+    potential, dissipation = partial(_limits_potential, measure), partial(_limits_dissipation, measure, rate_of)
+    bouncing = Connection(
+        f"bouncing_{name}",
+        2,
+        3,
+        data,
+        None,
+        partial(_limits_rebound, measure, len(data)),
+        memory=("low_deepest", "high_deepest", "dissipated"),
+        remember=partial(_limits_remember, measure, len(data)),
+    )
+    return Connection(name, 2, 3, data, None, potential, dissipation), bouncing
+
+
+HINGE_STOP, BOUNCING_HINGE_STOP = _limits("hinge_stop", _turn, _turning, ())
+SLIDER_STOP, BOUNCING_SLIDER_STOP = _limits("slider_stop", _slide, _sliding, ("ax", "ay"))
 
 
 @cache
@@ -401,4 +496,5 @@ def _law_force(
 
 _SPRINGS = SPRING, GROUNDED_SPRING, COORDINATE_SPRING, TORSION_SPRING, CABLE, GROUNDED_CABLE, BUSHING
 _JOINTS = LINK, SLIDER, ROUGH_SLIDER, WELD, GEAR, MOTOR
-CONNECTIONS = MASS, BODY, *_SPRINGS, *_JOINTS, DRAG, STOP, ROUGH_STOP, HINGE_FRICTION, HINGE_STOP
+_STOPS = STOP, ROUGH_STOP, BOUNCING_STOP, HINGE_STOP, BOUNCING_HINGE_STOP, SLIDER_STOP, BOUNCING_SLIDER_STOP
+CONNECTIONS = MASS, BODY, *_SPRINGS, *_JOINTS, DRAG, *_STOPS, HINGE_FRICTION

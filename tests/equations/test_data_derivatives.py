@@ -52,6 +52,7 @@ DATA = {
     "friction": (bf.HingeFriction, ["first end", "second start", 0.1, 200.0]),
     "hinge stop": (bf.HingeStop, ["first end", "second start", 0.05, 0.06, 300.0, 0.2]),
     "other hinge stop": (bf.HingeStop, ["first end", "second start", -0.06, -0.05, 300.0, 0.2]),
+    "slider stop": (bf.SliderStop, ["first half", "third half", (1.0, 0.2), 0.05, 0.06, 300.0, 0.2]),
     "turn": (bf.TorsionSpring, ["first end", "second start", 40.0, 2.0]),
     "mass": (bf.PointMass, ["second end", 0.7, 0.02]),
     "body": (bf.RigidBody, ["third end", 0.9, 0.03, (0.05, 0.08)]),
@@ -67,7 +68,7 @@ ALL = [
 JOINED = {("line", "end"): ("other", "start")}  # in a hinge
 SILENT = [("section", "height"), ("section", "centroid"), ("steel", "strength"), ("rubber", "strength")]
 SILENT += [("stop", "friction"), ("friction", "stiffness"), ("rubber", "thermal_expansion")]
-SILENT += [("hinge stop", "high"), ("other hinge stop", "low")]
+SILENT += [("hinge stop", "high"), ("other hinge stop", "low"), ("slider stop", "high")]
 FIELDS = [place for place in ALL if place not in JOINED.values()]
 STEP = 1e-3
 SIXTH = ((-3, -1 / 60), (-2, 3 / 20), (-1, -3 / 4), (1, 3 / 4), (2, -3 / 20), (3, 1 / 60))  # order
@@ -121,7 +122,7 @@ def build(turning=False, **changed):
         supports,
         [*map(part, loads), drive],
         [parts["hinge"], part("gear"), part("slider")],
-        [] if turning else list(map(part, [*between, "hinge stop", "other hinge stop", "turn"])),
+        [] if turning else list(map(part, [*between, "hinge stop", "other hinge stop", "slider stop", "turn"])),
         masses=[part("mass"), part("body")],
         frame=part("frame") if turning else None,
     )

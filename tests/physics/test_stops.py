@@ -63,8 +63,7 @@ def test_a_sliding_block_stops_where_its_kinetic_energy_is_dissipated():
 
 @pytest.mark.parametrize("damping", [0.0, 0.4])
 def test_a_falling_mass_bounces_as_an_independent_integration_says(damping):
-    mass, stiffness, gravity, height = 2.0, 1e5, 9.81, 0.05
-    thread = bf.Beam(bf.Line((0, 0), (0.1, 0)), 1, ELEMENTS[0], bf.Section.from_stiffness(1e3, 1e3, 1e-2, 1e-9, 1e-12))
+    mass, stiffness, gravity, height, thread = 2.0, 1e5, 9.81, 0.05, light()
     stop = bf.Stop(thread.start, (0.0, -height), UP, stiffness, damping)
     ball = bf.PointMass(thread.start, mass)
     model = bf.Model([thread], loads=[bf.Gravity((0, -gravity))], connectors=[stop], masses=[ball])
@@ -77,6 +76,78 @@ def test_a_falling_mass_bounces_as_an_independent_integration_says(damping):
     expected = solve_ivp(rate, (0.0, 0.3), [0.0, 0.0], t_eval=times, rtol=1e-10, atol=1e-12, max_step=1e-4).y[0]
     motion = bf.simulate(model, duration=0.3, step=1e-4, integrator=bf.GeneralizedAlpha(1.0))
     np.testing.assert_allclose(motion.displacement(thread.start)[:, 1], expected, atol=2e-4 * height)
+
+
+def light():
+    """A short beam with next to no mass."""
+    return bf.Beam(bf.Line((0, 0), (0.1, 0)), 1, ELEMENTS[0], bf.Section.from_stiffness(1e3, 1e3, 1e-2, 1e-9, 1e-12))
+
+
+@pytest.mark.parametrize("restitution", [0.3, 0.8, 1.0])
+@pytest.mark.parametrize(("mass", "speed"), [(2.0, 1.0), (0.5, 0.2)])
+def test_a_mass_bounces_with_the_coefficient_of_restitution_at_any_mass_and_speed(restitution, mass, speed):
+    thread = light()
+    stop = bf.Stop(thread.start, (0.0, -1e-3 * speed), UP, 1e5, restitution=restitution)
+    model = bf.Model([thread], connectors=[stop], masses=[bf.PointMass(thread.start, mass)])
+    motion = bf.simulate(model, 0.02, 2e-5, velocity=bf.RigidVelocity((0.0, -speed)), integrator=bf.Trapezoidal())
+    back = motion.velocity(thread.start)[-1, 1]
+    np.testing.assert_allclose(back, restitution * speed, rtol=2e-3)
+    energy = motion.energy()
+    np.testing.assert_allclose(energy.dissipated[-1], mass / 2 * speed**2 * (1 - restitution**2), rtol=4e-3, atol=1e-9)
+    assert np.abs(np.diff(energy.total + energy.dissipated)).max() < 4e-3 * energy.total[0]
+
+
+@pytest.mark.parametrize("bounce", [{"restitution": 0.6}, {"damping": 0.0}])
+@pytest.mark.parametrize("axis", [(1.0, 0.0), (1.0, 0.3)])
+def test_a_slider_that_moves_bounces_off_its_end_stops(bounce, axis):
+    """Two bodies on an axis that flies: momentum is kept, and relative speed falls by e each time."""
+    angle = np.arctan2(axis[1], axis[0])
+    along = np.array([np.cos(angle), np.sin(angle)])
+    one, two = (
+        bf.Beam(bf.Line(tuple(x * along), tuple((x + 0.1) * along)), 1, ELEMENTS[0], BLOCK, STEEL) for x in (0.0, 0.3)
+    )
+    joint = bf.Slider(one.end, two.start, axis)
+    stop = bf.SliderStop(one.end, two.start, axis, low=-0.01, high=0.01, stiffness=1e6, **bounce)
+    model = bf.Model([one, two], joints=[joint], connectors=[stop])
+    flight = np.array([0.3, -0.2])
+
+    def velocity(x):
+        return flight + (x @ along > 0.2) * 1.0 * along
+
+    motion = bf.simulate(model, 0.1, 2e-5, velocity=velocity, integrator=bf.Trapezoidal())
+    relative = (motion.velocity(two.start) - motion.velocity(one.end)) @ along
+    gap = (motion.position(two.start) - motion.position(one.end)) @ along - 0.2
+    share, free = bounce.get("restitution", 1.0), np.abs(gap) < 0.0095
+    rebounds = np.flatnonzero(np.diff(np.sign(relative[free])) != 0)
+    speeds = np.abs(relative[free])[np.append(rebounds, free.sum() - 1)]
+    assert len(speeds) > 2
+    np.testing.assert_allclose(speeds, share ** np.arange(len(speeds)), rtol=2e-2)
+    assert np.abs(gap).max() < 0.0125
+    momentum = motion.linear_momentum()
+    np.testing.assert_allclose(momentum, np.broadcast_to(momentum[0], momentum.shape), rtol=1e-9)
+
+
+@pytest.mark.parametrize("low", [-0.2, 0.001])
+@pytest.mark.parametrize("given", [{"damping": 2.0}, {"restitution": 0.5}])
+@pytest.mark.parametrize("kind", ["hinge", "slider"])
+def test_end_stops_are_consistent(kind, given, low):
+    one, two = block(), block(length=0.3)
+    if kind == "hinge":
+        check_connector(bf.HingeStop(one.end, two.start, low, 0.3, stiffness=1e4, **given))
+    else:
+        check_connector(bf.SliderStop(one.end, two.end, (1.0, 0.3), low, 0.3, stiffness=1e4, **given))
+
+
+def test_a_coefficient_of_restitution_excludes_damping_and_friction():
+    one, two = block(), block(length=0.3)
+    with pytest.raises(bf.InputError, match="takes a damping or a coefficient of restitution"):
+        bf.Stop(one.end, (0, 0), UP, 1e6, damping=1.0, restitution=0.5)
+    with pytest.raises(bf.InputError, match="coefficient of restitution or friction"):
+        bf.Stop(one.end, (0, 0), UP, 1e6, friction=0.1, restitution=0.5)
+    with pytest.raises(bf.InputError, match="restitution of SliderStop is at most 1"):
+        bf.SliderStop(one.end, two.end, (1, 0), 0.0, stiffness=1e6, restitution=1.5)
+    with pytest.raises(bf.InputError, match="axis of a SliderStop must not be zero"):
+        bf.SliderStop(one.end, two.end, (0, 0), 0.0, stiffness=1e6)
 
 
 def test_a_damped_stop_is_known_to_dissipate_before_it_is_hit():

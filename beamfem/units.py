@@ -1,4 +1,4 @@
-"""Units that a model is written in, for labels of pictures and tables; nothing is ever converted."""
+"""Units that a model is written in, for labels of pictures and tables; results are never converted."""
 
 import re
 from dataclasses import dataclass
@@ -13,6 +13,7 @@ LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "cm": 1e-2, "dm": 0.1, 
 TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}
 _STRESS = {("N", "m"): "Pa", ("N", "mm"): "MPa", ("kN", "m"): "kPa", ("MN", "m"): "MPa", ("kN", "mm"): "GPa"}
 _MASS = {("N", "m"): "kg", ("N", "mm"): "t", ("kN", "m"): "t", ("mN", "mm"): "kg", ("uN", "um"): "kg"}
+_LARGE = 1e5  # [Pa]
 _STRESS |= {("lbf", "in"): "psi", ("kip", "in"): "ksi", ("uN", "um"): "MPa", ("mN", "mm"): "kPa"}
 
 
@@ -39,6 +40,11 @@ class Units:
             "Hz": "Hz" if self.time == "s" else f"1/{self.time}",
         }
         return re.sub(r"[A-Za-z]+", lambda match: parts.get(match[0], match[0]), unit)
+
+    def readable(self, size: float, unit: str) -> tuple[float, str]:
+        """Return a factor and a unit with which a number of some size is written in texts: large stresses in MPa."""
+        name = self.of(unit)
+        return (1e-6, "MPa") if name == "Pa" and abs(size) >= _LARGE else (1.0, name)
 
     def in_si(self, force: int = 0, length: int = 0, time: int = 0) -> float:
         """Return the size in SI of the unit that is a product of powers of those of force, length and time."""

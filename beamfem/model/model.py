@@ -63,12 +63,12 @@ def resembles_beam(beams: Sequence[Beam], beam: Beam) -> str:
 
 
 def touching(one: Beam, other: Beam) -> str:
-    """Return in words which ends of two beams are at one place, empty if none are."""
+    """Return in words which ends of two beams are at one place, or what connects points that are apart."""
     near = GAP * max(one.curve.length, other.curve.length)
     for own, its in product(("start", "end"), repeat=2):
         if np.hypot(*(getattr(one, own).reference - getattr(other, its).reference)) <= near:
             return f"; the {own} of the first beam and the {its} of the second do"
-    return ""
+    return "; Weld connects points that are apart rigidly, Link by a bar hinged at both"
 
 
 _UNNAMED = "N, m, s"

@@ -18,7 +18,7 @@ class Peak:
     """The extreme of a section force or a stress, which unpacks into its value, arc length [m] and row.
 
     part: which stress [Pa], utilisation [-] or section force [N], [N m] it is, whose SI unit is `unit`; at: load factor
-    of the row, or time [s] unless `static`; units: those of the model, for the text.
+    of the row, or time [s] unless `static`; units: those of the model, and `called`: the beam in words, for the text.
 
     Examples
     --------
@@ -34,19 +34,23 @@ class Peak:
     static: bool = True
     units: Units = field(default=Units(), repr=False)
     unit: str = field(default="Pa", repr=False)
+    called: str = field(default="", repr=False)
 
     def __iter__(self) -> Iterator[float]:
         return iter((self.value, self.arc_length, self.row))
 
     def __repr__(self) -> str:
-        return f"Peak({self.part} {self.in_words if np.isfinite(self.value) else 'is not known'}, of {self.beam!r})"
+        return f"Peak({self.part} {self.in_words if np.isfinite(self.value) else 'is not known'}, of {self.called})"
 
     @property
     def in_words(self) -> str:
         """Value and place with their units."""
-        unit = "" if self.unit == "-" else f" {self.units.of(self.unit)}"
+        factor, name = self.units.readable(self.value, self.unit)
+        unit = "" if name == "-" else f" {name}"
         when = f"load factor {self.at:.4g}" if self.static else f"t = {self.at:.4g} {self.units.of('s')}"
-        return f"{self.value:.4g}{unit} at {self.arc_length:.4g} {self.units.of('m')} in row {self.row}, {when}"
+        return (
+            f"{factor * self.value:.4g}{unit} at {self.arc_length:.4g} {self.units.of('m')} in row {self.row}, {when}"
+        )
 
 
 At = Callable[[int, np.ndarray, np.ndarray], np.ndarray]  # row, element and xi (points,): values (points,)

@@ -9,7 +9,7 @@ from typing import get_args
 import numpy as np
 
 from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.model.beam import Beam
+from beamfem.model.beam import Beam, beam_in_words
 from beamfem.reprs import brief
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import of_beam
@@ -117,7 +117,8 @@ def peak_of(
 
     named: the quantity and its SI unit; values (rows, stations).
     """
-    mesh = solution.model.meshes[solution.model.number_of(beam)]
+    model, number = solution.model, solution.model.number_of(beam)
+    mesh = model.meshes[number]
 
     def in_row(row: int, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
         return at(solution, AxisPoints(mesh, element, xi), np.array([row]))[0]
@@ -128,7 +129,8 @@ def peak_of(
     if row >= 0:
         arc = mesh.arc_length(np.array([element]), np.array([xi]))
         place = float(arc[0]), row, float(solution.at[row])
-    return Peak(value, *place, beam, part, solution.static, units_of(solution.model.units), unit)
+    called = beam_in_words(model.beams, number)
+    return Peak(value, *place, beam, part, solution.static, units_of(model.units), unit, called)
 
 
 def _at_stations(solution: Solution, mesh: BeamMesh) -> np.ndarray:

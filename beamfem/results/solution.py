@@ -143,7 +143,10 @@ class Solution:
         what = "load factor" if self.static else "time"
         unit = "" if self.static else f" {self.model.unit('s')}"
         span = f"{what} {self.at[0]:g} to {self.at[-1]:g}{unit}" if len(self.at) else "empty"
-        unstable = "" if self.stability is None or self.stability.all() else f"{(~self.stability).sum()} unstable, "
+        unstable = ""
+        if self.stability is not None and not self.stability.all():
+            first = self.at[self.stability.argmin()]
+            unstable = f"{(~self.stability).sum()} unstable, the first at load factor {first:.6g}, "
         drift = "" if self.energy_drift is None else f"; {self.energy_drift}"
         warned = f"; {counted(len(self.warnings), 'warning')}, see its warnings" if self.warnings else ""
         return f"{type(self).__name__}({len(self.at)} states, {unstable}{span}, of {self.model!r}{drift}{warned})"
@@ -620,15 +623,38 @@ class Solution:
 
         return plot_history(self, point, quantity, path, ax)
 
+    def plot_along(
+        self,
+        beam: Beam,
+        name: str = "moment",
+        path: str | PathLike[str] | None = None,
+        *,
+        row: int = -1,
+        ax: Any = None,
+    ) -> Any:
+        """Draw the diagram of a section force, a stress or another field along a beam and return the figure.
+
+        name: one of `colour` in `plot`; path: file to write (PNG, SVG, PDF); row: load step or time; ax: axes to draw
+        in, see `plot`. Raises InputError for an unknown field, beam or row, MissingPackageError without matplotlib.
+
+        Examples
+        --------
+        >>> figure = solution.plot_along(beam, "moment", "moment.png")
+        """
+        from beamfem.view.quantity_curve import plot_along
+
+        return plot_along(self, beam, name, path, row, ax)
+
     def plot_curve(self, x: Any, y: Any, path: str | PathLike[str] | None = None, *, ax: Any = None) -> Any:
         """Plot one quantity against another, one point per row, and return the figure.
 
         A quantity is a pair of a name and a point, such as ("uy", beam.end), with the names "ux", "uy", "x", "y" [m],
         "rotation" [rad], "vx", "vy" [m/s], "normal", "shear" [N], "moment" [N m], those of stresses in `plot` [Pa] and,
-        at supports, "fx", "fy" [N] and "m" [N m]; or "load_factor" or "time" [s]; or "kinetic", "strain", "potential"
-        or "total" energy [J]; or a pair of a label and numbers (steps,); or numbers. Where two elements meet or a load
-        acts, a section is that on the side towards the beam's end. path: file to write (PNG, SVG, PDF); ax:
-        axes to draw in, see `plot`. Raises InputError for an unknown quantity, MissingPackageError without matplotlib.
+        at supports, "fx", "fy" [N] and "m" [N m]; or a pair of "fx", "fy" or "m" and a load at a point, for the applied
+        force; or "load_factor" or "time" [s]; or "kinetic", "strain", "potential" or "total" energy [J]; or a pair of a
+        label and numbers (steps,); or numbers. Where a section force jumps, its value is that on the side towards the
+        beam's end. path: file to write (PNG, SVG, PDF); ax: axes to draw in, see `plot`. Raises InputError for an
+        unknown quantity, MissingPackageError without matplotlib.
 
         Examples
         --------

@@ -11,7 +11,7 @@ class Status(Enum):
     """Termination status of a solve; the values are sentences."""
 
     COMPLETED = "the solve completed"
-    ROUND_OFF = "the solve completed, with the residual at the round-off floor of the model"
+    ROUND_OFF = "the solve completed, with the residual as small as round-off allows"
     UNSTABLE = "the solve completed, but an equilibrium that it found, or started from, is unstable"
     STOPPED = "the solve stopped before completion"
 

@@ -13,6 +13,7 @@ from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import LikeBeams, equal_beams, of_each
 from beamfem.results.beam_stress import HEIGHTS
 from beamfem.results.solution import Solution
+from beamfem.units import units_of
 from beamfem.view.frames import axis_points
 from beamfem.view.support_symbols import grounds
 
@@ -80,11 +81,21 @@ class Shapes:
     def quantity(self) -> Quantity | None:
         return None if self.colour is None else quantity(self.colour)
 
+    @cached_property
+    def _readable(self) -> tuple[float, str]:
+        assert self.quantity is not None
+        return units_of(self.solution.model.units).readable(max(map(abs, self.limits)), self.quantity.unit)
+
+    @property
+    def factor(self) -> float:
+        """Factor of the numbers at a colour bar."""
+        return self._readable[0]
+
     @property
     def label(self) -> str:
-        """Name and unit of the field."""
+        """Name of the field, and the unit of the numbers at a colour bar."""
         assert self.quantity is not None
-        return f"{self.quantity.label} [{self.solution.model.unit(self.quantity.unit)}]"
+        return f"{self.quantity.label} [{self._readable[1]}]"
 
     @cached_property
     def values(self) -> list[np.ndarray]:

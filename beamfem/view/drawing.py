@@ -9,6 +9,7 @@ import numpy as np
 from beamfem.equations.callbacks import uninterrupted
 from beamfem.equations.system import system_of
 from beamfem.errors import InputError
+from beamfem.model.beam import beam_in_words
 from beamfem.model.model import Model
 from beamfem.results import extremes
 from beamfem.results.axis_points import AxisPoints
@@ -16,10 +17,10 @@ from beamfem.results.extremes import estimate, extreme_of_beams
 from beamfem.results.path import Path
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics
+from beamfem.units import units_of
 from beamfem.validation import count, flag
 from beamfem.view.deformed_shapes import FIELD_COLOURS, ORIGINAL, Shapes, draw_undeformed, even, shade
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
-from beamfem.view.labels import place
 from beamfem.view.load_drawing import draw_loads
 from beamfem.view.plots import empty_figure, given_axes, quiet, save_figure
 from beamfem.view.support_symbols import draw_joints, supports_of
@@ -65,13 +66,16 @@ def _extreme_of(shapes: Shapes) -> _Extreme:
         return extremes.extreme(*fields[beam], np.abs, at)
 
     beam, found = extreme_of_beams(estimates, np.abs, of_beam)
-    solution, unit = shapes.solution, shapes.quantity.unit
-    value = f"{found.value:.4g}" + ("" if unit == "-" else f" {solution.model.unit(unit)}")
+    solution, model = shapes.solution, shapes.solution.model
+    factor, unit = units_of(model.units).readable(found.value, shapes.quantity.unit)
+    value = f"{factor * found.value:.4g}" + ("" if unit == "-" else f" {unit}")
     if even(shapes.values):
         return _Extreme(value, "everywhere", None)
     row = int(shapes.rows[found.row])
     points = AxisPoints(meshes[beam], np.array([found.element]), np.array([found.xi]))
-    where = f"at {place(solution.model, points.reference[0])}"
+    arc_length = float(meshes[beam].arc_length(points.element, points.xi)[0])
+    named = f" of {beam_in_words(model.beams, beam)}" if len(meshes) > 1 else ""
+    where = f"at {arc_length:.4g} {model.unit('m')}{named}"
     when = f", {moment_of(solution, row)}" if len(shapes.rows) > 1 else ""
     return _Extreme(f"extreme {value}", where + when, points.positions(solution.p[[row]])[0][0, 0])
 
@@ -194,7 +198,9 @@ def bar(axes: Any, shapes: Shapes, own: bool = True) -> None:
     from matplotlib.colors import Normalize
 
     assert shapes.quantity is not None
-    _add_bar(axes, ScalarMappable(Normalize(*shapes.limits), FIELD_COLOURS), shapes.label, own)
+    low, high = shapes.limits
+    norm = Normalize(shapes.factor * low, shapes.factor * high)
+    _add_bar(axes, ScalarMappable(norm, FIELD_COLOURS), shapes.label, own)
 
 
 def _bar_of_rows(axes: Any, solution: Solution, rows: np.ndarray, own: bool) -> None:

@@ -7,7 +7,7 @@ from beamfem.results.path import Path
 from beamfem.results.solution import Solution
 
 _POINTS = 4000  # of all beams in a shape
-_SMOOTH = 12  # straight pieces that make an element look curved
+_SMOOTH, _FEWEST = 12, 100  # straight pieces that make an element, and a model of few elements, look curved
 _ALIKE = 5e-4  # load factors that three digits do not tell apart
 
 
@@ -29,7 +29,8 @@ def spread_rows(solution: Solution, most: int) -> np.ndarray:
 def axis_points(solution: Solution, total: int = _POINTS) -> list[AxisPoints]:
     """Return the points of each beam to draw, about `total` of them if there are few elements."""
     meshes = solution.model.meshes
-    pieces = int(np.clip(total // sum(mesh.elements for mesh in meshes), 1, _SMOOTH))
+    elements = sum(mesh.elements for mesh in meshes)
+    pieces = int(np.clip(total // elements, 1, max(_SMOOTH, _FEWEST // elements)))
     return [AxisPoints.spaced(mesh, 1 if mesh.beam.element.field.degree == 1 else pieces) for mesh in meshes]
 
 

@@ -23,6 +23,7 @@ from beamfem.results.batched_beams import of_each
 from beamfem.results.beam_stress import stress_at
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
+from beamfem.units import units_of
 from beamfem.validation import count, optional, text
 from beamfem.view.deformed_shapes import Shapes, limits
 from beamfem.view.frames import axis_of_rows, axis_points, moment_of, spread_rows
@@ -64,8 +65,9 @@ def fields_of(shapes: Shapes, names: Sequence[str]) -> list[dict[str, Any]]:
         known = np.isfinite(values)
         levels = np.where(known, 1.0 + np.round((np.where(known, values, low) - low) / (high - low) * _STEPS), 0.0)
         whole = "" if quantity.over_height is None else ", largest over the height"  # a page has one colour a section
-        label = f"{quantity.label}{whole} [{solution.model.unit(quantity.unit)}]"
-        result.append({"name": name, "label": label, "low": low, "high": high, "values": as_text(levels.astype("u1"))})
+        scale, unit = units_of(solution.model.units).readable(max(abs(low), abs(high)), quantity.unit)
+        limits_shown = {"label": f"{quantity.label}{whole} [{unit}]", "low": scale * low, "high": scale * high}
+        result.append({"name": name, **limits_shown, "values": as_text(levels.astype("u1"))})
     return result
 
 

@@ -7,16 +7,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.model.beam import Beam, Point
+from beamfem.model.beam import Beam, Point, beam_in_words
+from beamfem.model.load_base import PointLoad, factor
+from beamfem.model.model import Model
 from beamfem.results.axis_fields import AT_POINT, QUANTITIES, UNITS, Quantity, value_of
 from beamfem.results.axis_fields import quantity as quantity_along
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.envelope import Envelope
 from beamfem.results.path import Path, PathState
 from beamfem.results.solution import Solution
+from beamfem.results.solution_system import loading
 from beamfem.solve.linear.linear_model import QUANTITIES as LINEAR
-from beamfem.validation import items, one_of, require_known, shown
-from beamfem.view.frames import axis_of_rows
+from beamfem.units import units_of
+from beamfem.validation import items, number_below, one_of, require_known, shown
+from beamfem.view.frames import axis_of_rows, moment_of
 from beamfem.view.labels import place, write_labels
 from beamfem.view.plots import COLOURS, empty_figure, given_axes, legend_over, new_figure, quiet, save_figure
 
@@ -37,6 +41,7 @@ _LABELS = {
     "fy": "reaction fy",
     "m": "reaction moment",
 }
+_OF_LOAD = {"fx": "applied fx", "fy": "applied fy", "m": "applied moment"}
 # what is drawn of a point over time: label and the names of its curves
 _HISTORIES = {
     "displacement": ("displacement", ("ux", "uy")),
@@ -130,16 +135,48 @@ def plot_envelope(
     """Draw the envelope of a quantity along a beam and return the figure. See `Envelope.plot`."""
     curve, model = envelope.along(beam, name), next(iter(envelope.cases.values())).model
     drawn = quantity_along(name)
+    scale, unit = _readable(model, np.concatenate([curve.smallest, curve.largest]), drawn.unit)
     figure, axes = new_figure(ax=ax, pyplot=path is None)
     axes.axhline(0.0, color="0.6", linewidth=0.8)
-    axes.fill_between(curve.arc_length, curve.smallest, curve.largest, color="0.88", label="envelope")
+    axes.fill_between(curve.arc_length, scale * curve.smallest, scale * curve.largest, color="0.88", label="envelope")
     for number, (case, sides) in enumerate(curve.cases.items()):
         for values, label in zip(sides, (case, None), strict=True):
-            axes.plot(curve.arc_length, values, color=COLOURS[number % len(COLOURS)], linewidth=1.4, label=label)
+            axes.plot(
+                curve.arc_length, scale * values, color=COLOURS[number % len(COLOURS)], linewidth=1.4, label=label
+            )
     axes.set_xlabel(f"arc length [{model.unit('m')}]")
-    axes.set_ylabel(f"{drawn.label} [{model.unit(drawn.unit)}]")
+    axes.set_ylabel(f"{drawn.label} [{unit}]")
     axes.margins(x=0.02)
     legend_over(axes, 4)
+    return save_figure(figure, path)
+
+
+def _readable(model: Model, values: np.ndarray, unit: str) -> tuple[float, str]:
+    """Return a factor and a unit in which values are drawn, see `Units.readable`."""
+    return units_of(model.units).readable(float(np.nanmax(np.abs(values))), unit)
+
+
+def plot_along(
+    solution: Solution, beam: Beam, name: str, path: str | PathLike[str] | None = None, row: int = -1, ax: Any = None
+) -> Any:
+    """Draw a quantity along a beam in a row and return the figure. See `Solution.plot_along`."""
+    model, drawn = solution.model, quantity_along(name)
+    number = number_below("row", row, len(solution), -len(solution)) % len(solution)
+    mesh = model.meshes[model.number_of(beam)]
+    points = AxisPoints.spaced(mesh, max(2, _ALONG // mesh.elements))
+    values = drawn.values(points, solution, np.array([number]))[0]
+    if not np.isfinite(values).any():
+        raise InputError(f"this beam has no {drawn.label} to draw: {drawn.unknown_of([beam])}")
+    scale, unit = _readable(model, values, drawn.unit)
+    figure, axes = new_figure(ax=ax, pyplot=path is None)
+    axes.axhline(0.0, color="0.6", linewidth=0.8)
+    arc_length = mesh.arc_length(points.element, points.xi)
+    axes.plot(arc_length, scale * values, color=COLOURS[0], linewidth=1.6)
+    axes.fill_between(arc_length, scale * values, color=COLOURS[0], alpha=0.12, linewidth=0.0)
+    axes.set_xlabel(f"arc length [{model.unit('m')}]")
+    axes.set_ylabel(f"{drawn.label} [{unit}]")
+    axes.set_title(f"{beam_in_words(model.beams, model.number_of(beam))}, {moment_of(solution, number)}", fontsize=10)
+    axes.margins(x=0.02)
     return save_figure(figure, path)
 
 
@@ -152,6 +189,7 @@ def _together(path: Solution, states: Sequence[PathState]) -> Solution:
 
 
 Drawn = str | tuple[str, Any] | np.ndarray
+_ALONG = 400  # points of a curve along a beam
 _MARKED = 200  # rows up to which each is a dot
 OF_SECTION = (
     *("normal", "shear", "moment", "stress", "von_mises", "upper", "lower", "outer"),
@@ -188,7 +226,13 @@ def _taken(solution: Solution, which: str, given: Drawn) -> tuple[str, np.ndarra
         else:
             label, unit = _LABELS[name], UNITS[name]
             values = value_of(solution, point, AT_POINT[name][0])
-        return f"{label} at {place(solution.model, point.reference)} [{solution.model.unit(unit)}]", values
+        scale, unit = _readable(solution.model, values, unit)
+        return f"{label} at {place(solution.model, point.reference)} [{unit}]", scale * values
+    if isinstance(given, tuple) and len(given) == 2 and isinstance(given[1], PointLoad):
+        name, load = given
+        require_known(f"{which} of a curve is no {shown(name)} of a load", name, _OF_LOAD)
+        part = list(_OF_LOAD).index(name)
+        return f"{_OF_LOAD[name]} [{solution.model.unit(UNITS[name])}]", _applied(solution, load)[:, part]
     label, numbers = given if isinstance(given, tuple) and len(given) == 2 else ("", given)
     try:
         values = np.asarray(numbers)
@@ -201,6 +245,16 @@ def _taken(solution: Solution, which: str, given: Drawn) -> tuple[str, np.ndarra
             f"numbers, one a row, got {shown(given)}"
         )
     return label, values
+
+
+def _applied(solution: Solution, load: PointLoad) -> np.ndarray:
+    """Return fx, fy [N] and moment [N m] of a load in each row (steps, 3)."""
+    system, at = loading(solution)
+    values = np.outer([factor(load, time, system.static) for time in at.tolist()], load.value)
+    if load.follower:
+        turn = np.exp(1j * solution.rotation(load.point)) * (values[:, 0] + 1j * values[:, 1])
+        values[:, 0], values[:, 1] = turn.real, turn.imag
+    return values
 
 
 def _of_section(solution: Solution, quantity: Quantity, point: Point) -> tuple[str, str, np.ndarray]:

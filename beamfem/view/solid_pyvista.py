@@ -128,10 +128,11 @@ class _Scene:
         if shapes.quantity is not None:
             self.surface["field"] = self._values(0)
             title = f"{shapes.label}\n"  # away from the topmost number
+            clim = [shapes.factor * limit for limit in shapes.limits]
             bar = {"title": title, "color": "black", "vertical": True, "position_x": 0.88, "position_y": 0.25,
                    "height": 0.5, "width": 0.05, "n_labels": 5, "fmt": "%.3g", "title_font_size": 18,
                    "label_font_size": 16}  # fmt: skip
-            options = {"scalars": "field", "cmap": FIELD_COLOURS, "clim": shapes.limits, "scalar_bar_args": bar}
+            options = {"scalars": "field", "cmap": FIELD_COLOURS, "clim": clim, "scalar_bar_args": bar}
         self.plotter.add_mesh(self.surface, smooth_shading=False, specular=0.2, ambient=0.25, **options)
 
     @cached_property
@@ -177,7 +178,7 @@ class _Scene:
     def _values(self, order: int) -> np.ndarray:
         """The field at these corners (points * 4,)."""
         fields = [field.ravel() for strips in self.shapes.strips(order) for _, field in strips]
-        return np.repeat(np.concatenate(fields), 2)
+        return self.shapes.factor * np.repeat(np.concatenate(fields), 2)
 
 
 def _width(points: AxisPoints) -> np.ndarray:

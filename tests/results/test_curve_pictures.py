@@ -71,8 +71,10 @@ def test_section_forces_stresses_and_energies_are_drawn(kind):
             expected = getattr(forces, name)[:, station]
             found = drawn(solution.plot_curve(over, (name, point)))[:, 1]
             assert found == pytest.approx(expected, rel=1e-9, abs=1e-9 * np.abs(getattr(forces, name)).max())
-        found = drawn(solution.plot_curve(over, ("stress", point)))[:, 1]
-        assert found == pytest.approx(stress.von_mises[:, station], rel=1e-9, abs=1e-9 * stress.von_mises.max())
+        figure = solution.plot_curve(over, ("stress", point))
+        scale = 1e-6 if "[MPa]" in figure.axes[0].get_ylabel() else 1.0
+        expected = scale * stress.von_mises[:, station]
+        assert drawn(figure)[:, 1] == pytest.approx(expected, rel=1e-9, abs=1e-9 * scale * stress.von_mises.max())
     for name in ("kinetic", "strain", "potential", "total"):
         figure = solution.plot_curve(over, name)
         assert np.array_equal(drawn(figure)[:, 1], getattr(energy, name))
@@ -95,3 +97,35 @@ def test_a_section_without_stress_is_named():
         solution.plot_curve("load_factor", ("momentum", plain.start))
     with pytest.raises(bf.InputError, match="did you mean strain"):
         solution.plot_curve("load_factor", "strains")
+
+
+def test_the_moment_along_a_cantilever_is_a_parabola():
+    loaded = bf.Model([OWN], [bf.Clamp(OWN.start)], [bf.DistributedLoad(OWN, (0.0, -1e-3))])
+    figure = bf.solve_static(loaded).plot_along(OWN)
+    s, moment = figure.axes[0].lines[1].get_xydata().T
+    assert moment == pytest.approx(-0.5e-3 * (1.0 - s) ** 2, abs=1e-9)
+    with pytest.raises(bf.InputError, match="no quantity 'momentum' along a beam; did you mean moment"):
+        bf.solve_static(loaded).plot_along(OWN, "momentum")
+
+
+def test_large_stresses_are_drawn_in_megapascals():
+    solution = bf.solve_static(STIFF)
+    figure = solution.plot_along(OWN, "von_mises")
+    assert figure.axes[0].get_ylabel() == "von Mises stress [MPa]"
+    peak = solution.stresses(OWN).peak()
+    assert figure.axes[0].lines[1].get_ydata()[0] == pytest.approx(1e-6 * peak.value)
+    assert f"von_mises {1e-6 * peak.value:.4g} MPa at 0 m" in repr(peak)
+    bar = solution.plot(colour="stress").axes[1]
+    assert bar.get_ylabel() == "von Mises stress [MPa]"
+    assert bar.get_ylim()[1] == pytest.approx(1e-6 * peak.value, rel=0.05)
+
+
+@pytest.mark.parametrize("follower", [False, True])
+def test_the_applied_force_is_drawn_over_a_displacement(follower):
+    push = bf.PointForce(OWN.end, (0.0, -30.0), amplitude=lambda at: 4.0 * at * (1.0 - at), follower=follower)
+    solution = bf.solve_static(bf.Model([OWN], [bf.Clamp(OWN.start)], [push]), at=[0.0, 0.25, 0.5, 1.0])
+    figure = solution.plot_curve(("uy", OWN.end), ("fy", push))
+    assert drawn(figure)[:, 1] == pytest.approx(-solution.reaction(OWN.start)[:, 1], abs=1e-6)
+    assert figure.axes[0].get_ylabel() == "applied fy [N]"
+    with pytest.raises(bf.InputError, match="'ux' of a load"):
+        solution.plot_curve(("ux", push), ("fy", push))

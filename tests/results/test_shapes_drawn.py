@@ -108,8 +108,8 @@ def test_the_extreme_of_a_stress_is_that_of_the_beam(bent, name):
     peak = bent.stresses(own).peak(part)
     figure = bent.plot(colour=name)
     said = names(figure)[-1]
-    assert said == f"extreme {peak.value:.4g} Pa at (0, 0)"
-    assert figure.axes[1].get_ylabel().endswith("[Pa]")
+    assert said == f"extreme {1e-6 * peak.value:.4g} MPa at 0 m"
+    assert figure.axes[1].get_ylabel().endswith("[MPa]")
     mark = figure.axes[0].lines[-1]
     np.testing.assert_allclose(np.ravel(mark.get_xydata()), [0.0, 0.0], atol=1e-12)
 
@@ -117,7 +117,7 @@ def test_the_extreme_of_a_stress_is_that_of_the_beam(bent, name):
 def test_shear_stress_has_its_own_colour(bent):
     """Three halves of the mean of a rectangle."""
     shear = np.abs(bent.section_forces(bent.model.beams[0]).shear[-1]).max()
-    assert bent.plot(colour="shear_stress").axes[1].get_ylim()[1] == pytest.approx(1.5 * shear / 1e-4, rel=1e-3)
+    assert bent.plot(colour="shear_stress").axes[1].get_ylim()[1] == pytest.approx(1.5e-6 * shear / 1e-4, rel=1e-3)
 
 
 def test_an_extreme_of_several_shapes_says_when(falling):
@@ -126,7 +126,7 @@ def test_an_extreme_of_several_shapes_says_when(falling):
     rows = spread_rows(falling, 4)
     speeds = np.linalg.norm(falling.velocity(end), axis=1)[rows]
     when = falling.time[rows[speeds.argmax()]]
-    assert names(figure)[-1] == f"extreme {speeds.max():.4g} m/s at (1, 0), t = {when:.3g} s"
+    assert names(figure)[-1] == f"extreme {speeds.max():.4g} m/s at 1 m, t = {when:.3g} s"
 
 
 def test_a_field_that_is_even_has_no_extreme():

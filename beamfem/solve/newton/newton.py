@@ -37,7 +37,7 @@ class Termination(Enum):
     """Why an iteration ended; the values are the sentences that users read."""
 
     CONVERGED = "the correction and the residual are within the tolerance"
-    ROUND_OFF = "the residual has reached the round-off floor of the model"
+    ROUND_OFF = "the residual is as small as round-off allows"
     DIVERGED = "the corrections grew beyond the size of the model"
     EXHAUSTED = "the iterations ran out before the corrections became small"
     SINGULAR = "the tangent is singular"

@@ -187,3 +187,23 @@ def test_a_link_does_not_drift_in_1e5_steps():
     across = np.abs((apart * rate).sum(axis=1)) / np.abs(rate).max()
     assert across.max() < 1e-6
     assert across[-100:].max() < 2.0 * across[1:101].max()
+
+
+def test_gauss_collocation_meets_conditions_and_keeps_its_order():
+    """Without projection, velocities along a link did not converge at all."""
+    rubber, square = bf.Material(5e5, 0.3, 1000.0), bf.Rectangle(0.05, 0.05)
+    left, right = (bf.Beam(bf.Line((x, 0), (x, -0.5 - 0.2 * x)), 1, bf.CRBF(1), square, rubber) for x in (0.0, 1.0))
+    pins, weight = [bf.Pin(left.start), bf.Pin(right.start)], bf.Gravity((3.0, -9.81))
+    model = bf.Model([left, right], pins, [weight], connectors=[bf.Link(left.end, right.end)])
+    found = []
+    for steps in (10, 20, 80):
+        motion = bf.simulate(model, 0.1, 0.1 / steps, integrator=bf.Gauss(2))
+        apart, rate = (
+            getattr(motion, name)(right.end) - getattr(motion, name)(left.end) for name in ("position", "velocity")
+        )
+        assert np.abs(np.hypot(*apart.T) - np.hypot(1.0, 0.2)).max() < 1e-13
+        assert np.abs((apart * rate).sum(axis=1)).max() < 1e-14
+        found.append(np.append(motion.position(right.end)[-1], motion.velocity(right.end)[-1]))
+    errors = [np.abs(each - found[2]).max() for each in found[:2]]
+    assert errors[0] < 2e-4
+    assert errors[1] < errors[0] / 12

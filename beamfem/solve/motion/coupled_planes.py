@@ -14,6 +14,7 @@ from beamfem.kernels import motion_stages
 from beamfem.kernels.compiling import Routine
 from beamfem.kernels.stage_record import Stages
 from beamfem.linalg.lapack import LinAlgError, superlu
+from beamfem.solve.motion.constraints import onto_conditions
 from beamfem.solve.motion.coupled_stages import PythonRoutines
 from beamfem.solve.motion.start_acceleration import initial_acceleration
 
@@ -87,6 +88,8 @@ class CoupledPlanes(PythonRoutines):
                 planes[re], planes[re + 1] = solution.real, solution.imag
 
     def _accelerate(self, system: int, solver: int, stages: int) -> None:
-        """Set p'' in the state reached, and multipliers."""
+        """Set p'' in the state reached, and multipliers, and put it onto the conditions."""
         time, elapsed = float(self._times[self._solver.now]), self._stages.elapsed
+        if len(self._system.connectors.multipliers):
+            onto_conditions(self._system, self._state, time)
         self._state[2] = initial_acceleration(self._system, self._state, time, elapsed=elapsed)

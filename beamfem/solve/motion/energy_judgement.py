@@ -8,6 +8,7 @@ import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.equations.system import System
+from beamfem.results.energies import Energy
 from beamfem.results.energy_balance import Balance, balance, driven, masses
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics
@@ -147,10 +148,17 @@ class EnergyJudge:
         """Take the energies of the first and of the fastest state so far into account."""
         if self._parts.size and self._speed <= _FASTER * self._speed_evaluated:
             return
-        for state in (self._first, self._fastest):
-            energy = state.energy()
-            self._parts = _extremes(self._parts, energy.kinetic, energy.strain, energy.potential)
-        self._total, self._speed_evaluated = float(self._first.energy().total[0]), self._speed
+        if not self._parts.size:
+            self._total = float(self._exchange(self._first).total[0])
+        if self._fastest is not self._first:
+            self._exchange(self._fastest)
+        self._speed_evaluated = self._speed
+
+    def _exchange(self, state: Solution) -> Energy:
+        """Return the energies of a state, taken into account."""
+        energy = state.energy()
+        self._parts = _extremes(self._parts, energy.kinetic, energy.strain, energy.potential)
+        return energy
 
     def _solution(self, times: np.ndarray, states: np.ndarray) -> Solution:
         p, v, a = states.swapaxes(0, 1)

@@ -13,6 +13,7 @@ from beamfem.errors import ConvergenceError, LongRunWarning, warn
 
 _Taken = ParamSpec("_Taken")
 _Found = TypeVar("_Found")
+_SHOWN = 0.5  # seconds of work from which on there is a bar
 _WORTH = 5.0  # seconds of work from which on Ctrl-C returns its results; below it is meant for what called it
 
 _held: ContextVar[bool] = ContextVar("_held", default=False)
@@ -62,9 +63,20 @@ def _bar(label: str, total: float) -> Iterator[Callable[[float], None]]:
         TimeElapsedColumn(),
         TimeRemainingColumn(),
     )
-    with no_progress(), Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(label, total=total)
-        yield lambda done: bar.update(task, completed=done)
+    bar, begin = Progress(*columns, console=Console(stderr=True), transient=True), time.monotonic()
+    task = bar.add_task(label, total=total)
+
+    def show(done: float) -> None:
+        if not bar.live.is_started and time.monotonic() - begin > _SHOWN:  # a notebook keeps the place of any bar
+            bar.start()
+        bar.update(task, completed=done)
+
+    with no_progress():
+        try:
+            yield show
+        finally:
+            if bar.live.is_started:
+                bar.stop()
 
 
 @contextmanager

@@ -139,10 +139,6 @@ def writable(folder: Path) -> bool:
 
 def draw(solution: "Solution", path: Path, colour: str | None) -> None:
     """Write a picture, a page with a slider (.html) or a film (.gif, .mp4). Raises InputError."""
-    kind = path.suffix.lower()
-    if kind != ".html":
-        (solution.animate if kind in (".gif", ".mp4") else solution.plot)(path, colour=colour)
-    elif colour is None:
-        solution.to_html(path)
-    else:
-        raise InputError("a page has its own choice of colours; --colour is for pictures and films")
+    film = solution.animate
+    writers: dict[str, Callable[..., object]] = {".html": solution.to_html, ".gif": film, ".mp4": film}
+    writers.get(path.suffix.lower(), solution.plot)(path, colour=colour)

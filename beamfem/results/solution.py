@@ -550,22 +550,30 @@ class Solution:
         e = postprocess.nodal_vectors(mesh, self.p[number][None])[0]
         return without_removable_knots(spline_through_hermite(mesh.parameter, e[:, 0], mesh.rate * e[:, 1]))
 
-    def to_html(self, path: str | PathLike[str] | None = None, *, title: str | None = None, frames: int = 60) -> Path:
+    def to_html(
+        self,
+        path: str | PathLike[str] | None = None,
+        *,
+        title: str | None = None,
+        frames: int = 60,
+        colour: str | None = None,
+    ) -> Path:
         """Write an HTML page with a slider over the steps and return the path; the file works offline.
 
         The body moves with its supports, optionally coloured by a section force [N, N m], a stress [Pa], the
         utilisation [-], rotation [rad], displacement [m] or speed [m/s]; a curve of the largest displacement in each
         row and the statistics are shown beside it. The file is smaller than 1 MB: for large models only the axes and
         fewer steps are drawn. path: file to write, .html, by default a temporary one; notebooks display the path that
-        is returned. title: heading of the page; frames: largest number of steps. Raises InputError for another suffix.
+        is returned. title: heading of the page; frames: largest number of steps; colour: the field that is shown first,
+        by default none. Raises InputError for another suffix, or a field that the page does not have.
 
         Examples
         --------
-        >>> page = solution.to_html("cantilever.html", title="Cantilever")
+        >>> page = solution.to_html("cantilever.html", title="Cantilever", colour="moment")
         """
         from beamfem.view.player import write_player
 
-        return write_player(self, path, title, frames)
+        return write_player(self, path, title, frames, colour)
 
     def plot(
         self,

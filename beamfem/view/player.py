@@ -24,7 +24,7 @@ from beamfem.results.beam_stress import stress_at
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
 from beamfem.units import units_of
-from beamfem.validation import count, optional, text
+from beamfem.validation import count, optional, require_known, text
 from beamfem.view.deformed_shapes import Shapes, limits
 from beamfem.view.frames import axis_of_rows, axis_points, moment_of, spread_rows
 from beamfem.view.load_drawing import PlacedLoads, PlacedRow
@@ -145,18 +145,27 @@ _CURVE, _AT_ONCE = 500, 500_000  # points of the axes, and parts of the curve; p
 
 
 def write_player(
-    solution: Solution, path: str | PathLike[str] | None = None, title: str | None = None, frames: int = 60
+    solution: Solution,
+    path: str | PathLike[str] | None = None,
+    title: str | None = None,
+    frames: int = 60,
+    colour: str | None = None,
 ) -> Path:
     """Write a self-contained page with a slider over up to `frames` steps and return its path: `Solution.to_html`."""
     target = file_to_write(path, "a page", ".html", example="steps.html")
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to show")
-    heading = optional(text)("title", title) or (target.stem.replace("_", " ").replace("-", " ") or "Solution")
+    stem = "" if path is None else target.stem.replace("_", " ").replace("-", " ")
+    heading = optional(text)("title", title) or stem or "Solution"
     statistics = [*solution_rows(solution), *model_rows(solution.model)]
     table = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in statistics)
     template = files("beamfem.view").joinpath("player.html").read_text(encoding="utf-8")
     # "</" would end the script in which the numbers stand
-    data = json.dumps(_data(solution, count("frames", frames)), separators=(",", ":")).replace("</", "<\\/")
+    content = _data(solution, count("frames", frames))
+    if colour is not None:
+        content["colour"] = "stress" if colour == "von_mises" else colour
+        require_known("colour of a page", content["colour"], [field["name"] for field in content["fields"]])
+    data = json.dumps(content, separators=(",", ":")).replace("</", "<\\/")
     page = template.replace("@TITLE@", escape(heading)).replace("@TABLE@", table).replace("@DATA@", data)
     with whole(target) as partial:
         partial.write_text(page, encoding="utf-8")

@@ -27,6 +27,7 @@ from beamfem.view.rendering import ADVICE, can_render, has_display, no_display_n
 _POINTS = 6000  # of all beams
 _ROWS = 400  # that the slider knows
 _LARGEST_SIDE = 16384  # [pixels], of what graphics cards render
+_NOTHING = 1e-9  # of the largest value: round-off of a zero
 _PLAIN = "#6699BB"
 _STRONG, _PALE = (0x66, 0x99, 0xBB), (0xC4, 0xD6, 0xE3)  # of layers in turn
 
@@ -81,7 +82,7 @@ def _below_cell(solution: Solution, colour: str | None, size: tuple[int, int]) -
         if find_spec(backend) and can_render():
             scene = slider_scene(solution, colour, size, off_screen=True)
             return scene.show(jupyter_backend="server", return_viewer=True)
-    return slider(solution, colour) if find_spec("ipywidgets") else write_player(solution)
+    return slider(solution, colour) if find_spec("ipywidgets") else write_player(solution, colour=colour)
 
 
 def slider_scene(solution: Solution, colour: str | None, size: tuple[int, int], off_screen: bool) -> Any:
@@ -128,9 +129,10 @@ class _Scene:
         if shapes.quantity is not None:
             self.surface["field"] = self._values(0)
             title = f"{shapes.label}\n"  # away from the topmost number
-            clim = [shapes.factor * limit for limit in shapes.limits]
+            least = _NOTHING * max(map(abs, shapes.limits))
+            clim = [0.0 if abs(limit) < least else shapes.factor * limit for limit in shapes.limits]
             bar = {"title": title, "color": "black", "vertical": True, "position_x": 0.88, "position_y": 0.25,
-                   "height": 0.5, "width": 0.05, "n_labels": 5, "fmt": "%.3g", "title_font_size": 18,
+                   "height": 0.5, "width": 0.05, "n_labels": 5, "fmt": "%.4g", "title_font_size": 18,
                    "label_font_size": 16}  # fmt: skip
             options = {"scalars": "field", "cmap": FIELD_COLOURS, "clim": clim, "scalar_bar_args": bar}
         self.plotter.add_mesh(self.surface, smooth_shading=False, specular=0.2, ambient=0.25, **options)
@@ -146,7 +148,8 @@ class _Scene:
         if self.shapes.quantity is not None:
             self.surface["field"] = self._values(order)
         text = moment_of(self.shapes.solution, int(self.shapes.rows[order]))
-        self.plotter.add_text(text, name="row", color="black", font_size=11)
+        # notebooks have their buttons on the left
+        self.plotter.add_text(text, name="row", position="upper_edge", color="black", font_size=11)
 
     def look(self) -> None:
         """Look at the plane of the beams from slightly above and beside, at every row in full."""

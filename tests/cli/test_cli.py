@@ -181,9 +181,9 @@ def test_a_colour_that_nobody_knows_is_named(results, tmp_path):
     done = invoke("plot", results[0], tmp_path / "a.png", "--colour", "momnet")
     assert done.exit_code == 2
     assert "did you mean moment" in done.stderr
-    assert (
-        "has its own choice of colours" in invoke("plot", results[0], tmp_path / "a.html", "--colour", "moment").stderr
-    )
+    assert "did you mean moment" in invoke("plot", results[0], tmp_path / "a.html", "--colour", "momnet").stderr
+    assert invoke("plot", results[0], tmp_path / "a.html", "--colour", "moment").exit_code == 0
+    assert '"colour":"moment"' in (tmp_path / "a.html").read_text()
 
 
 def test_export_takes_what_one_chooses(results, tmp_path):

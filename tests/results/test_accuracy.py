@@ -240,16 +240,76 @@ def test_motions_are_as_accurate_as_asked_for():
     assert errors.max() < 1.2 * 2e-5  # of the diameter of the circle of its reach
 
 
-def test_a_state_to_start_from_keeps_its_mesh():
+def test_motions_from_a_static_state_begin_in_it_on_a_finer_mesh():
     beam = auto()
     model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, EI))])
-    bent_state = bf.solve_static(model)
-    about = bf.solve_modes(model, 2, about=bent_state)
-    assert about.model.beams[0].elements == bent_state.model.beams[0].elements
-    let_go = bf.simulate(model.with_loads([]), 0.01, 1e-3, start=bent_state)
-    assert let_go.displacement(beam.end)[0] == pytest.approx(bent_state.displacement(beam.end)[-1])
-    with pytest.raises(bf.InputError, match="a state to start from keeps its mesh"):
-        bf.solve_modes(model, 2, about=bent_state, accuracy=1e-4)
+    state = bf.solve_static(model)
+    let_go = bf.simulate(model.with_loads([]), 0.01, 1e-3, start=state)
+    distance = let_go.displacement(beam.end)[0] - state.displacement(beam.end)[-1]
+    assert np.hypot(*distance) < 1e-4  # the accuracy of the state
+
+
+def cantilever_frequencies(count):
+    """Return frequencies [Hz] of a slender cantilever: cos(a) cosh(a) = -1."""
+    roots = np.array([1.875104, 4.694091, 7.854757, 10.995541, *(np.pi * (k + 0.5) for k in range(4, count))])
+    mass = STEEL.density * SECTION.area
+    return roots**2 * np.sqrt(EI / mass) / (2.0 * np.pi)
+
+
+@pytest.mark.parametrize("given", [lambda solution: solution, lambda solution: solution[-1]])
+def test_modes_about_a_state_are_not_left_on_its_coarse_mesh(given):
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), section=SECTION, material=STEEL)
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -1e-3 * EI))])
+    state = bf.solve_static(model)
+    modes = bf.solve_modes(model, 6, about=given(state))
+    assert modes.frequencies == pytest.approx(cantilever_frequencies(6), rel=0.01)  # shear and rotary inertia
+    precise = bf.solve_modes(model, 6, about=given(state), accuracy=1e-7)
+    fine = bf.Beam(bf.Line((0, 0), (1, 0)), 16, bf.CRBF(6), SECTION, STEEL)
+    finer = bf.Model([fine], [bf.Clamp(fine.start)], [bf.PointForce(fine.end, (0.0, -1e-3 * EI))])
+    exact = bf.solve_modes(finer, 6, about=bf.solve_static(finer)).frequencies
+    assert modes.frequencies == pytest.approx(exact, rel=1e-4)
+    assert precise.frequencies == pytest.approx(exact, rel=1e-7)
+
+
+def test_buckling_from_a_state_is_not_left_on_its_coarse_mesh():
+    beam = auto()
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-EI, 0.0))])
+    whole = bf.solve_buckling(model)
+    about = bf.solve_buckling(model, about=bf.solve_static(model, at=[0.5]))
+    assert about.load_factors == pytest.approx(whole.load_factors, rel=1e-4)
+
+
+def driven(beam, frequency):
+    return bf.PointForce(beam.end, (0.0, -0.05 * EI), amplitude=lambda t: np.sin(2.0 * np.pi * frequency * t))
+
+
+def test_motions_from_a_state_are_not_left_on_its_coarse_mesh():
+    frequency = float(cantilever_frequencies(3)[2])
+
+    def swing(*elements):
+        beam = bf.Beam(bf.Line((0, 0), (1, 0)), *elements, section=SECTION, material=STEEL)
+        weight = bf.PointForce(beam.end, (0.0, -1e-3 * EI), scale=False)
+        state = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [weight]))
+        model = bf.Model([beam], [bf.Clamp(beam.start)], [weight, driven(beam, frequency)])
+        motion = bf.simulate(model, 10.0 / frequency, 0.05 / frequency, start=state)
+        return np.ptp(motion.displacement(beam.end)[:, 1])
+
+    assert swing() == pytest.approx(swing(12, bf.CRBF(4)), rel=0.02)
+
+
+def test_motions_that_keep_the_coarse_mesh_of_a_moving_state_warn_of_it():
+    beam = auto()
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -0.01 * EI))])
+    moving = bf.simulate(model, 0.02, 1e-3)
+    frequency = float(cantilever_frequencies(5)[4])
+    with pytest.warns(bf.CoarseMeshWarning, match="the mesh is too coarse: displacements are off by about .* start"):
+        fast = bf.simulate(model.with_loads([driven(beam, frequency)]), 0.02, 1e-4, start=moving)
+    assert fast.model.beams[0].elements == moving.model.beams[0].elements
+    assert len(fast.warnings) == 1
+    slow = bf.simulate(model, 0.05, 5e-4, start=moving)
+    assert slow.warnings == ()
+    with pytest.raises(bf.InputError, match=r"the state to start from moves.*Ask for an accuracy where this state"):
+        bf.simulate(model, 0.05, 5e-4, start=moving, accuracy=1e-4)
 
 
 def test_only_results_of_the_same_beams_have_its_mesh():

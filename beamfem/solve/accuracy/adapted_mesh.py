@@ -20,6 +20,7 @@ from beamfem.model.model import Model
 from beamfem.results.locking import locking
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Finding
+from beamfem.solve.accuracy.carried_start import tied_to_mesh
 from beamfem.solve.accuracy.error_estimate import (
     Quantity,
     enriched_row_kept,
@@ -57,17 +58,23 @@ Shares = list[np.ndarray] | None
 def prepared(model: Model, accuracy: float | None, start: State | Solution | None = None) -> tuple[Model, float | None]:
     """Return a model and the accuracy [-] that its mesh is to be refined to, None for the mesh as it is.
 
-    It is that which is asked for, or the default for beams whose elements are "auto"; these have the mesh of a state to
-    start from if there is one. Raises InputError.
+    It is that which is asked for, or the default for beams whose elements are "auto". With a state to start from, the
+    first of their meshes is that of the state, and the only one if the state cannot be found on another one. Raises
+    InputError.
     """
-    if accuracy is not None and start is not None:
-        raise InputError("an accuracy needs a mesh that may change, but a state to start from keeps its mesh")
     automatic = system_of(model, static=True).model.automatic
-    if start is not None:
-        return model.meshed(start) if automatic and isinstance(start, State | Solution) else model, None
-    if accuracy is None:
-        return model, DEFAULT if automatic else None
-    return model, positive("accuracy", accuracy)
+    if automatic and isinstance(start, State | Solution):
+        model = model.meshed(start)
+    tied = tied_to_mesh(start)
+    if accuracy is not None:
+        accuracy = positive("accuracy", accuracy)
+        if tied:
+            raise InputError(
+                f"an accuracy needs a mesh that may change, but the state to start from {tied}, so that it has its own",
+                remedy="Ask for an accuracy where this state is found; what starts from it has the same mesh",
+            )
+        return model, accuracy
+    return model, DEFAULT if automatic and not tied else None
 
 
 def refined_until(

@@ -1,8 +1,10 @@
-"""Warning of a mesh that is too coarse for the displacements of a static solution."""
+"""Warning of a mesh that is too coarse for the displacements of a static solution, or of a motion that keeps it."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 from math import comb
+from warnings import catch_warnings
 
 import numpy as np
 
@@ -18,13 +20,20 @@ from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.model_meshes import required_nodes
 from beamfem.model.beam import beam_in_words
 from beamfem.model.model import Model
+from beamfem.progress import ends_as_a_whole
 from beamfem.results.locking import locking, pairs
 from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import warn_of
 from beamfem.results.status import Finding
-from beamfem.solve.accuracy.error_estimate import enriched_row, error_shares, largest_displacement_error
+from beamfem.solve.accuracy.error_estimate import (
+    enriched,
+    enriched_row,
+    error_shares,
+    largest_displacement_error,
+)
 
-_WARNED = 0.02  # of the largest displacement: error above which there is a warning
+WARNED = 0.02  # of the largest displacement, or of a frequency: error above which there is a warning
+_ROWS = 50  # of a motion, about: that are compared
 _ENOUGH = 0.005  # of it: error that the advice leads to
 _MARGIN = 1.05  # of an indicator whose error is small: larger ones for which it is not estimated again
 _CHIEF = 0.8  # of the error: what the elements that a warning names account for
@@ -147,9 +156,7 @@ def warned_of_coarse_mesh(solution: Solution) -> Solution:
     if found is None:
         table.fine = _MARGIN * indicator
         return solution
-    warn_of([found])
-    statistics = replace(solution.statistics, warnings=(*solution.statistics.warnings, found.sentence))
-    return replace(solution, statistics=statistics)
+    return _told(solution, found)
 
 
 def _found(solution: Solution) -> Finding | None:
@@ -164,7 +171,7 @@ def _found(solution: Solution) -> Finding | None:
     state = solution[last]
     moved = max(_largest_displacement(model, p) for p in solution.p)  # the last row may be back where it began
     error = largest_displacement_error(state, finer) / moved if moved > 0.0 else 0.0
-    if error <= _WARNED:
+    if error <= WARNED:
         return None
     places, most = _chief_elements(model, error_shares(state, finer))
     times = int(np.ceil((error / _ENOUGH) ** (1.0 / _rate(model.meshes[most]))))
@@ -174,6 +181,44 @@ def _found(solution: Solution) -> Finding | None:
         f"1/{times} of the length, or of a higher order, would be enough",
         CoarseMeshWarning,
     )
+
+
+def warned_of_coarse_motion(solution: Solution, solve: Callable[[Model], Solution]) -> Solution:
+    """Return a motion after a warning, which it then holds, if its displacements are off by 2 % or more.
+
+    It is compared with that of the enriched model, as `solve` returns it; there is no estimate if that one fails.
+    """
+    model = solution.model
+    try:
+        with catch_warnings(action="ignore"), ends_as_a_whole():
+            finer = solve(enriched(model))
+    except (ConvergenceError, InputError, KeyboardInterrupt):
+        return solution
+    rows = range(min(len(solution), len(finer)) if np.array_equal(solution.at, finer.at) else 0)
+    rows = rows[:: max(len(rows) // _ROWS, 1)]
+    moved = max((_largest_displacement(model, p) for p in solution.p), default=0.0)
+    error = max((largest_displacement_error(solution[row], finer[row : row + 1]) for row in rows), default=0.0)
+    if error <= WARNED * moved:
+        return solution
+    return _told(
+        solution,
+        kept_coarse(f"displacements are off by about {100.0 * error / moved:.2g} % of the largest one"),
+    )
+
+
+def kept_coarse(what: str, remedy: str = "find that state with more elements") -> Finding:
+    """Return the warning that the mesh of a state to start from is too coarse; what: is off by how much."""
+    return Finding(
+        f"the mesh is too coarse: {what}. It is that of the state to start from, which cannot be found again on "
+        f"another one; {remedy}",
+        CoarseMeshWarning,
+    )
+
+
+def _told(solution: Solution, found: Finding) -> Solution:
+    warn_of([found])
+    statistics = replace(solution.statistics, warnings=(*solution.statistics.warnings, found.sentence))
+    return replace(solution, statistics=statistics)
 
 
 def _largest_displacement(model: Model, p: np.ndarray) -> float:

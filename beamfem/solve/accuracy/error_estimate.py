@@ -270,13 +270,13 @@ class _Enriched:
         return self._rows[number]
 
 
-def enriched_row(solution: Solution, number: int) -> Solution:
+def enriched_row(solution: Solution, number: int, model: Model | None = None) -> Solution:
     """Return the equilibrium next to a row of a solution on the enriched space, as a solution of one row.
 
-    What remembers is led through the rows before, with a load step each. Raises ConvergenceError if the tangent is
-    singular or there is no equilibrium nearby.
+    What remembers is led through the rows before, with a load step each. model: one with any other elements, instead of
+    the enriched one. Raises ConvergenceError if the tangent is singular or there is no equilibrium nearby.
     """
-    model = enriched(solution.model)
+    model = model or enriched(solution.model)
     system = system_of(model, static=True)
     memory, iterations = system.history.numbers, 0
     state, p, past = solution[number], system.reference, system.history.start

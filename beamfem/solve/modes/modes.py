@@ -20,6 +20,8 @@ from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import may_lock, warn_of
 from beamfem.results.status import Finding, Statistics, Status, counted
 from beamfem.solve.accuracy.adapted_mesh import Shares, prepared, refined_until, require_unlocked
+from beamfem.solve.accuracy.carried_start import carried
+from beamfem.solve.accuracy.coarse_mesh import WARNED, kept_coarse
 from beamfem.solve.accuracy.error_estimate import enriched, enriched_state, mode_shares
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.modes.pencil import WRONG, Pencil, lowest_pairs
@@ -338,26 +340,39 @@ def solve_modes(
     array([ 20.85, 129.12])
     """
     whole_number("count", count)
+    own = model
     model, accuracy = prepared(model, accuracy, about)
     if accuracy is not None:
-        return refined_until(model, accuracy, lambda model: _attempt(model, count))
+        return refined_until(model, accuracy, lambda model: _attempt(model, count, about))
     modes, findings = _modes(model, count, about)
     warn_of(findings)
+    if own.automatic:
+        off = _error(modes, _modes(enriched(model), count, enriched_state(modes.state))[0])
+        if off > WARNED:
+            remedy = "give the whole solution, which tells its history, or find it with more elements"
+            warn_of([kept_coarse(f"a frequency is off by about {100.0 * off:.2g} %", remedy)])
     return modes
 
 
-def _attempt(model: Model, count: int) -> tuple[Modes | None, float, Shares]:
-    """Return the modes about the reference, and the largest relative error of their frequencies that is estimated."""
+def _attempt(model: Model, count: int, about: State | Solution | None) -> tuple[Modes | None, float, Shares]:
+    """Return the modes about a state, and the largest relative error of their frequencies that is estimated."""
     if len(system_of(model, static=True).free_dofs) < 2 * count:
         return None, np.inf, None
-    modes, findings = _modes(model, count, None)
+    modes, findings = _modes(model, count, carried(about, model))
     require_unlocked(findings)
-    finer = _modes(enriched(model), count, None)[0]
+    richer = enriched(model)
+    finer = _modes(richer, count, carried(about, richer))[0]
     elastic = finer.frequencies > 0.0
-    change = np.abs(modes.frequencies / np.where(elastic, finer.frequencies, 1.0) - 1.0)[elastic]
     shapes = zip(np.real(modes.modes[elastic]), np.real(finer.modes[elastic]), strict=True)
     shares = mode_shares((modes.state, before, finer.state, after) for before, after in shapes)
-    return modes, float(np.max(change, initial=0.0)), shares or None
+    return modes, _error(modes, finer), shares or None
+
+
+def _error(modes: Modes, finer: Modes) -> float:
+    """Return the largest relative error of frequencies beside those of a finer mesh."""
+    elastic = finer.frequencies > 0.0
+    change = np.abs(modes.frequencies[elastic] / finer.frequencies[elastic] - 1.0)
+    return float(np.max(change, initial=0.0))
 
 
 def _modes(model: Model, count: int, about: State | Solution | None) -> tuple[Modes, Sequence[Finding]]:

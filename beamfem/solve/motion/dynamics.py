@@ -19,6 +19,8 @@ from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import warned
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.accuracy.adapted_mesh import prepared, refined_until
+from beamfem.solve.accuracy.carried_start import carried
+from beamfem.solve.accuracy.coarse_mesh import warned_of_coarse_motion
 from beamfem.solve.motion.constraints import impact, require_met, stopped_by_conditions
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.error_control import march_to_tolerance
@@ -133,17 +135,22 @@ def simulate(
     >>> round(float(motion.displacement(beam.end)[-1, 1]), 4)
     -0.0569
     """
-    model, accuracy = prepared(model, accuracy, last_state(start))
-    if accuracy is not None:
-        if file is not None:
-            raise InputError(
-                "a motion in a file has one mesh; find it first, by model.meshed(simulate(model, ..., accuracy=...))"
-            )
+    last_state(start)
+    own = model
+    model, accuracy = prepared(model, accuracy, start)
+    if accuracy is not None and file is not None:
+        raise InputError(
+            "a motion in a file has one mesh; find it first, by motion = simulate(model, ..., accuracy=...)",
+            remedy="Then simulate model.meshed(motion)" + (", with start=motion[0]" if start is not None else ""),
+        )
+    if accuracy is not None or (own.automatic and file is None):
         others: dict[str, Any] = {"tolerance": tolerance, "save_at": save_at, "events": events, "watch": watch}
 
         def solve(model: Model) -> Solution:
-            return simulate(model, duration, step, integrator, None, velocity, save_every, **others)
+            return simulate(model, duration, step, integrator, carried(start, model), velocity, save_every, **others)
 
+        if accuracy is None:
+            return warned_of_coarse_motion(solve(model), solve)
         with ends_as_a_whole():
             refined = refined_until(model, accuracy, lambda model: motion_attempt(model, solve), MOST_MESHES)
         return _told(refined)

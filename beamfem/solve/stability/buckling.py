@@ -20,6 +20,7 @@ from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import advice, may_lock, warn_of
 from beamfem.results.status import Finding, Statistics, Status
 from beamfem.solve.accuracy.adapted_mesh import Shares, prepared, refined_until, require_unlocked
+from beamfem.solve.accuracy.carried_start import carried
 from beamfem.solve.accuracy.error_estimate import enriched, enriched_state, mode_shares
 from beamfem.solve.continuation.bifurcations import Crossing, bifurcations, condensed
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
@@ -259,7 +260,7 @@ def solve_buckling(
     if accuracy is None:
         buckling, findings = _buckling(model, count, about)
     else:
-        buckling, findings = refined_until(model, accuracy, lambda model: _attempt(model, count))
+        buckling, findings = refined_until(model, accuracy, lambda model: _attempt(model, count, about))
     warn_of(findings)
     return buckling
 
@@ -267,13 +268,14 @@ def solve_buckling(
 _Judged = tuple[Buckling, Sequence[Finding]]
 
 
-def _attempt(model: Model, count: int) -> tuple[_Judged | None, float, Shares]:
+def _attempt(model: Model, count: int, about: State | Solution | None) -> tuple[_Judged | None, float, Shares]:
     """Return the critical points, and the largest relative error of their load factors that is estimated."""
     if len(system_of(model, static=True).free_dofs) < 2 * count:
         return None, np.inf, None
-    buckling, findings = _buckling(model, count, None)
+    buckling, findings = _buckling(model, count, carried(about, model))
     require_unlocked(findings)
-    finer = _buckling(enriched(model), count, None)[0]
+    richer = enriched(model)
+    finer = _buckling(richer, count, carried(about, richer))[0]
     if len(finer) != len(buckling):
         return None, np.inf, None
     change = np.abs(buckling.load_factors - finer.load_factors) / np.abs(finer.load_factors)

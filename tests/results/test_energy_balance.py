@@ -171,6 +171,26 @@ def test_a_resonance_that_its_steps_detune_is_warned_of(steps, periods):
     assert lengthened_period(motion)[0] == pytest.approx(frequency, rel=0.02)
 
 
+@pytest.mark.parametrize("tuned", [1.0, 1.6])
+@pytest.mark.parametrize("parts", ["weight", "cable", "weight and cable"])
+def test_a_detuned_resonance_is_warned_of_beside_weight_and_cables(parts, tuned):
+    """The strain energy of dead loads and pretension is not that of the vibration."""
+    post = straight(bf.Material(2e11, 0.3, 7800.0, retardation_time=4e-4))
+    supports, weight = [bf.Clamp(post.start)], [bf.Gravity((0.0, -9.81))] if "weight" in parts else []
+    stays = [bf.Cable(post.at(0.5), (0.0, 1.0), 2e3, pretension=20.0)] if "cable" in parts else []
+    still = bf.Model([post], supports, weight, connectors=stays)
+    start = bf.solve_static(still)
+    frequency = bf.solve_modes(still, 1, about=start).frequencies[0]
+    drive = bf.PointForce(post.end, (0.0, 0.02), amplitude=lambda t: 1.0 + np.sin(2.0 * np.pi * tuned * frequency * t))
+    model = still.with_loads([*weight, drive])
+    run = lambda: bf.simulate(model, 60.0 / frequency, 0.05 / frequency, start=start)  # noqa: E731
+    if tuned == 1.0:
+        with pytest.warns(TimeStepWarning, match="detune the resonance"):
+            run()
+    else:
+        assert not run().warnings
+
+
 @pytest.mark.parametrize(("steps", "periods", "tuned"), [(10, 60, 1.0), (20, 20, 1.0), (80, 20, 1.0), (10, 20, 1.5)])
 def test_a_resonance_without_damping_that_its_steps_detune_is_warned_of(steps, periods, tuned):
     """The tip grows by pi x_st 0.9707 a period (the share of the first mode); 10 steps left 15 % of it, silently."""

@@ -1,6 +1,7 @@
 """Relative error of the period that the steps of a motion give the frequency that carries its energy."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -100,15 +101,26 @@ def detuned(solution: Solution, system: System, functions: list[FunctionOfTime])
 
 
 def _resonates(solution: Solution, functions: list[FunctionOfTime], frequency: float) -> bool:
-    """Return whether functions of time vary in the second half of a motion, whose kinetic and strain energy balance."""
+    """Return whether functions of time vary in the second half of a motion that vibrates near a natural frequency.
+
+    Its kinetic energy then equals, in the mean, the strain and potential energy above the least one of each period,
+    with loads as they are in the mean.
+    """
     first = len(solution.at) // 2
-    half = solution.at[first:].tolist()
-    if not any(np.ptp([function.at(time) for time in half]) > 0.0 for function in functions):
+    half = solution.at[first:]
+    values = np.array([[function.at(time) for time in half.tolist()] for function in functions])
+    varied = np.ptp(values, axis=1)
+    if not varied.any():
         return False
     spacing = (half[-1] - half[0]) / (len(half) - 1)
     stride = max(int(1.0 / (_OF_PERIOD * frequency * spacing)), 1)
-    energy = solution[max(first, len(solution) - _ROWS * stride) :: stride].energy()
-    ratio = np.sqrt(float(np.mean(energy.kinetic)) / max(float(np.mean(energy.strain)), np.finfo(float).tiny))
+    rows = solution[max(first, len(solution) - _ROWS * stride) :: stride]
+    off = np.abs(values - values.mean(axis=1, keepdims=True))[varied > 0.0] / varied[varied > 0.0, None]
+    energy = replace(rows, at=np.full(len(rows), half[np.argmin(off.sum(axis=0))])).energy()
+    stored, period = energy.strain + energy.potential, max(int(1.0 / (frequency * stride * spacing)), _OF_PERIOD)
+    parts = np.array_split(stored, max(len(stored) // period, 1))
+    exchanged = sum(float(np.sum(part - part.min())) for part in parts) / len(stored)
+    ratio = np.sqrt(float(np.mean(energy.kinetic)) / max(exchanged, np.finfo(float).tiny))
     return bool(abs(ratio - 1.0) <= _NEAR)
 
 

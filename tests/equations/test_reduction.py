@@ -65,6 +65,8 @@ def test_dampers_are_reduced_with_the_rest():
 def test_bad_input_is_named():
     with pytest.raises(bf.InputError, match="at no node of its beam"):
         bf.reduce(CLAMPED, [BEAM.at(0.123)], 2)
+    with pytest.raises(bf.InputError, match="are one; list it once"):
+        bf.reduce(CLAMPED, [BEAM.end, BEAM.at(1.0)], 2)
     with pytest.raises(bf.InputError, match="modes"):
         bf.reduce(CLAMPED, [BEAM.end], 1000)
     with pytest.raises(bf.InputError, match="moves rigidly"):

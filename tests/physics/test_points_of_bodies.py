@@ -97,3 +97,19 @@ def test_arms_are_saved_loaded_copied_and_drawn(tmp_path):
     assert bf.solve_static(propped).reaction(propped.supports[1].point)[-1, 1] > 40.0
     model.plot(tmp_path / "body.png")
     assert (tmp_path / "body.png").stat().st_size > 0
+
+
+def test_without_its_body_an_arm_stays_as_long_as_a_part_acts_on_it():
+    """The force on the arm bends the beam as before, now without mass in between; a body that returns is the same."""
+    beam, body = cantilever(bf.CRBF(3))
+    force = bf.PointForce(body.at(0.2, 0.1), (0.0, -50.0))
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [force], masses=[body])
+    without = model.with_(masses=[])
+    assert len(without.beams) == 2
+    for other in (without, without.with_(masses=[body])):
+        tip = bf.solve_static(other).position(beam.end)[-1]
+        assert tip == pytest.approx(bf.solve_static(model).position(beam.end)[-1], abs=1e-12)
+    assert model.mass - without.mass == pytest.approx(body.mass)
+    bare = without.with_(loads=[])
+    slower, faster = (bf.solve_modes(each, 1).frequencies[0] for each in (model, bare))
+    assert slower < faster

@@ -45,8 +45,8 @@ def reduce(model: Model, interfaces: Sequence[Point], modes: int, about: State |
     Raises
     ------
     InputError
-        For an invalid argument, see `linearise`, for a point that is no node or whose coordinates conditions determine,
-        and if the model is not stable with fixed interfaces.
+        For an invalid argument, see `linearise`, for a point that is no node, is listed twice, or whose coordinates
+        conditions determine, and if the model is not stable with fixed interfaces.
     ConvergenceError
         If the modes cannot be found.
 
@@ -94,7 +94,7 @@ def reduce(model: Model, interfaces: Sequence[Point], modes: int, about: State |
 
 def _numbers(linear: LinearModel, interfaces: Sequence[Point]) -> np.ndarray:
     """Return the numbers of the coordinates z at points, without prescribed ones. Raises InputError."""
-    dofs: list[int] = []
+    nodes: dict[frozenset[int], Point] = {}
     for point in items("interfaces", interfaces):
         mesh = linear.model.mesh_of(point)
         node = mesh.node_near(point.fraction)
@@ -103,9 +103,13 @@ def _numbers(linear: LinearModel, interfaces: Sequence[Point]) -> np.ndarray:
                 f"the interface {point} is at no node of its beam",
                 remedy="Add a PointForce of (0, 0) there to the model",
             )
-        dofs += mesh.coordinates_of(node).values()
+        own = frozenset(mesh.coordinates_of(node).values())
+        if own in nodes:
+            raise InputError(f"the interfaces {nodes[own]} and {point} are one; list it once")
+        nodes[own] = point
+    dofs = np.array(sorted(frozenset().union(*nodes)), dtype=np.int64)
     found = np.flatnonzero(np.isin(linear.coordinates, dofs))
-    movable = csr_array(linear.transformation[np.unique(dofs)])
+    movable = csr_array(linear.transformation[dofs])
     if np.count_nonzero(np.abs(movable).sum(axis=1)) > len(found):
         raise InputError("conditions of connectors or inclined rollers determine a coordinate of an interface")
     return found

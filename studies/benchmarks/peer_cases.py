@@ -35,6 +35,22 @@ class Chain:
     force: float = 0.0
 
 
+@dataclass(frozen=True)
+class Linkage:
+    """Bars in a row with hinges between them, from rest; a constant torque [N m] turns the first about its start.
+
+    points (bars + 1): the ends of the bars [m]; slider: mass [kg] at the last point, which slides along x; 0: it is
+    pinned; duration [s].
+    """
+
+    name: str
+    points: tuple[tuple[float, float], ...]
+    bars: tuple[Chain, ...]
+    torque: float
+    duration: float
+    slider: float = 0.0
+
+
 RUBBER, PRINTED = bf.Material(0.7e6, 0.3, 5540.0), bf.Section(area=1.6e-3, second_moment=8.533e-6)
 STEEL, SQUARE = bf.Material(2e11, 0.3, 7800.0), bf.Rectangle(0.01, 0.01)
 PENDULUM = Chain(
@@ -100,9 +116,9 @@ def cantilever(element: bf.Element, elements: int) -> bf.Model:
 
 def peer(kind: str, elements: int, chain: Chain) -> "Peer":
     """Return the same in Exudyn."""
-    from studies.benchmarks.exudyn_models import Peer
+    from studies.benchmarks import exudyn_models
 
-    return Peer(kind, elements, chain)
+    return exudyn_models.chain(kind, elements, chain, 0.1)
 
 
 def swing(model: bf.Model, steps: int, duration: float = 1.0) -> bf.Solution:

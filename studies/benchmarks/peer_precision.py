@@ -113,7 +113,7 @@ def motion_runs(steps: Iterable[int] = STEPS) -> list[Run]:
             solver = DENSE if count <= 8 else SPARSE
             for number in steps:
                 other.motion(number, 1.0, solver)
-                errors = motion_errors(other.tip_positions(), REISSNER_TIPS)
+                errors = motion_errors(other.positions(), REISSNER_TIPS)
                 task = partial(other.motion, number, 1.0, solver)
                 runs.append(_timed(f"Exudyn, {kind}", count, number, errors, task))
     return runs

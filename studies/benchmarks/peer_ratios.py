@@ -116,7 +116,7 @@ def same_motion(element: bf.Element, kind: str, elements: int, goal: float) -> R
     ]
     known = tips_known(element)
     own_error = motion_errors(tips_of(swing(model, steps, duration)), known)[1]
-    peer_error = motion_errors(other.tip_positions(), None if kind == CABLE else REISSNER_TIPS)[1]
+    peer_error = motion_errors(other.positions(), None if kind == CABLE else REISSNER_TIPS)[1]
     mine, best = (element, elements, timings[0], own_error), (kind, elements, fastest(timings[1:]), peer_error)
     return row("pendulum, same mesh and steps", mine, best, goal, other.tangents() / steps)
 

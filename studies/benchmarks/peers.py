@@ -30,6 +30,7 @@ def main(folder: Path = OUT) -> int:
         print("Exudyn cannot be imported here (pip install exudyn, or the extra bench): nothing to compare with")
         return 0
     from studies.benchmarks.peer_figures import draw_cost, draw_precision
+    from studies.benchmarks.peer_mechanisms import mechanisms
     from studies.benchmarks.peer_precision import equal_accuracy, motion_runs, static_runs
     from studies.benchmarks.peer_ratios import HEADER, THREADS_HEADER, as_tuples, default_threads, same_mesh
 
@@ -37,6 +38,7 @@ def main(folder: Path = OUT) -> int:
     with threadpool_limits(1):
         rows = same_mesh()
         draw_cost(rows, folder / "cost.svg")
+        rows += mechanisms()
         statics, motions = static_runs(), motion_runs()
         rows += [
             equal_accuracy("cantilever, tip to 1e-6", statics, 1e-6, 0.1),

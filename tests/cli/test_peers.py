@@ -7,7 +7,15 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from studies.benchmarks import integrators, peer_cases, peer_clock, peer_figures, peer_precision, peers
+from studies.benchmarks import (
+    integrators,
+    peer_cases,
+    peer_clock,
+    peer_figures,
+    peer_mechanisms,
+    peer_precision,
+    peers,
+)
 from studies.benchmarks.peer_precision import Run
 from studies.benchmarks.peer_ratios import row
 
@@ -122,8 +130,22 @@ def test_exudyn_has_the_same_models():
     assert cable.tip_position()[1] == pytest.approx(-0.5 * 9.81 * 0.02**2, rel=1e-2)
     other = peer_cases.peer(peer_cases.THREE_NODES, 12, peer_cases.PENDULUM)
     other.motion(1000, 1.0, peer_cases.SPARSE)
-    assert peer_cases.motion_errors(other.tip_positions(), peer_cases.REISSNER_TIPS)[0] < 3e-4
-    assert other.tip_positions()[-1] == pytest.approx(other.tip_position(), abs=1e-12)
+    assert peer_cases.motion_errors(other.positions(), peer_cases.REISSNER_TIPS)[0] < 3e-4
+    assert other.positions()[-1] == pytest.approx(other.tip_position(), abs=1e-12)
     other = peer_cases.peer(peer_cases.THREE_NODES, 12, peer_cases.CANTILEVER)
     other.equilibrium(3, peer_cases.DENSE)
     assert peer_cases.static_error(other.tip_position()) < 1e-5
+
+
+@pytest.mark.parametrize(("element", "kind"), peer_mechanisms.PAIRS)
+@pytest.mark.parametrize("case", [peer_mechanisms.slider_crank(), peer_mechanisms.four_bar()])
+def test_exudyn_has_the_same_linkages(case, element, kind):
+    """Both codes in the same short motion; two bars of stiff beams differ from a rigid crank by their elasticity."""
+    exudyn_models = pytest.importorskip("studies.benchmarks.exudyn_models", exc_type=ImportError)
+    case = replace(case, duration=0.1)
+    elements = (1,) * (len(case.bars) - 1) + (16,)
+    found = peer_mechanisms.positions(peer_mechanisms.turn(peer_mechanisms.model(case, element, elements), case, 200))
+    for rigid in (False, True):
+        other = exudyn_models.linkage(kind, case, elements, rigid)
+        other.motion(200, case.duration, peer_cases.SPARSE, method="GeneralizedAlpha")
+        assert np.abs(other.positions() - found).max() < 1e-4

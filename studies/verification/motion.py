@@ -147,4 +147,62 @@ def oscillator() -> Case:
     )
 
 
-CASES = (flying_beam, soft_pendulum, rigid_pendulum, double, crank, arm, decay, oscillator)
+def free_vibration() -> Case:
+    """An arc that is let go from the shape of a mode."""
+    steel = bf.Material(2.1e11, 0.3, 7850.0)
+    arc = bf.Beam(bf.Arc((0, 0), 1.0, 0.0, np.pi / 2.0), 8, bf.CRBF(4), bf.Rectangle(0.02, 0.01), steel)
+    model = bf.Model([arc], [bf.Clamp(arc.start)])
+    modes, cycles, values = bf.solve_modes(model, 3), 10, list[Value]()
+    for mode, frequency in enumerate(modes.frequencies.tolist()):
+        start, time = modes.start(mode, amplitude=1e-4), (cycles + 0.25) / frequency  # where it passes through zero
+        motion = bf.simulate(model, time, time / 410.0, bf.Gauss(4), start=start, save_every=410)
+        moved = motion.displacement(arc.end)
+        phase = 2.0 * np.pi * (cycles + 0.25) - float(moved[-1] @ moved[0] / (moved[0] @ moved[0]))
+        values.append(Value(f"mode {mode + 1} [Hz]", frequency, phase / (2.0 * np.pi * time)))
+    problem = "A quarter circle of steel, clamped at one end, is let go from its lowest modes, 0.1 mm large."
+    return Case("Free vibration", problem, "solve_modes", model, tuple(values), modes.plot, 1e-5)
+
+
+def snapping_arch() -> Case:
+    """A shallow arch that snaps through under a sudden load."""
+    rise, radius, load = 2e-3, 5e-4, 0.32
+    section = bf.Section.from_stiffness(radius**-2, 100.0 * radius**-2, 1.0, 1.0, radius**2)
+
+    def axis(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return x, rise * np.sin(np.pi * x)
+
+    arch = bf.Beam(bf.Parametric(axis, 0.0, 1.0), 8, bf.CRBF(4), section)
+    push = bf.DistributedLoad(arch, lambda s: (0.0, -load * float(np.sin(np.pi * s / arch.curve.length))))
+    model = bf.Model([arch], [bf.Pin(arch.start), bf.Pin(arch.end)], [push])
+    motion = bf.simulate(model, 0.3, 2.5e-4, bf.Radau(3))
+
+    def rates(_: float, y: np.ndarray) -> list[float]:
+        stretch = 0.25 * np.pi**2 * (y[0] ** 2 - rise**2)
+        return [y[1], -(np.pi**4) * (y[0] - rise) - np.pi**2 * stretch / radius**2 * y[0] - load]
+
+    times = (0.1, 0.2, 0.3)
+    exact = solve_ivp(rates, (0.0, 0.3), [rise, 0.0], "DOP853", times, rtol=1e-11, atol=1e-14).y[0]
+    found = motion.position(arch.at(0.5))[[400, 800, 1200], 1]
+    names = tuple(f"height after {time:g} s [m]" for time in times)
+    values = compared(names, tuple(map(float, exact)), tuple(map(float, found)), rise)
+    problem = (
+        "A shallow sine arch on pins, E I = rho A = L = 1, rise 4 sqrt(I / A) = 2e-3, under a sudden load along a sine."
+    )
+    source = "one equation of motion, exact for shallow arches"
+    return Case(
+        "Snapping arch", problem, source, model, values, lambda p: motion.plot_history(arch.at(0.5), path=p), 1e-3
+    )
+
+
+CASES = (
+    flying_beam,
+    soft_pendulum,
+    rigid_pendulum,
+    double,
+    crank,
+    arm,
+    decay,
+    oscillator,
+    free_vibration,
+    snapping_arch,
+)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 
 _SHOWN = 6  # critical points of each kind in the text of a path
+_DETOUR = 1.1  # of the distance between two rows: the way from one to the other over a point that is between them
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +101,8 @@ class Path(Solution):
     model, static, at, p, v, a, statistics, stability, turned, loaded, events
         See `Solution`.
     limit_points : tuple of PathState
-        Points at which the load factor has an extremum.
+        Points at which the load factor has an extremum. The structure may fail before the first of them, by a
+        bifurcation: see `stability_limit`.
     bifurcations : tuple of Bifurcation
         Points at which another branch crosses the path.
 
@@ -116,7 +118,33 @@ class Path(Solution):
 
     def __repr__(self) -> str:
         text = f"{_listed('limit point', self.limit_points)}, {_listed('bifurcation', self.bifurcations)}"
+        lost = None if self.stability is None else self.stability_limit
+        if lost is not None:
+            kind = " by a bifurcation" if isinstance(lost, Bifurcation) else ""
+            text += f"; stability is lost first at load factor {lost.at:.6g}{kind}"
         return f"{super().__repr__()[:-1]}; {text}; ended because {self.statistics.ended})"
+
+    @property
+    def stability_limit(self) -> PathState | None:
+        """The point at which the path first loses its stability, None if it does not.
+
+        It is one of the limit points or bifurcations, or the first unstable row where a load jumps or flutter begins.
+
+        >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e6, 0.0))])
+        >>> round(bf.trace_equilibrium(column, until=1.0).stability_limit.load_factor, 3)
+        0.539
+        """
+        lost = np.flatnonzero(self.stable[:-1] & ~self.stable[1:])
+        if not len(lost):
+            return None
+        before, after = (self[int(row)] for row in (lost[0], lost[0] + 1))
+        apart = float(np.linalg.norm(after.p - before.p))
+        ways = {
+            float(np.linalg.norm(point.p - before.p)): point
+            for point in (*self.limit_points, *self.bifurcations)
+            if sum(float(np.linalg.norm(point.p - end.p)) for end in (before, after)) <= _DETOUR * apart
+        }
+        return ways[min(ways)] if ways else after
 
     @overload
     def __getitem__(self, row: SupportsIndex) -> PathState: ...

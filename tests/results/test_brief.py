@@ -140,7 +140,8 @@ def test_energies_have_the_unit_of_their_model():
 def test_a_path_and_its_states_show_load_factors(results):
     path = results["path"]
     (crossing,) = path.bifurcations
-    said = f"; 0 limit points, 1 bifurcation (load factor {crossing.load_factor:.6g}); ended because the path has"
+    at = f"load factor {crossing.load_factor:.6g}"
+    said = f"; 0 limit points, 1 bifurcation ({at}); stability is lost first at {at} by a bifurcation; ended because"
     assert said in repr(path)
     assert repr(path.bifurcations) == (
         f"(Bifurcation(load factor {crossing.load_factor:.6g}, not stable, of Model(1 beam, 1 support, 1 load)),)"

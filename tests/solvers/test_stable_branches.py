@@ -10,6 +10,7 @@ from shooting import solved, swept
 from test_multistable_chains import bars, random_chain
 
 import beamfem as bf
+from studies.stability import williams_toggle
 
 MATERIAL = bf.Material(1.0, 0.0, 1.0)
 
@@ -281,3 +282,29 @@ def test_the_way_of_a_table_turns_near_the_end_of_a_step(slender, elements):
     rows = np.searchsorted(solution.load_factor, wanted - 1e-12)
     force = solution.reaction(beam.at(0.5))[rows, 1]
     assert force == pytest.approx(force[::-1], abs=1e-8 * np.abs(force).max())
+
+
+def test_a_path_says_that_stability_is_lost_before_its_first_limit_point():
+    """The one-mode solution of the arch has its bifurcation at 5.0 kN, the symmetric limit load is above 6 kN."""
+    axis = bf.Parametric(lambda x: (x, 0.05 * np.sin(np.pi * x)), 0.0, 1.0)
+    arch = bf.Beam(axis, 8, bf.CRBF(3), bf.Rectangle(0.03, 0.01), bf.Material(2.1e11, 0.3, 7850.0))
+    crown = arch.at(0.5)
+    model = bf.Model([arch], [bf.Pin(arch.start), bf.Pin(arch.end)], [bf.PointForce(crown, (0.0, -1e3))])
+    path = bf.trace_equilibrium(model, until=lambda state: state.displacement(crown)[1] < -0.02)
+    limit = path.stability_limit
+    assert limit is path.bifurcations[0]
+    assert limit.load_factor == pytest.approx(5.0, rel=0.05)
+    assert limit.load_factor == pytest.approx(bf.solve_buckling(model).load_factors[0], rel=1e-6)
+    assert path.limit_points[0].load_factor > 6.0
+    assert f"stability is lost first at load factor {limit.load_factor:.6g} by a bifurcation" in str(path)
+
+
+def test_the_stability_limit_of_a_path_may_be_a_limit_point_or_not_there():
+    model = williams_toggle.toggle(None, 4, 3)
+    path = bf.trace_equilibrium(model, until=lambda state: state.load_factor < 33.0 and not state.stable)
+    assert path.stability_limit is path.limit_points[0]
+    assert path.stability_limit.load_factor == pytest.approx(33.849, rel=1e-3)  # of the literature, see LIMITS
+    assert "stability is lost first at load factor 33.8" in str(path)
+    below = bf.trace_equilibrium(model, until=20.0)
+    assert below.stability_limit is None
+    assert "stability" not in str(below)

@@ -26,7 +26,8 @@ class Pretension(ImposedStrain):
     amplitude : callable, optional
         Factor as a function of time [s], or of the load factor in statics.
     scale : bool, default False
-        Whether it grows with the load factor in statics; by default it acts fully at load factor 0.
+        Whether it grows with the load factor in statics; by default it acts fully at load factor 0, so that what it is
+        balanced with should do so, too: `Gravity(scale=False)`.
 
     Raises
     ------

@@ -62,3 +62,24 @@ def test_what_cannot_be_pretensioned_is_refused():
 def test_poissons_ratio_beyond_a_half_is_refused_with_the_reason():
     with pytest.raises(bf.InputError, match="bulk modulus"):
         bf.Material(1e6, 0.5, 1000.0)
+
+
+@pytest.mark.parametrize("scale", [True, False])
+def test_stays_that_go_slack_without_the_weight_that_they_carry_name_the_remedy(scale):
+    deck = bf.Beam(bf.Line((0, 0), (6, 0)), 6, bf.CRBF(3), bf.Rectangle(0.1, 0.1), STEEL)
+    stays = [bf.Beam(bf.Line((0, 4), (x, 0)), 4, bf.CRBF(3), bf.Circle(0.01), STEEL) for x in (2, 4)]
+    supports = [bf.Pin(deck.start), bf.Roller(deck.end), *(bf.Pin(stay.start) for stay in stays)]
+    joints = [bf.Hinge(deck.at(x / 6), stay.end) for stay, x in zip(stays, (2, 4), strict=True)]
+    loads = [bf.Gravity((0, -9.81), scale=scale), *(bf.Pretension(stay, 5e3) for stay in stays)]
+    model = bf.Model([deck, *stays], supports, loads, joints)
+    if scale:
+        with pytest.raises(bf.LimitPointError, match=r"Pretension acts fully at load factor 0.*Gravity\(scale=False\)"):
+            bf.solve_static(model)
+        return
+    solution = bf.solve_static(model)
+    taut = [solution.section_forces(stay).normal[-1].mean() for stay in stays]
+    assert min(taut) > 0.0
+    # moments about the pin: the reaction of the roller, both stays, and the weights of deck and stays
+    weight = 9.81 * deck.section.area * STEEL.density * 6.0 * 3.0
+    lifted = sum(-solution.joint_force(joint)[-1, 1] * x for joint, x in zip(joints, (2.0, 4.0), strict=True))
+    assert solution.reaction(deck.end)[-1, 1] * 6.0 == pytest.approx(weight - abs(lifted), rel=5e-3)

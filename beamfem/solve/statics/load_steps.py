@@ -9,6 +9,8 @@ from scipy.linalg import LinAlgError
 from beamfem.equations.equations import linearise_at_rest, load_slope, predicted_stresses
 from beamfem.equations.system import Proven, System
 from beamfem.errors import ConvergenceError, LimitPointError
+from beamfem.model.load_base import Load
+from beamfem.parts.pretension import Pretension
 from beamfem.physics.stations import FOLLOWING, STRETCHING
 from beamfem.precision.roundoff import ENOUGH, digits_of, largest_force
 from beamfem.progress import progress
@@ -354,25 +356,32 @@ def _merges(follower: PathFollower, done: StaticRecord, point: np.ndarray, beyon
     return result.ended.good
 
 
+def _grows(load: Load) -> bool:
+    return load.scale and load.amplitude is None
+
+
 def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap: Snap) -> None:
     """Add the state of rest after a limit point. Raises LimitPointError unless jumps are allowed."""
     load_factor = float(turn.limit[-1])
     where = f"a limit point at load factor {load_factor:.6g}: beyond it there is no equilibrium nearby"
     if snap == "error":
-        loaded = follower.system.loads.at(1.0).any
+        loads, loaded = follower.system.model.loads, follower.system.loads.at(1.0).any
         unstable = [at for at, _, count in done.rows if is_unstable(done.symmetric, count)]
         if unstable:
             where += f"; the path is unstable from load factor {unstable[0]:.6g} on"
-        instead = "; or prescribe a displacement (Prescribed) instead of the load" if loaded else ""
-        raise LimitPointError(
-            where,
-            load_factor,
-            done.solution(),
-            remedy='unstable="leave" follows the stable branch instead'
-            if unstable
-            else 'trace_equilibrium follows the path around it; snap="jump" goes to the state in which the structure '
-            f"comes to rest{instead}",
-        )
+        remedy = 'unstable="leave" follows the stable branch instead'
+        if not unstable:
+            remedy = (
+                'trace_equilibrium follows the path around it; snap="jump" goes to the state in which the structure '
+            )
+            remedy += (
+                f"comes to rest{'; or prescribe a displacement (Prescribed) instead of the load' if loaded else ''}"
+            )
+        if any(isinstance(load, Pretension) and not load.scale for load in loads) and any(map(_grows, loads)):
+            remedy = (
+                f"Pretension acts fully at load factor 0; let weight do so, too: Gravity(scale=False). Or else {remedy}"
+            )
+        raise LimitPointError(where, load_factor, done.solution(), remedy=remedy)
     if follower.left is not None and same_point(follower.system, follower.left, turn.limit):
         raise LimitPointError(
             f"{where}, and the structure comes back to it each time it leaves it", load_factor, done.solution()

@@ -141,6 +141,7 @@ def quantity(name: str) -> Quantity:
 # what a quantity is: the method of a Solution and the attributes or columns of its result; and the unit in SI
 _AT_POINT = """
 x position.0 m, y position.1 m, ux displacement.0 m, uy displacement.1 m, vx velocity.0 m/s, vy velocity.1 m/s,
+ax acceleration.0 m/s^2, ay acceleration.1 m/s^2,
 rotation rotation rad, fx reaction.0 N, fy reaction.1 N, m reaction.2 N_m, shear_angle fields.shear_angle rad,
 strain_xx fields.green_strain.xx, strain_yy fields.green_strain.yy, strain_xy fields.green_strain.xy,
 stress_xx fields.stress.xx Pa, stress_yy fields.stress.yy Pa, stress_xy fields.stress.xy Pa

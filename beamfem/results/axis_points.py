@@ -12,6 +12,8 @@ from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import interpolate, reference_position
 from beamfem.mesh.section_stress import Distributions, distributions, layers
 
+_DIFFERENCE = 1e-5  # of coordinates: change along p' by which B' is found
+
 
 def nodal_vectors(
     mesh: BeamMesh, p: np.ndarray, some: np.ndarray | None = None, v: np.ndarray | None = None
@@ -151,3 +153,9 @@ class AxisPoints:
     def velocities(self, p: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Return the velocity of the axis (steps, points, 2) [m/s]."""
         return rate_at(self.mesh, p, v, self.element, self.xi).r
+
+    def accelerations(self, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+        """Return the acceleration of the axis (steps, points, 2) [m/s^2], B p'' + B' p' with B' by a difference."""
+        step = _DIFFERENCE / np.maximum(np.abs(v).max(axis=1, initial=0.0), np.finfo(float).tiny)[:, None]
+        after, before = (self.velocities(p + way * v, v) for way in (step, -step))
+        return self.velocities(p, a) + (after - before) / (2.0 * step[..., None])

@@ -70,6 +70,10 @@ class MotionState(StateWithResults):
         """Return the velocity of a point (2,) [m/s]."""
         return np.asarray(self.alone.velocity(point)[0])
 
+    def acceleration(self, point: Point) -> np.ndarray:
+        """Return the acceleration of a point (2,) [m/s^2]."""
+        return np.asarray(self.alone.acceleration(point)[0])
+
 
 @dataclass(frozen=True)
 class Occurrence:

@@ -19,6 +19,7 @@ from beamfem.model.joint_base import Joint
 from beamfem.model.load_base import Load, PointLoad, factor
 from beamfem.model.model import Model
 from beamfem.model.supports import PointSupport
+from beamfem.parts.at_points import BetweenPlaces
 from beamfem.parts.motor import Motor
 from beamfem.results.free_bodies import Parted, Rows, cut_free
 from beamfem.results.section_forces import of_elements
@@ -117,7 +118,14 @@ def forces_at(solution: Solution, items: Sequence[Connector]) -> np.ndarray:
 
 def multipliers(solution: Solution, connector: Contribution) -> np.ndarray:
     """Return the additional unknowns of a connector (steps, k), such as multipliers. Raises InputError."""
-    return solution.p[:, np.concatenate([item.multipliers for item in _bound(solution, connector)])]
+    numbers = np.concatenate([item.multipliers for item in _bound(solution, connector)])
+    if not len(numbers):
+        raise InputError(
+            f"{type(connector).__name__} has no multipliers",
+            remedy="solution.joint_force(part) is the force that a part between two places exerts on the second one, "
+            "solution.connector_force(part) on each of its points",
+        )
+    return solution.p[:, numbers]
 
 
 def _bound(solution: Solution, connector: Contribution) -> list[Connector]:
@@ -154,10 +162,24 @@ def joint_force(solution: Solution, joint: Joint | Contribution | Load) -> np.nd
     for part in solution.model.at_points:
         if part is joint and len(part.points) == 2:
             return connector_force(solution, part)[:, 1]
+        if part is joint and isinstance(part, BetweenPlaces):
+            return 0.0 - connector_force(solution, part)[:, 0]
     raise InputError(
         f"{shown(joint)} is neither a joint, a motor nor a connector of two points of this model; use one of "
         "model.joints"
     )
+
+
+def tension(solution: Solution, part: Contribution) -> np.ndarray:
+    """Return the tension (steps,) [N] of a connector between two places, from its force on the second one.
+
+    Raises InputError for other parts.
+    """
+    if not isinstance(part, BetweenPlaces) or part.distance == 0.0:
+        raise InputError(f"{shown(part)} does not lie between two places, so that it has no tension")
+    force, start = joint_force(solution, part)[:, :2], solution.position(part.a)
+    way = start - (solution.position(part.b) if isinstance(part.b, Point) else np.array(part.b))
+    return np.einsum("sc,sc->s", force, way) / np.linalg.norm(way, axis=1)
 
 
 def is_determined(model: Model, joint: Joint) -> bool:

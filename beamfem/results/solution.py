@@ -327,6 +327,11 @@ class Solution:
         points = AxisPoints.at(self.model.mesh_of(point), [point.fraction])
         return points.velocities(self.p, self.v)[:, 0]
 
+    def acceleration(self, point: Point) -> np.ndarray:
+        """Return the acceleration (ax, ay) of a point (steps, 2) [m/s^2]; in a rotating frame relative to it."""
+        points = AxisPoints.at(self.model.mesh_of(point), [point.fraction])
+        return points.accelerations(self.p, self.v, self.a)[:, 0]
+
     def rotation(self, point: Point) -> np.ndarray:
         """Return the rotation of the section (steps,) [rad], counter-clockwise positive, full turns included."""
         from beamfem.results.full_turns import rotation
@@ -362,7 +367,8 @@ class Solution:
         It exerts the opposite force on `a`. For `Hinge`, `Rigid` and other joints at which beams share coordinates, the
         force follows from equilibrium of the nodes on the side of `b` with their elements, inertia, loads, supports and
         connectors; a hinge transmits no moment. For connectors with two points, such as `Link`, `Slider`, `Weld` and
-        `Gear`, it is the force on the second point, for a `Motor` its torque.
+        `Gear`, it is the force on the second point, for a `Motor` its torque. A `Cable` or `SpringDamper` that ends on
+        the ground pulls there; tension is the length of the force.
 
         Parameters
         ----------
@@ -395,7 +401,7 @@ class Solution:
     def multipliers(self, connector: Contribution) -> np.ndarray:
         """Return the k additional unknowns of a connector, such as multipliers (steps, k).
 
-        Raises InputError for a connector that is not in the model.
+        Raises InputError for a connector that is not in the model, or has none.
         """
         from beamfem.results.reactions import multipliers
 
@@ -618,10 +624,10 @@ class Solution:
     ) -> Any:
         """Plot a quantity at one or several points against time or load factor and return the figure.
 
-        quantity: "displacement", "ux", "uy", "position" [m], "velocity" [m/s], "rotation" [rad]; at supports "force"
-        [N] and "reaction_moment" [N m]; without a point "energy" [J]. path: file to write (PNG, SVG, PDF); ax: axes to
-        draw in, see `plot`. Raises InputError for an unknown quantity, or one that needs a point; MissingPackageError
-        without matplotlib.
+        quantity: "displacement", "ux", "uy", "position" [m], "velocity" [m/s], "acceleration" [m/s^2], "rotation"
+        [rad]; at supports "force" [N] and "reaction_moment" [N m]; without a point "energy" [J]. path: file to write
+        (PNG, SVG, PDF); ax: axes to draw in, see `plot`. Raises InputError for an unknown quantity, or one that needs a
+        point; MissingPackageError without matplotlib.
 
         Examples
         --------
@@ -657,12 +663,13 @@ class Solution:
         """Plot one quantity against another, one point per row, and return the figure.
 
         A quantity is a pair of a name and a point, such as ("uy", beam.end), with the names "ux", "uy", "x", "y" [m],
-        "rotation" [rad], "vx", "vy" [m/s], "normal", "shear" [N], "moment" [N m], those of stresses in `plot` [Pa] and,
-        at supports, "fx", "fy" [N] and "m" [N m]; or a pair of "fx", "fy" or "m" and a load at a point, for the applied
-        force; or "load_factor" or "time" [s]; or "kinetic", "strain", "potential" or "total" energy [J]; or a pair of a
-        label and numbers (steps,); or numbers. Where a section force jumps, its value is that on the side towards the
-        beam's end. path: file to write (PNG, SVG, PDF); ax: axes to draw in, see `plot`. Raises InputError for an
-        unknown quantity, MissingPackageError without matplotlib.
+        "rotation" [rad], "vx", "vy" [m/s], "ax", "ay" [m/s^2], "normal", "shear" [N], "moment" [N m], those of stresses
+        in `plot` [Pa] and, at supports, "fx", "fy" [N] and "m" [N m]; or a pair of "fx", "fy" or "m" and a load at a
+        point, for the applied force, or a joint or connector, for its `joint_force`; or "tension" [N] and a connector
+        of two places, such as a Cable; or "load_factor" or "time" [s]; or "kinetic", "strain", "potential" or "total"
+        energy [J]; or a pair of a label and numbers (steps,); or numbers. Where a section force jumps, its value is
+        that on the side towards the beam's end. path: file to write (PNG, SVG, PDF); ax: axes to draw in, see `plot`.
+        Raises InputError for an unknown quantity, MissingPackageError without matplotlib.
 
         Examples
         --------

@@ -8,13 +8,17 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point, beam_in_words
+from beamfem.model.contribution import Contribution
+from beamfem.model.joint_base import Joint
 from beamfem.model.load_base import PointLoad, factor
 from beamfem.model.model import Model
+from beamfem.parts.motor import Motor
 from beamfem.results.axis_fields import AT_POINT, QUANTITIES, UNITS, Quantity, value_of
 from beamfem.results.axis_fields import quantity as quantity_along
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.envelope import Envelope
 from beamfem.results.path import Path, PathState
+from beamfem.results.reactions import tension
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
 from beamfem.solve.linear.linear_model import QUANTITIES as LINEAR
@@ -37,17 +41,21 @@ _LABELS = {
     "rotation": "rotation",
     "vx": "velocity vx",
     "vy": "velocity vy",
+    "ax": "acceleration ax",
+    "ay": "acceleration ay",
     "fx": "reaction fx",
     "fy": "reaction fy",
     "m": "reaction moment",
 }
 _OF_LOAD = {"fx": "applied fx", "fy": "applied fy", "m": "applied moment"}
+_OF_PART = {"fx": "force fx", "fy": "force fy", "m": "moment", "tension": "tension"}
 # what is drawn of a point over time: label and the names of its curves
 _HISTORIES = {
     "displacement": ("displacement", ("ux", "uy")),
     **{name: (_LABELS[name], (name,)) for name in ("ux", "uy", "rotation")},
     "position": ("position", ("x", "y")),
     "velocity": ("velocity", ("vx", "vy")),
+    "acceleration": ("acceleration", ("ax", "ay")),
     "force": ("reaction force", ("fx", "fy")),
     "reaction_moment": (_LABELS["m"], ("m",)),
 }
@@ -233,6 +241,14 @@ def _taken(solution: Solution, which: str, given: Drawn) -> tuple[str, np.ndarra
         require_known(f"{which} of a curve is no {shown(name)} of a load", name, _OF_LOAD)
         part = list(_OF_LOAD).index(name)
         return f"{_OF_LOAD[name]} [{solution.model.unit(UNITS[name])}]", _applied(solution, load)[:, part]
+    if isinstance(given, tuple) and len(given) == 2 and isinstance(given[1], Joint | Contribution | Motor):
+        name, part = given
+        require_known(f"{which} of a curve is no {shown(name)} of a {type(part).__name__}", name, _OF_PART)
+        if name == "tension":
+            unit, values = "N", tension(solution, part)
+        else:
+            unit, values = UNITS[name], solution.joint_force(part)[:, list(_OF_PART).index(name)]
+        return f"{_OF_PART[name]} of {type(part).__name__} [{solution.model.unit(unit)}]", values
     label, numbers = given if isinstance(given, tuple) and len(given) == 2 else ("", given)
     try:
         values = np.asarray(numbers)

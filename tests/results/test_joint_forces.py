@@ -166,3 +166,27 @@ def test_forces_of_parts_in_tables_and_paraview_files_are_in_balance(tmp_path):
     vertices = pyvista.read(next((tmp_path / "a_boundary").iterdir()))
     assert vertices.point_data["force"][-1, :2] == pytest.approx(numbers[5, :2], rel=1e-5)
     assert vertices.point_data["moment"][-3] == pytest.approx(numbers[3, 2], rel=1e-5)
+
+
+@pytest.mark.parametrize("grounded", [True, False])
+def test_the_tension_of_a_cable_is_drawn_and_named_where_multipliers_are_asked_for(grounded):
+    post, mast = line((0, 0), (1, 0)), line((1, 2), (2, 2))
+    stay = bf.Cable(post.end, (1.0, 2.0) if grounded else mast.start, stiffness=1e4, pretension=5.0)
+    supports = [bf.Clamp(post.start), bf.Clamp(mast.start)]
+    load = bf.PointForce(post.end, (0.0, -50.0))
+    solution = bf.solve_static(bf.Model([post, mast], supports, [load], connectors=[stay]), steps=3)
+    length = np.linalg.norm((1.0, 2.0) - solution.position(post.end), axis=1)
+    tension = 1e4 * (length - (2.0 - 5e-4))
+    assert tension[-1] > 40.0
+    force = solution.joint_force(stay)
+    assert np.hypot(*force[:, :2].T) == pytest.approx(tension)
+    assert (force[:, 1] < 0.0).all()  # on the upper end
+    figure = solution.plot_curve("load_factor", ("tension", stay))
+    (curve,) = figure.axes[0].lines
+    assert curve.get_ydata() == pytest.approx(tension)
+    assert figure.axes[0].get_ylabel() == "tension of Cable [N]"
+    assert solution.plot_curve("load_factor", ("fy", stay)).axes[0].lines[0].get_ydata() == pytest.approx(force[:, 1])
+    with pytest.raises(bf.InputError, match=r"Cable has no multipliers.*solution\.joint_force\(part\)"):
+        solution.multipliers(stay)
+    with pytest.raises(bf.InputError, match="is no 'mean' of a Cable"):
+        solution.plot_curve("load_factor", ("mean", stay))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
+from beamfem.equations.system import system_of
 from beamfem.io.table import arrays
 from beamfem.io.vtk_cells import centrelines
 
@@ -151,3 +152,30 @@ def test_a_motion_that_goes_on_from_another_keeps_its_turns(kind):
         assert rest.rotation(beam.end)[0] == pytest.approx(first.rotation(beam.end)[-1], abs=1e-4)
         assert rest.rotation(beam.end)[-1] == pytest.approx(whole.rotation(beam.end)[-1], abs=1e-3)
         assert rest.energy().total == pytest.approx(0.0, abs=2e-3 * whole.energy().kinetic[-1])
+
+
+def test_the_acceleration_of_a_point_is_the_second_rate_of_its_position(element):
+    bar = bf.Beam(bf.Arc((0, 0), 1.0, 0.0, 1.5), 3, element, SECTION, SOFT)
+    model, random, step = bf.Model([bar], [bf.Clamp(bar.start)]), np.random.default_rng(0), 1e-3
+    rest = system_of(model, static=False).reference
+    p, v, a = rest + 0.05 * random.standard_normal(len(rest)), *random.standard_normal((2, len(rest)))
+
+    def motion(time):
+        state = bf.State(p + time * v + 0.5 * time**2 * a, v + time * a, a, 0.0, model)
+        return state.as_row(static=False)
+
+    for point in (bar.end, bar.at(0.45)):
+        before, now, after = (motion(time).position(point) for time in (-step, 0.0, step))
+        assert motion(0.0).acceleration(point) == pytest.approx(
+            (after - 2.0 * now + before) / step**2, rel=1e-5, abs=1e-6
+        )
+
+
+def test_the_acceleration_of_a_driven_point_is_that_of_its_motion():
+    bar = bf.Beam(bf.Line((0, 0), (1, 0)), 3, bf.CRBF(3), SECTION, SOFT)
+    shaken = bf.Prescribed(bar.start, ux=0.0, uy=lambda t: 0.01 * np.sin(40.0 * t), rotation=0.0)
+    seen = bf.Event("turns", lambda state: state.acceleration(bar.start)[1] + 8.0)
+    motion = bf.simulate(bf.Model([bar], [shaken]), 0.1, 1e-3, events=[seen])
+    assert motion.acceleration(bar.start)[5:, 1] == pytest.approx(-16.0 * np.sin(40.0 * motion.time[5:]), abs=0.1)
+    assert motion.events[0].time == pytest.approx(np.pi / 6.0 / 40.0, abs=2e-4)
+    assert motion.plot_history(bar.start, "acceleration").axes[0].get_ylabel() == "acceleration [m/s^2]"

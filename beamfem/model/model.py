@@ -59,6 +59,8 @@ def resembles_beam(beams: Sequence[Beam], beam: Beam) -> str:
     """Return in words which beam of a model is on the axis of one that is not in it, empty if none is."""
     alike = (number for number, own in enumerate(beams) if type(own.curve) is type(beam.curve))
     same = next((number for number in alike if beams[number].curve == beam.curve), None)
+    if same is not None and beam.holding is not None:
+        return "keep the point that body.at returned first: each call makes another one"
     return "" if same is None else f"use model.beams[{same}], a beam on the same axis"
 
 
@@ -68,7 +70,8 @@ def touching(one: Beam, other: Beam) -> str:
     for own, its in product(("start", "end"), repeat=2):
         if np.hypot(*(getattr(one, own).reference - getattr(other, its).reference)) <= near:
             return f"; the {own} of the first beam and the {its} of the second do"
-    return "; Weld connects points that are apart rigidly, Link by a bar hinged at both"
+    apart = "Weld connects points that are apart by a rigid arm, Link by a bar hinged at both"
+    return f"; {apart}, SliderOnBeam one with any place along the axis of the other beam"
 
 
 _UNNAMED = "N, m, s"

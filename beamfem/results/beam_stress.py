@@ -90,13 +90,18 @@ _NAMED = 10  # beams that the warning names
 
 
 def warn_of_unknown_stress(beams: Sequence[Beam], unknown: Sequence[int], what: str) -> None:
-    """Warn of beams by their numbers, if there are any; what: what becomes of their stress, such as "left out"."""
+    """Warn of beams by their numbers, if there are any; what: what becomes of their stress, such as "left out".
+
+    Arms of bodies are no beams of the user's, and have no stress.
+    """
+    made = [number for number, beam in enumerate(beams) if beam.holding is None]
+    unknown = [number for number in unknown if number in made]
     if not unknown:
         return
     called = names(beams)
     shown = ", ".join(called[number] for number in unknown[:_NAMED]) + (", ..." if len(unknown) > _NAMED else "")
     warn(
-        f"the stress of {len(unknown)} of {len(beams)} beams ({shown}) is not known and is {what}: their sections are "
+        f"the stress of {len(unknown)} of {len(made)} beams ({shown}) is not known and is {what}: their sections are "
         "given by a stiffness, a law of their own, or moments without a height; Section(..., height=) gives it",
         UnknownStressWarning,
     )

@@ -109,7 +109,7 @@ MISTAKES = {
     ),
     "a joint of beams apart": (
         lambda: bf.Model([BEAM, AWAY], joints=[bf.Rigid(BEAM.end, AWAY.end)]),
-        "which are 4 m apart; a joint needs points that coincide, to 1e-05 of the longer beam; Weld .* Link ",
+        "which are 4 m apart; a joint needs points that coincide, to 1e-05 .*; Weld .* arm, Link .* SliderOnBeam ",
     ),
     "a joint without a and b": (lambda: Pair(BEAM.start, BEAM.end), "Pair has no field a; it needs one, for a Point"),
     "a load without a point": (lambda: Push(BEAM.end), "Push has no field point"),

@@ -113,3 +113,23 @@ def test_without_its_body_an_arm_stays_as_long_as_a_part_acts_on_it():
     bare = without.with_(loads=[])
     slower, faster = (bf.solve_modes(each, 1).frequencies[0] for each in (model, bare))
     assert slower < faster
+
+
+def test_a_second_call_for_a_point_of_a_body_is_told_to_keep_the_first():
+    beam, body = cantilever(bf.CRBF(3))
+    force = bf.PointForce(body.at(0.2, 0.1), (0.0, -50.0))
+    solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [force], masses=[body]))
+    with pytest.raises(bf.UnknownPointError, match=r"keep the point that body\.at returned first"):
+        solution.displacement(body.at(0.2, 0.1))
+    assert solution.peak_stress().beam is beam  # without a warning of the arm, whose stress is not known
+
+
+def test_unknown_stresses_are_counted_among_the_beams_that_the_user_has_made():
+    beam, body = cantilever(bf.CRBF(3))
+    stiff = bf.Section.from_stiffness(axial=1e6, shear=1e6, bending=1e3, mass=1.0, rotary_inertia=0.1)
+    bar = bf.Beam(bf.Line((1, 0), (2, 0)), 2, bf.CRBF(3), stiff, name="bar")
+    force = bf.PointForce(body.at(0.2, 0.1), (0.0, -50.0))
+    joints = [bf.Rigid(beam.end, bar.start)]
+    solution = bf.solve_static(bf.Model([beam, bar], [bf.Clamp(beam.start)], [force], joints, masses=[body]))
+    with pytest.warns(bf.UnknownStressWarning, match=r"the stress of 1 of 2 beams \(bar\) is not known"):
+        solution.peak_stress()

@@ -308,3 +308,17 @@ def test_the_stability_limit_of_a_path_may_be_a_limit_point_or_not_there():
     below = bf.trace_equilibrium(model, until=20.0)
     assert below.stability_limit is None
     assert "stability" not in str(below)
+
+
+def test_a_snap_out_and_back_to_no_load_has_completed():
+    """Without a load in the end, the residual is as small as round-off allows, which leaves many digits."""
+    axis = bf.Parametric(lambda x: (x, 0.05 * np.sin(np.pi * x)), 0.0, 1.0)
+    arch = bf.Beam(axis, 8, bf.CRBF(3), bf.Rectangle(0.03, 0.01), bf.Material(2.1e11, 0.3, 7850.0))
+    crown = arch.at(0.5)
+    loop = bf.Interpolated([(0.0, 0.0), (0.25, 1.0), (0.75, -1.0), (1.0, 0.0)])
+    push = bf.PointForce(crown, (0.0, -7.2e3), amplitude=loop)
+    solution = bf.solve_static(bf.Model([arch], [bf.Pin(arch.start), bf.Pin(arch.end)], [push]), 20, snap="jump")
+    assert solution.displacement(crown)[-1] == pytest.approx([0.0, 0.0], abs=1e-6)
+    assert solution.displacement(crown)[:, 1].min() < -0.1
+    assert solution.status is bf.Status.COMPLETED
+    assert solution.statistics.digits > 6.0

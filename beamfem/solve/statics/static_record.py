@@ -5,7 +5,7 @@ import numpy as np
 from beamfem.equations.system import system_of
 from beamfem.errors import RoundOffWarning, UnstableWarning, warn
 from beamfem.model.model import Model
-from beamfem.precision.roundoff import FEW_DIGITS
+from beamfem.precision.roundoff import ENOUGH, FEW_DIGITS
 from beamfem.results.full_turns import continued_rotations
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics, Status
@@ -65,7 +65,7 @@ class StaticRecord:
         counts = [count for _, _, count in self.rows]
         unstable = [is_unstable(self.symmetric, count) for count in counts]
         status = Status.STOPPED if not complete else Status.COMPLETED
-        if complete and self.ended is Termination.ROUND_OFF:
+        if complete and self.ended is Termination.ROUND_OFF and not self.digits >= ENOUGH:
             status = Status.ROUND_OFF
         ended = "; ".join([*self.left, self.ended.value])
         messages: tuple[str, ...] = ()

@@ -2,6 +2,7 @@
 
 from typing import Annotated
 
+from beamfem.kernels.motion_record import MotionRoutines
 from beamfem.kernels.records import Reals, Record, calls
 
 
@@ -56,6 +57,7 @@ class Stages(Record):
     # limits and estimates of iterations
     error_factor: float  # error of a step by the size of its first correction: factor size^power
     error_power: float
+    accuracy: float  # error of an iteration, of the model, where it is given
     kept_rate: float  # of convergence, above which the next step gets new tangents
     rate: float  # of the last step
     iteration: int
@@ -73,3 +75,58 @@ class Stages(Record):
     planes: Annotated[Reals, "stages", "height"]
     entries: int
     matrices: Annotated[Reals, "stages", "entries"]
+
+
+class DoubledRoutines(Record):
+    """The compiled functions that such pairs of steps call."""
+
+    sample = calls("doubled_steps:sample_nothing")
+    resize = calls("doubled_steps:resize")
+    look_ahead = calls("doubled_steps:look_ahead")
+    take_pair = calls("doubled_steps:take_pair")
+    compare = calls("doubled_steps:compare")
+    difference = calls("doubled_steps:difference")
+
+
+class Doubled(Record):
+    """Pairs of steps whose size follows their error, and a step of double size beside each pair, which estimates it.
+
+    Both are of one method; what it needs for a step of 1 is kept for steps of any size.
+    """
+
+    routines: DoubledRoutines
+    fine: Stages
+    coarse: Stages
+    fine_routines: MotionRoutines
+    coarse_routines: MotionRoutines
+    fine_directions: Reals  # see `MotionSolver.kept_directions`
+    coarse_directions: Reals
+    varies: int  # whether loads, or prescribed coordinates, have to be sampled for each pair
+
+    of_p: Reals  # A^2
+    of_v: Reals  # A
+    of_begin: Reals  # (s, 2)
+    to_multipliers: Reals  # inverse of A^2
+    at_end: Reals  # (3, s)
+    weights: Reals  # (s, 3)
+    shares: Reals  # (samples,): times within a step
+    gathered: Reals  # (2, s, s): polynomial through the stages of both steps, at those of the double one
+
+    time: float
+    end: float
+    step: float  # of the next steps
+    before: float  # that of the last ones, 0 if there are none
+    ratio: float  # of both, for which accelerations are extrapolated
+    shortest: float
+    longest: float
+    rate: float  # error of positions per time, of the model, that is allowed
+    divisor: float  # of the difference, for the error of the pair
+    power: float  # of the step that the error per time is proportional to
+    refused: int
+    failed: int  # whether the shortest step does not converge
+    filled: int  # rows
+    room: int
+    ends: Reals  # (room + 1,): times of rows
+    scale: Reals  # (padded(n),): 1 / size of the model for positions, else 0
+    at_begin: Reals  # (4, n): at the beginning of a pair
+    turned: Reals  # (rotation_count,)

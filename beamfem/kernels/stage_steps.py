@@ -307,7 +307,9 @@ def iterate(system: System, solver: MotionSolver, stages: Stages, step: int, fre
         statistics.correction = size
         if not size < _LARGEST:
             return 0
-        if iteration == 0 and stages.known != 0:
+        if stages.accuracy > 0.0:
+            tolerance = stages.accuracy
+        elif iteration == 0 and stages.known != 0:
             estimated = stages.error_factor * size**stages.error_power
             tolerance = min(max(_SHARE * estimated, _FINEST), _COARSEST)
         if iteration > 0:
@@ -351,26 +353,33 @@ def end_step(solver, stages, step):
             solver.saved_rotations[row * count + k] = solver.rotated_by[k]
 
 
+@inlined
+def solve_step(system, solver, stages, step):
+    """Solve for the stages of a step; return whether that succeeds."""
+    own, statistics, attempt, done = stages.routines, solver.statistics, 0, stages.solved
+    while done == 0 and attempt < 3:
+        own.predict(system, solver, stages, step, attempt)
+        fresh = 1 if attempt > 0 or stages.factored == 0 else 0
+        if fresh != 0:
+            attempt = max(attempt, 1)
+            ratio = own.factorise(system, solver, stages, step)
+            stages.factored = ratio > 0.0
+            statistics.pivot_ratio = min(statistics.pivot_ratio, ratio)
+            statistics.tangents += 1
+        if stages.factored != 0:
+            done = own.iterate(system, solver, stages, step, fresh)
+        attempt += 1
+    return done
+
+
 @routine()
 def march_stages(system: System, solver: MotionSolver, stages: Stages) -> int:
     """March through steps from `state`, advanced in place; return how many were completed."""
     small_code()
-    own, statistics = stages.routines, solver.statistics
+    own = stages.routines
     for step in range(stages.first, stages.steps):
         start_step(solver, stages)
-        attempt, done = 0, stages.solved
-        while done == 0 and attempt < 3:
-            own.predict(system, solver, stages, step, attempt)
-            fresh = 1 if attempt > 0 or stages.factored == 0 else 0
-            if fresh != 0:
-                attempt = max(attempt, 1)
-                ratio = own.factorise(system, solver, stages, step)
-                stages.factored = ratio > 0.0
-                statistics.pivot_ratio = min(statistics.pivot_ratio, ratio)
-                statistics.tangents += 1
-            if stages.factored != 0:
-                done = own.iterate(system, solver, stages, step, fresh)
-            attempt += 1
+        done = solve_step(system, solver, stages, step)
         if done == 0:
             stages.factored = 0
             return step

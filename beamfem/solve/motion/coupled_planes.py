@@ -12,6 +12,7 @@ from beamfem.equations.motion_workspace import MotionWorkspace
 from beamfem.equations.system import System
 from beamfem.kernels import motion_stages
 from beamfem.kernels.compiling import Routine
+from beamfem.kernels.motion_record import MotionRoutines
 from beamfem.kernels.stage_record import Stages
 from beamfem.linalg.lapack import LinAlgError, superlu
 from beamfem.solve.motion.constraints import onto_conditions
@@ -48,14 +49,19 @@ class CoupledPlanes(PythonRoutines):
 
     def march(self, routine: Routine, state: np.ndarray, times: np.ndarray, deferred: Deferred) -> int:
         """March a state (4, n) with loads at times (rows,) [s]; see `stage_steps.march_stages`, or another routine."""
-        self._state, self._times, self._deferred = state, times, deferred
         usual = self._solver.routines
-        self._solver.routines = usual.copy()
-        self._solver.routines.assemble = cast(self._assembling, c_void_p).value
+        self._solver.routines = self.lend(state, times, deferred)
         try:
             return int(routine(self._equations, self._solver, self._stages))
         finally:
             self._solver.routines = usual
+
+    def lend(self, state: np.ndarray, times: np.ndarray, deferred: Deferred) -> MotionRoutines:
+        """Return the routines with which to march a state (4, n) with loads at times (rows,) [s]."""
+        self._state, self._times, self._deferred = state, times, deferred
+        routines = self._solver.routines.copy()
+        routines.assemble = cast(self._assembling, c_void_p).value
+        return routines
 
     def _assemble(self, system: int, solver: int) -> None:
         """See `motion_stages.assemble`."""

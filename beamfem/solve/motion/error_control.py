@@ -4,11 +4,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from beamfem.equations.motion_workspace import motion_workspace
 from beamfem.progress import progress
+from beamfem.results.solution_checks import advice
 from beamfem.solve.motion.cut_steps import Rows, StepCutter
 from beamfem.solve.motion.energy_judgement import CHUNK
 from beamfem.solve.motion.generalized_alpha import is_scheme
+from beamfem.solve.motion.marching_doubled import DoubledSteps
 from beamfem.solve.motion.saved_rows import SavedRows
+from beamfem.solve.motion.stage_coefficients import Implicit, coefficients, is_implicit
 from beamfem.solve.motion.start_acceleration import initial_acceleration
 from beamfem.solve.motion.time_marching import Failure, Record
 from beamfem.solve.motion.time_steps import Stretch
@@ -19,6 +23,7 @@ _LARGEST, _SMALLEST = 4.0, 0.2  # changes of the step at once
 _ROUND_OFF = 2e-14  # of the model: error of a step that may be round-off
 _MEAN = 16  # steps whose errors are added
 _CANCELLED = 4.0  # times the tolerance that the estimates add up to: errors turn with the motion, and partly cancel
+_SUM = 2.0  # times the tolerance that the same of methods of stages add up to
 _LONGEST = 64  # steps of equal size, at the end of which the error is judged
 _SHORTEST = 1e-12  # of the motion: a step that fails however short it is
 
@@ -52,6 +57,10 @@ def march_to_tolerance(
     so that errors add up to the tolerance at most. That of an integrator with steps of its own is the difference of two
     steps and one of double size, over 2^k - 1 with its order k.
     """
+    if is_implicit(cutter.integrator) and not len(cutter.system.history.numbers):
+        return _march_pairs(
+            cutter, cutter.integrator, parts, state, rotations, tolerance, saved, record, reached or Reached(), most
+        )
     reached, duration, order = reached or Reached(), cutter.end, getattr(cutter.integrator, "order", 2)
     time, step, count, taken = reached.time, reached.step, reached.count, 0
     rule = is_scheme(cutter.integrator)
@@ -108,6 +117,54 @@ def march_to_tolerance(
                 if best > _SAME * step or best < step:
                     step = min(best, _LARGEST * size)
                 reached.time, reached.step, reached.count, taken = time, step, count, taken + steps
+    return None
+
+
+def _march_pairs(
+    cutter: StepCutter,
+    method: Implicit,
+    parts: tuple[Stretch, ...],
+    state: np.ndarray,
+    rotations: np.ndarray,
+    tolerance: float,
+    saved: SavedRows,
+    record: Record,
+    reached: Reached,
+    most: float,
+) -> Failure | None:
+    """Do what `march_to_tolerance` does with a method of stages, in compiled pairs of steps."""
+    system, taken, room = cutter.system, 0, max(cutter.size, 2)
+    with progress("time [s]", cutter.end) as report, motion_workspace(system) as space:
+        motion = DoubledSteps(system, space, coefficients(method), method.order, cutter.statistics)
+        own = motion.record
+        own.fill(time=reached.time, step=reached.step, rate=_SUM * tolerance / cutter.end)
+        own.shortest = _SHORTEST * cutter.end
+        for number, part in enumerate(parts):
+            end = float(part.times[-1])
+            if own.time == part.times[0]:
+                own.fine.known, own.before = 0, 0.0
+                if number > 0:
+                    state[2] = state[3] = initial_acceleration(system, state, part.loads_from)
+                    own.step *= _SMALLEST
+            own.step, own.longest = own.step or _first_step(cutter, state, tolerance), 0.125 * (end - part.times[0])
+            while own.time < end:
+                if taken >= most:
+                    return None
+                refused = own.refused
+                times, rows = motion.follow(part, state, rotations, max(int(min(room, most - taken)), 2))
+                taken += len(times) - 1
+                record.cuts = cutter.cuts = cutter.cuts + own.refused - refused
+                record.further = cutter.further = cutter.further + len(times) - 1
+                saved.keep(times, rows)
+                motion.raise_error()
+                if own.failed:
+                    why = f"does not converge, however short it is{advice(system.model, state[0])}"
+                    return Failure(own.time, own.time + own.step, why)
+                report(own.time)
+                record.show(own.time, state[:3])
+                reached.time, reached.step = own.time, own.step
+                if saved.stopped:
+                    return None
     return None
 
 

@@ -46,8 +46,8 @@ class StageSteps(StepsInCalls):
         self._rule, self._time, h = rule, begin, step
         self._routine = march_explicit if rule.explicit else march_stages
         found = space.stages.pop(rule, None)
-        self._stages = own = space.stages[rule] = _stages(system, space, rule) if found is None else found
-        own.fill(elapsed=0.0, rate=0.0, known=0, factored=0, solved=0)
+        self._stages = own = space.stages[rule] = workspace_of(system, space, rule) if found is None else found
+        own.fill(elapsed=0.0, accuracy=0.0, rate=0.0, known=0, factored=0, solved=0)
         if own.time_step != h:
             _fill_step(own, rule, h)
         self._coupled = CoupledPlanes(system, space, own) if is_coupled(system) else None
@@ -110,9 +110,7 @@ class StageSteps(StepsInCalls):
         result[:, :, 0] = system.prescribed_values(0.0)
         if any(callable(item.value) for item in system.prescribed):
             for own, begin, end in zip(result, begins.tolist(), ends.tolist(), strict=True):
-                at = begin + (end - begin) * rule.points
-                moved = np.array([system.prescribed_changes(time) for time in at])
-                own[:] = rule.motion(moved, self._step).swapaxes(0, 1)
+                own[:] = rule.moved(system, begin, end, self._step)
             result[:, :, 0] += system.reference[system.prescribed_dofs]
         return result.reshape(len(ends) * len(rule.samples), *result.shape[2:])
 
@@ -155,10 +153,7 @@ class StageSteps(StepsInCalls):
 
 def _fill_step(own: Stages, rule: Coefficients, h: float) -> None:
     """Set the size of the steps [s], and what follows from it."""
-    of_p, z = h * h * rule.of_p, h * rule.values
-    planes = [(each.real**2, each.real, 1.0) for each in z[: rule.real]]
-    for each in z[rule.real :]:
-        planes += [((each**2).real, each.real, 1.0), ((each**2).imag, each.imag, 0.0)]
+    of_p = h * h * rule.of_p
     own.fill(
         time_step=h,
         of_p=of_p,
@@ -166,11 +161,11 @@ def _fill_step(own: Stages, rule: Coefficients, h: float) -> None:
         of_begin=rule.of_begin * (h * h, h),
         to_multipliers=of_p if rule.explicit else np.linalg.inv(of_p),
         at_end=rule.at_end * [[h * h], [h], [1.0]],
-        weights=np.zeros((own.stages, 3)) if rule.explicit else np.array(planes),
+        weights=rule.weights(h),
     )
 
 
-def _stages(system: System, space: MotionWorkspace, rule: Coefficients) -> Stages:
+def workspace_of(system: System, space: MotionWorkspace, rule: Coefficients) -> Stages:
     """Return a method with workspace, for steps of any size."""
     solver = space.solver
     own = Stages(

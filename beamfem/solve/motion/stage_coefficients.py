@@ -8,11 +8,13 @@ from typing import TypeGuard
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from beamfem.equations.system import System
 from beamfem.solve.motion.collocation import Gauss, Radau
 from beamfem.solve.motion.runge_kutta import Bathe, CentralDifferences, DormandPrince
 
 Explicit = CentralDifferences | DormandPrince
-Staged = Gauss | Radau | Bathe | Explicit
+Implicit = Gauss | Radau | Bathe
+Staged = Implicit | Explicit
 
 
 def has_stages(integrator: object) -> TypeGuard[Staged]:
@@ -23,6 +25,11 @@ def has_stages(integrator: object) -> TypeGuard[Staged]:
 def is_explicit(integrator: object) -> TypeGuard[Explicit]:
     """Return whether an integrator is explicit: its steps are limited by the highest frequency."""
     return isinstance(integrator, Explicit)
+
+
+def is_implicit(integrator: object) -> TypeGuard[Implicit]:
+    """Return whether an integrator is a method whose stages are solved for."""
+    return has_stages(integrator) and not is_explicit(integrator)
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +63,19 @@ class Coefficients:
     def real(self) -> int:
         """Number of real eigenvalues."""
         return int(np.sum(self.values.imag == 0.0))
+
+    def weights(self, step: float) -> np.ndarray:
+        """Return the weights (s, 3) of p, p' and p'' in the tangent of each plane, see `kernels.stage_record`."""
+        z = step * self.values
+        planes = [(each.real**2, each.real, 1.0) for each in z[: self.real]]
+        for each in z[self.real :]:
+            planes += [((each**2).real, each.real, 1.0), ((each**2).imag, each.imag, 0.0)]
+        return np.array(planes) if planes else np.zeros((len(self.nodes), 3))
+
+    def moved(self, system: System, begin: float, end: float, step: float) -> np.ndarray:
+        """Return prescribed changes and their rates (samples, 3, nh) in a step [s] between two times [s]."""
+        at = begin + (end - begin) * self.points
+        return self.motion(np.array([system.prescribed_changes(time) for time in at]), step).swapaxes(0, 1)
 
     def motion(self, changes: np.ndarray, step: float) -> np.ndarray:
         """Return u, u' and u'' (3, samples, m) at the stages, and at the end, of values (points, m) in a step [s].
@@ -115,7 +135,7 @@ def _collocation(nodes: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(np.linalg.solve(powers.T, (nodes[:, None] ** order / order).T).T)
 
 
-def _weights(method: Gauss | Radau | Bathe, a: np.ndarray) -> np.ndarray:
+def _weights(method: Implicit, a: np.ndarray) -> np.ndarray:
     """Return b (s,): integrals over the step, the last row of A where the last stage is the end."""
     if isinstance(method, Bathe):
         return np.asarray(a[-1])

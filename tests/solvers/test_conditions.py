@@ -174,7 +174,7 @@ def test_redundant_conditions_are_named_with_the_parts_that_cause_them():
 
 @pytest.mark.slow
 def test_a_link_does_not_drift_in_1e5_steps():
-    """Positions meet it to round-off; velocities to the error of the integrator, which does not grow."""
+    """Positions, velocities and accelerations meet it to round-off."""
     square, steel = bf.Rectangle(0.01, 0.01), bf.Material(2.1e11, 0.3, 7850.0)
     left, right = (bf.Beam(bf.Line((x, 0), (x, -0.5 - 0.2 * x)), 2, bf.CRBF(2), square, steel) for x in (0.0, 1.0))
     pins, weight = [bf.Pin(left.start), bf.Pin(right.start)], bf.Gravity((3.0, -9.81))
@@ -184,9 +184,10 @@ def test_a_link_does_not_drift_in_1e5_steps():
         getattr(motion, name)(right.end) - getattr(motion, name)(left.end) for name in ("position", "velocity")
     )
     assert np.abs(np.hypot(*apart.T) - np.hypot(1.0, 0.2)).max() < 1e-13
-    across = np.abs((apart * rate).sum(axis=1)) / np.abs(rate).max()
-    assert across.max() < 1e-6
-    assert across[-100:].max() < 2.0 * across[1:101].max()
+    ends = [model.mesh_of(point).coordinates_of(model.mesh_of(point).node_at(1.0)) for point in (left.end, right.end)]
+    second = motion.a[:, [ends[1]["r^x"], ends[1]["r^y"]]] - motion.a[:, [ends[0]["r^x"], ends[0]["r^y"]]]
+    assert np.abs((apart * rate).sum(axis=1)).max() < 1e-14 * np.abs(motion.v).max()
+    assert np.abs((apart * second + rate**2).sum(axis=1)).max() < 1e-13 * np.abs(motion.a).max()
 
 
 def test_gauss_collocation_meets_conditions_and_keeps_its_order():

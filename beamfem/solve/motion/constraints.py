@@ -13,7 +13,8 @@ from beamfem.model.contribution import is_one_sided
 from beamfem.solve.start.mechanisms import dependent, require_independent
 
 _MET = 1e-8  # of the model, or of the largest velocity
-_SHORT = 1e-4  # of the model: step of a difference along the motion
+_SHORT = 1e-3  # of the model: step of a difference along the motion
+CENTRAL = (3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0)  # of sixth order
 
 
 def require_met(system: System, p: np.ndarray, v: np.ndarray, time: float, duration: float) -> None:
@@ -118,8 +119,11 @@ def _change_of_rates(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray
         size = min(size, SHORT_TIME)
         at = [_rates(system, p + t * v + 0.5 * t**2 * a, v + t * a, time + t) for t in (0.0, size, 2.0 * size)]
         return np.asarray((4.0 * at[1] - 3.0 * at[0] - at[2]) / (2.0 * size))
-    ends = [_rates(system, p + t * v + 0.5 * t**2 * a, v + t * a, 0.0) for t in (size, -size)]
-    return np.asarray((ends[0] - ends[1]) / (2.0 * size))
+    result = np.zeros(len(system.connectors.multipliers))
+    for number, weight in enumerate(CENTRAL, 1):
+        ends = [_rates(system, p + t * v + 0.5 * t**2 * a, v + t * a, 0.0) for t in (number * size, -number * size)]
+        result += weight * (ends[0] - ends[1]) / size
+    return result
 
 
 def _rates(system: System, p: np.ndarray, v: np.ndarray, time: float) -> np.ndarray:

@@ -21,6 +21,7 @@ from beamfem.results.status import Statistics, Status
 from beamfem.solve.accuracy.adapted_mesh import prepared, refined_until
 from beamfem.solve.accuracy.carried_start import carried
 from beamfem.solve.accuracy.coarse_mesh import warned_of_coarse_motion
+from beamfem.solve.motion.consistent_rows import finished_rows
 from beamfem.solve.motion.constraints import impact, require_met, stopped_by_conditions
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.error_control import march_to_tolerance
@@ -262,6 +263,5 @@ def _solution(
     status = Status.COMPLETED if done == len(times) - 1 else Status.STOPPED
     taken = done + record.further
     summary = Statistics(record.statistics.iterations, taken, record.cuts, ended, status, rule=rule)
-    p, v, a = states.swapaxes(0, 1)
-    p = system.finished(p, times[stored_steps].tolist())
+    p, v, a = finished_rows(system, times[stored_steps].tolist(), states).swapaxes(0, 1)
     return Solution(system.model, False, times[stored_steps], p, v, a, summary, turned=rotations)

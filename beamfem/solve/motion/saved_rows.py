@@ -7,6 +7,7 @@ import numpy as np
 from beamfem.equations.system import System
 from beamfem.kernels.motion_steps import count_rotations
 from beamfem.results.motion_state import Occurrence
+from beamfem.solve.motion.consistent_rows import finished_rows
 from beamfem.solve.motion.cut_steps import Rows
 from beamfem.solve.motion.dense_output import between
 from beamfem.solve.motion.events import Watch
@@ -61,7 +62,7 @@ class SavedRows:
         rows = before + np.searchsorted(times, [time for _, time in found])
         events = tuple(Occurrence(*each, row) for each, row in zip(found, rows.tolist(), strict=True))
         states = np.array(self.states).reshape(len(times), 3, self.system.model.size)
-        states[:, 0] = self.system.finished(states[:, 0], self.times)
+        states = finished_rows(self.system, self.times, states)
         rotations = np.array(self.rotations).reshape(len(times), len(self.pairs))
         self.times, self.states, self.rotations, self.watch.found = [], [], [], []
         return times, states, rotations, events

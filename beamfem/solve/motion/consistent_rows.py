@@ -1,0 +1,198 @@
+"""Rows of a motion on the conditions of joints, with velocities and accelerations that keep them there."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import csc_array
+
+from beamfem.equations.connectors import COMPLEX_STEP, Connector
+from beamfem.equations.equations import INERTIA, linearise
+from beamfem.equations.system import System
+from beamfem.linalg.lapack import LinAlgError
+from beamfem.linalg.tangent import UNROTATED, SparseTangent
+from beamfem.parts.at_points import ANALYTIC
+from beamfem.physics.connections import MASS
+from beamfem.solve.motion.constraints import CENTRAL
+
+_FUNCTIONS = ANALYTIC._replace(positive=lambda x: np.where(np.real(x) > 0.0, x, 0.0 * x))
+_ENTRIES = 1_000_000  # of gradients at a time
+_OFF = 1e-12  # of the model: gap of a condition that is corrected
+_CORRECTIONS = 3  # of positions, at most
+_NEAR = 2.0**-7  # of the model, or rad: step of differences along the velocity
+_SINGULAR = 1e-10  # of the largest compliance of the conditions
+
+
+class _Compliance(NamedTuple):
+    """Coordinates (u,) that conditions and bodies act on, and the accelerations (n, u) by forces on them.
+
+    conditions, bodies: their parts with the places of their coordinates among these, and which of its conditions count;
+    still: inertia (u, u) of the
+    bodies in the reference; numbers (k,): of the multipliers.
+    """
+
+    dofs: np.ndarray
+    moved: np.ndarray
+    conditions: tuple[tuple[Connector, np.ndarray, np.ndarray], ...]
+    bodies: tuple[tuple[Connector, np.ndarray], ...]
+    still: np.ndarray
+    numbers: np.ndarray
+
+
+def finished_rows(system: System, times: Sequence[float], states: np.ndarray) -> np.ndarray:
+    """Return states p, p', p'' (rows, 3, n) at times [s] on the conditions, changed in place.
+
+    Steps satisfy conditions of positions; those of p' and p'', G p' + dg/dt = 0 and its rate, are met to the error of
+    the integrator only. What is added is M^-1 G' times multipliers, which changes neither momentum nor the motion
+    along what is free, and the multipliers of p'' join those of the equations. Conditions in Python, and models with
+    coordinates without mass, are left as they are.
+    """
+    found = system.table(_compliance) if len(system.connectors.multipliers) else None
+    if found is not None:
+        some = max(1, _ENTRIES // (len(found.numbers) * len(found.dofs)))
+        for first in range(0, len(states), some):
+            _put_onto_conditions(system, found, *states[first : first + some].swapaxes(0, 1))
+    states[:, 0] = system.finished(states[:, 0], times)
+    return states
+
+
+def _put_onto_conditions(system: System, found: _Compliance, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> None:
+    """Do what `finished_rows` does for p, p' and p'' (rows, n)."""
+    for _ in range(_CORRECTIONS):
+        gaps = _values(found, p)
+        off = np.flatnonzero(np.abs(gaps).max(axis=1) > _OFF * system.extent)
+        if not len(off):
+            break
+        p[off] -= _Impulses(found, p[off]).by(gaps[off])[0]
+    impulses = _Impulses(found, p)
+    v -= impulses.by(impulses.rates(v))[0]
+    change, multipliers = impulses.by(impulses.rates(a) + _turning(found, system, p, v))
+    a -= change
+    p[:, found.numbers] += multipliers
+
+
+def _compliance(system: System) -> _Compliance | None:
+    """Return what conditions need, None if one is in Python, or if there is a coordinate without mass."""
+    items, zeros = system.connectors.items, np.zeros(system.model.size)
+    kept = [item for item in items if np.isin(item.multipliers, system.connectors.multipliers).any()]
+    if any(item.compiled is None or item.compiled.conditions is None for item in kept):
+        return None
+    bodies = []
+    for item in items:
+        if item.compiled is None and item.tangent((system.reference, zeros, zeros), 0.0, zeros[:2], INERTIA).any():
+            return None
+        if item.compiled is not None and item.compiled.kinetic is not None and item.compiled != MASS:
+            bodies.append(item)
+    dofs = np.unique(np.concatenate([item.dofs for item in (*kept, *bodies)]))
+    mass, multipliers = (
+        linearise(system, system.reference, zeros, zeros, 0.0, INERTIA)[1],
+        system.connectors.multipliers,
+    )
+    inertia = SparseTangent(csc_array(mass.sparse(UNROTATED)[: -len(multipliers), : -len(multipliers)]))
+    moved, free = np.zeros((len(zeros), len(dofs))), system.free_dofs[: -len(multipliers)]
+    try:
+        factors = inertia.factorised(system.rotated)
+    except LinAlgError:
+        return None
+    for column, number in enumerate(system.unknowns.free[dofs].tolist()):
+        if number >= 0:
+            moved[free, column] = factors.solve(np.eye(1, len(free), number)[0])
+    if not np.isfinite(moved).all():
+        return None
+    conditions = tuple(
+        (item, np.searchsorted(dofs, item.dofs), np.flatnonzero(np.isin(item.multipliers, multipliers)))
+        for item in kept
+    )
+    moving = tuple((item, np.searchsorted(dofs, item.dofs)) for item in bodies)
+    found = _Compliance(dofs, moved, conditions, moving, np.zeros((len(dofs), len(dofs))), multipliers)
+    return found._replace(still=_inertia(found, system.reference[None])[0])
+
+
+def _conditions(item: Connector, chosen: np.ndarray, q: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """Return the chosen conditions (rows, c) of a part with coordinates q (rows, d), without prescribed values."""
+    connection, data = item.compiled, (*item.data.tolist(), *p[:, item.memory].T)
+    assert connection is not None
+    assert connection.conditions is not None
+    values = connection.conditions(connection.split(list(q.T)), data, _FUNCTIONS)
+    return np.array([np.broadcast_to(values[number], len(q)) for number in chosen.tolist()]).T
+
+
+def _values(found: _Compliance, p: np.ndarray) -> np.ndarray:
+    """Return the gaps (rows, k) of conditions."""
+    gaps = []
+    for item, _, chosen in found.conditions:
+        gap = _conditions(item, chosen, p[:, item.dofs], p)
+        given = chosen < len(item.values)
+        gap[:, given] -= p[:, item.values[chosen[given]]]
+        gaps.append(gap)
+    return np.concatenate(gaps, axis=1)
+
+
+def _along(found: _Compliance, p: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return G p' (rows, k) of coordinates alone."""
+    moved = (
+        (item, chosen, p[:, item.dofs] + 1j * COMPLEX_STEP * v[:, item.dofs]) for item, _, chosen in found.conditions
+    )
+    return np.concatenate([_conditions(item, chosen, q, p).imag for item, chosen, q in moved], axis=1) / COMPLEX_STEP
+
+
+def _turning(found: _Compliance, system: System, p: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return (dG/dt) p' (rows, k)."""
+    speed = np.abs(v[:, found.dofs] / system.held.scale[found.dofs]).max(axis=1, keepdims=True)
+    width, result = _NEAR / np.where(speed > 0.0, speed, 1.0), np.zeros((len(p), len(found.numbers)))
+    for number, weight in enumerate(CENTRAL, 1):
+        result += weight * (_along(found, p + number * width * v, v) - _along(found, p - number * width * v, v))
+    return result / width
+
+
+def _inertia(found: _Compliance, p: np.ndarray) -> np.ndarray:
+    """Return the inertia (rows, u, u) of the bodies: their kinetic energy is quadratic in rates."""
+    result = np.zeros((len(p), len(found.dofs), len(found.dofs)))
+    for item, places in found.bodies:
+        connection, data = item.compiled, (*item.data.tolist(), *p[:, item.memory].T)
+        assert connection is not None
+        assert connection.kinetic is not None
+        q, units = connection.split(list(p[:, item.dofs].T)), np.eye(len(item.dofs))
+        energies = [[connection.kinetic(q, connection.split(i + j), data, _FUNCTIONS) for j in units] for i in units]
+        for i, row in enumerate(places):
+            for j, column in enumerate(places):
+                result[:, row, column] += energies[i][j] - 0.25 * (energies[i][i] + energies[j][j])
+    return result
+
+
+class _Impulses:
+    """Changes of rates in states p (rows, n) by impulses along the gradients of conditions."""
+
+    def __init__(self, found: _Compliance, p: np.ndarray) -> None:
+        self._found, self.gradients = found, np.zeros((len(p), len(found.numbers), len(found.dofs)))
+        first = 0
+        for item, places, chosen in found.conditions:
+            rows, q = slice(first, first + len(chosen)), p[:, item.dofs].astype(complex)
+            for column, place in enumerate(places.tolist()):
+                q[:, column] += 1j * COMPLEX_STEP
+                self.gradients[:, rows, place] += _conditions(item, chosen, q, p).imag / COMPLEX_STEP
+                q[:, column] = q[:, column].real
+            first += len(chosen)
+        here, along = found.moved[found.dofs], self.gradients.swapaxes(1, 2)
+        if found.bodies:
+            along = np.linalg.solve(np.eye(len(here)) + (_inertia(found, p) - found.still) @ here, along)
+        self._along = along
+        self._compliance = self.gradients @ (here @ along)
+
+    def rates(self, rates: np.ndarray) -> np.ndarray:
+        """Return G p' less the rates of prescribed values (rows, k) for p' (rows, n), or the same of p''."""
+        result = (self.gradients @ rates[:, self._found.dofs, None])[..., 0]
+        first = 0
+        for item, _, chosen in self._found.conditions:
+            given = np.flatnonzero(chosen < len(item.values))
+            result[:, first + given] -= rates[:, item.values[chosen[given]]]
+            first += len(chosen)
+        return result
+
+    def by(self, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the changes (rows, n) of p' that change conditions by rates (rows, k), and their impulses."""
+        values, vectors = np.linalg.eigh(0.5 * (self._compliance + self._compliance.swapaxes(1, 2)))
+        inverse = np.where(values > _SINGULAR * values[:, -1:], 1.0 / np.where(values > 0.0, values, 1.0), 0.0)
+        impulses = vectors @ (inverse[..., None] * (vectors.swapaxes(1, 2) @ rates[..., None]))
+        changes = self._found.moved @ (self._along @ impulses)
+        return changes[..., 0], impulses[..., 0]

@@ -11,6 +11,7 @@ from beamfem.model.beam import Point
 from beamfem.model.contribution import At
 from beamfem.model.load_shapes import Coil
 from beamfem.model.part_units import UNIT
+from beamfem.model.time_functions import Interpolated
 from beamfem.parts.at_points import BetweenPlaces
 from beamfem.physics.connections import GROUNDED_SPRING, SPRING, Connection, Functions, spring_with_law
 from beamfem.quadrature import gauss
@@ -20,12 +21,26 @@ _PARTS, _POINTS = 256, 3  # of the quadrature of a law, which may have kinks
 _OF_ARRAYS = Functions(np.sqrt, np.cos, np.sin, lambda x: np.maximum(x, 0.0))
 
 
+@dataclass(frozen=True)
+class _Table:
+    """The law of a table, as a sum of kinks: constant outside of its points (elongation [m], force [N])."""
+
+    points: tuple[tuple[float, float], ...]
+
+    def __call__(self, elongation: Any, f: Any) -> Any:
+        places, forces = zip(*self.points, strict=True)
+        slopes = [0.0, *(np.diff(forces) / np.diff(places)).tolist(), 0.0]
+        kinks = zip(places, np.diff(slopes).tolist(), strict=True)
+        return forces[0] + sum(change * f.positive(elongation - place) for place, change in kinks)
+
+
 @dataclass(frozen=True, slots=True)
 class SpringDamper(BetweenPlaces):
     """A straight spring and damper between two points: its force is k (l - l0) + c dl/dt along the line between them.
 
     With a law F(e, f) of the elongation e = l - l0 in place of a stiffness, the force is F + c dl/dt. The law is
-    written with +, -, *, /, whole powers, f.sqrt and f.positive, which is max(x, 0); see `Connection`.
+    written with +, -, *, /, whole powers, f.sqrt and f.positive, which is max(x, 0); see `Connection`. An
+    `Interpolated` table of forces is a law too.
 
     Parameters
     ----------
@@ -34,7 +49,7 @@ class SpringDamper(BetweenPlaces):
     b : Point or (float, float), [m]
         Point of a beam, or a place on the ground.
     stiffness : float or callable, [N/m]
-        Stiffness k >= 0, or a law F(e, f) [N].
+        Stiffness k >= 0, or a law F(e, f) [N], or `Interpolated` from elongations [m] to forces [N].
     damping : float, [N s/m], default 0
         Damping c >= 0.
     length : float, [m], optional
@@ -64,17 +79,24 @@ class SpringDamper(BetweenPlaces):
         BetweenPlaces.__post_init__(self)
         if not callable(self.stiffness):
             convert(self, not_negative, "stiffness")
-        elif not takes(self.stiffness, 2):
+        elif not isinstance(self.stiffness, Interpolated) and not takes(self.stiffness, 2):
             raise InputError("a law of a SpringDamper is a function of the elongation and f: lambda e, f: 1e3 * e**3")
         convert(self, not_negative, "damping")
         convert(self, optional(not_negative), "length")
         self.require_apart()
 
     @property
+    def _law(self) -> Callable[[Any, Any], Any] | None:
+        """Its law as a function of the elongation and f, None for a linear spring."""
+        if isinstance(self.stiffness, Interpolated):
+            return _Table(tuple((float(place), float(force)) for place, force in self.stiffness.points))
+        return self.stiffness if callable(self.stiffness) else None
+
+    @property
     def connection(self) -> Connection:
         """A spring between points, or to the ground."""
-        if callable(self.stiffness):
-            return spring_with_law(self.stiffness, not isinstance(self.b, Point))
+        if (law := self._law) is not None:
+            return spring_with_law(law, not isinstance(self.b, Point))
         return SPRING if isinstance(self.b, Point) else GROUNDED_SPRING
 
     def data(self, reference: np.ndarray) -> tuple[float, ...]:
@@ -85,13 +107,13 @@ class SpringDamper(BetweenPlaces):
 
     def energy(self, at: At) -> tuple[float, float]:
         """Return no kinetic energy, and the potential energy [J], of a law by quadrature of its force."""
-        if not callable(self.stiffness):
+        if (law := self._law) is None:
             return BetweenPlaces.energy(self, at)
         ends = [np.real(row[:2]) for row in at.q] + ([np.array(self.ground)] if self.ground else [])
         elongation = float(np.hypot(*(ends[1] - ends[0]))) - self.data(at.reference)[2]
         places, weights = gauss(_POINTS)
         every = (np.arange(_PARTS)[:, None] + places) / _PARTS
-        forces = np.broadcast_to(self.stiffness(elongation * every, _OF_ARRAYS), every.shape)
+        forces = np.broadcast_to(law(elongation * every, _OF_ARRAYS), every.shape)
         return 0.0, elongation * float((forces @ weights).mean())
 
     def shapes(self) -> tuple[Coil, ...]:

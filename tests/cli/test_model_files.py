@@ -515,3 +515,14 @@ def test_redundant_links_of_a_file_are_solved_on_request(tmp_path):
     job = read_model_file(file)
     one, two = (job.solve().solution.multipliers(tie)[-1, 0] for tie in job.model.connectors)
     assert one == pytest.approx(two, rel=1e-9)
+
+
+def test_a_table_of_a_file_is_the_law_of_a_spring(tmp_path):
+    file = tmp_path / "spring.toml"
+    table = '{ kind = "table", points = [[-1.0, -4e3], [0.0, 0.0], [1.0, 4e3]] }'
+    found = []
+    for stiffness in (table, "4e3"):
+        spring = f'[[connectors]]\nkind = "spring-damper"\na = "arm.end"\nb = [1.0, 1.0]\nstiffness = {stiffness}\n'
+        file.write_text(ARM + spring)
+        found.append(read_model_file(file).solve().solution.p[-1])
+    assert found[0] == pytest.approx(found[1], abs=1e-10)

@@ -95,6 +95,20 @@ def test_a_law_of_a_class_is_saved_and_others_are_refused(tmp_path):
         bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], loads, connectors=[bad]))
 
 
+def test_a_table_is_a_law_that_files_hold(tmp_path):
+    """Preloaded by 10 N, constant below -0.02 m, softer from 0.01 m on; the energy is the area under it."""
+    model, beam, spring = hung(bf.Interpolated([(-0.02, -10.0), (0.01, 20.0), (0.03, 30.0)]))
+    for force, stretch in ((-5.0, -0.015), (15.0, 0.005), (27.5, 0.025)):
+        loaded = model.with_(loads=[bf.PointForce(beam.start, (0.0, force))])
+        solution = bf.solve_static(loaded)
+        assert solution.displacement(beam.start)[-1, 1] == pytest.approx(stretch, rel=1e-9)
+    assert solution.energy().potential[-1] + 27.5 * 0.025 == pytest.approx(0.50625, rel=1e-5)
+    assert solution.connector_force(spring)[-1, 0, 1] == pytest.approx(-27.5, rel=1e-9)
+    solution.save(tmp_path / "table.h5")
+    again = bf.load(tmp_path / "table.h5").model
+    assert bf.solve_static(again).p[-1] == pytest.approx(solution.p[-1], abs=1e-12)
+
+
 @pytest.mark.parametrize(
     ("law", "message"),
     [

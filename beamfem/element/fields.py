@@ -111,14 +111,8 @@ class Cubic:
         >>> bf.Cubic().centreline(np.array([0.5]))
         array([[ 0.5  ,  0.125,  0.5  , -0.125]])
         """
-        one = np.ones_like(xi)
-        if derivative == 0:
-            rows = (1 - 3 * xi**2 + 2 * xi**3, xi - 2 * xi**2 + xi**3, 3 * xi**2 - 2 * xi**3, xi**3 - xi**2)
-        elif derivative == 1:
-            rows = (6 * xi**2 - 6 * xi, 1 - 4 * xi + 3 * xi**2, 6 * xi - 6 * xi**2, 3 * xi**2 - 2 * xi)
-        else:
-            rows = (12 * xi - 6 * one, 6 * xi - 4 * one, 6 * one - 12 * xi, 6 * xi - 2 * one)
-        return np.stack(rows, axis=-1)
+        points = np.asarray(xi, dtype=float)
+        return _hermite(points.tobytes(), points.shape, derivative).copy()
 
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
         """Return 1 - xi and xi (nq, 2) for r_y of both nodes, or a derivative; see `Field.director`."""
@@ -127,6 +121,20 @@ class Cubic:
     def director_rule(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the nodes (nd,) of the director on [0, 1], and the weights (nd,) of a quadrature there."""
         return Lagrange(1).director_rule()
+
+
+@lru_cache(maxsize=128)
+def _hermite(points: bytes, shape: tuple[int, ...], derivative: int) -> np.ndarray:
+    """Return the Hermite cubics (*shape, 4) at points in [0, 1], given as bytes, or a derivative."""
+    xi = np.frombuffer(points).reshape(shape)
+    one = np.ones_like(xi)
+    if derivative == 0:
+        rows = (1 - 3 * xi**2 + 2 * xi**3, xi - 2 * xi**2 + xi**3, 3 * xi**2 - 2 * xi**3, xi**3 - xi**2)
+    elif derivative == 1:
+        rows = (6 * xi**2 - 6 * xi, 1 - 4 * xi + 3 * xi**2, 6 * xi - 6 * xi**2, 3 * xi**2 - 2 * xi)
+    else:
+        rows = (12 * xi - 6 * one, 6 * xi - 4 * one, 6 * one - 12 * xi, 6 * xi - 2 * one)
+    return np.stack(rows, axis=-1)
 
 
 @lru_cache

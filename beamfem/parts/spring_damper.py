@@ -22,7 +22,7 @@ _OF_ARRAYS = Functions(np.sqrt, np.cos, np.sin, lambda x: np.maximum(x, 0.0))
 
 
 @dataclass(frozen=True)
-class _Table:
+class _MeasuredForce:
     """The law of a table, as a sum of kinks: constant outside of its points (elongation [m], force [N])."""
 
     points: tuple[tuple[float, float], ...]
@@ -89,7 +89,7 @@ class SpringDamper(BetweenPlaces):
     def _law(self) -> Callable[[Any, Any], Any] | None:
         """Its law as a function of the elongation and f, None for a linear spring."""
         if isinstance(self.stiffness, Interpolated):
-            return _Table(tuple((float(place), float(force)) for place, force in self.stiffness.points))
+            return _MeasuredForce(tuple((float(place), float(force)) for place, force in self.stiffness.points))
         return self.stiffness if callable(self.stiffness) else None
 
     @property

@@ -509,6 +509,15 @@ class Connectors:
         return any(follows_time(item)[1] for item in self.items)
 
     @cached_property
+    def driving(self) -> "Connectors":
+        """Those whose forces do work; others conserve energy or dissipate it."""
+
+        def drives(item: Connector) -> bool:
+            return (not item.item.conservative and not len(item.dissipated)) or any(follows_time(item))
+
+        return Connectors(self.model, self.static, tuple(filter(drives, self.items)))
+
+    @cached_property
     def damp(self) -> bool:
         """Whether a connector resists rates."""
         return any(resists_rates(item) for item in self.items)

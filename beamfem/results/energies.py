@@ -1,13 +1,13 @@
 """Energies of a solution, and the work done on a motion and what it dissipates, by the trapezoidal rule."""
 
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.equations.applied_loads import even_loads
-from beamfem.equations.connectors import Connectors, follows_time
+from beamfem.equations.connectors import Connectors
 from beamfem.equations.equations import residual
 from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.equations.system import System, system_of
@@ -208,7 +208,8 @@ def exchange(solution: Solution, forces: Forces) -> Exchange:
     Loads that have a potential at each time, and imposed strains, do the work by which their energy changes with time
     alone.
     """
-    driving, moved, at = _driving(solution), np.diff(solution.p, axis=0), solution.at
+    driving = system_of(solution.model, static=False).connectors.driving
+    moved, at = np.diff(solution.p, axis=0), solution.at
     means = [0.5 * (values[1:] + values[:-1]) for values in forces]
     work, given = (np.einsum("sn,sn->s", mean, moved) for mean in means[:2])
     if any(load.amplitude is not None for load in solution.model.loads):
@@ -225,7 +226,8 @@ def exchange(solution: Solution, forces: Forces) -> Exchange:
 
 def forces_without_potential(solution: Solution) -> Forces:
     """Return the forces without a potential; those of loads as the difference that their absence makes."""
-    system, driving, (rows, size) = system_of(solution.model, static=False), _driving(solution), solution.p.shape
+    system, (rows, size) = system_of(solution.model, static=False), solution.p.shape
+    driving = system.connectors.driving
     work, connected, lost = np.zeros((rows, size)), np.zeros((rows, size)), np.zeros(rows)
     moving = [item.dof for item in system.prescribed if callable(item.value)]
     following = not system.loads.conserves.all()
@@ -243,16 +245,6 @@ def forces_without_potential(solution: Solution) -> Forces:
         if damped:
             lost[row] = _dissipated_power(system, driving, p, v, at)
     return Forces(work, -connected, lost)
-
-
-def _driving(solution: Solution) -> Connectors:
-    """Return the connectors whose forces do work; others conserve energy or dissipate it."""
-    items = system_of(solution.model, static=False).connectors.items
-    return Connectors(solution.model, False, tuple(item for item in items if _drives(item)))
-
-
-def _drives(item: Any) -> bool:
-    return (not item.item.conservative and not len(item.dissipated)) or any(follows_time(item))
 
 
 def _dissipated_power(system: System, but: Connectors, p: np.ndarray, v: np.ndarray, time: float) -> float:

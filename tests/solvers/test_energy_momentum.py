@@ -77,7 +77,7 @@ def thrown(element, section, material, bend, step, steps):
     """A beam that is bent by a force, released and thrown."""
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, element, section, material)
     clamped = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0, bend))])
-    velocity, start, every = bf.RigidVelocity((1.0, 0.5), angular=3.0), bf.solve_static(clamped), max(1, steps // 1000)
+    velocity, start, every = bf.RigidVelocity((0.1, 0.05), angular=3.0), bf.solve_static(clamped), max(1, steps // 1000)
     return bf.simulate(bf.Model([beam]), steps * step, step, bf.EnergyMomentum(), start, velocity, every)
 
 

@@ -19,6 +19,7 @@ from beamfem.kernels.block import (
 from beamfem.kernels.conserving_step import Conserving, Strained
 from beamfem.physics.connections import MASS
 from beamfem.physics.discrete_gradients import DISCRETE_GRADIENTS
+from beamfem.physics.kinematics import MEASURES, evaluate
 from beamfem.physics.stations import DEAD, FOLLOWING, GROUNDED, STRETCHING
 
 _TURNING = {ROTATION: 1, SHEAR_RIGID: 2, STRETCH: 2}  # number of the nodal vectors that turn with the angle of a node
@@ -56,26 +57,43 @@ class Vectors(NamedTuple):
         plain = np.flatnonzero(self.linear)
         result[plain, 0] = plain
         result[self.units(self.angles), 0] = self.angles[:, None]
-        result[self.stretched(self.stretches)] = np.stack([self.angles[self.angle_of], self.stretches], axis=-1)[
-            :, None
-        ]
+        both = np.stack([self.angles[self.angle_of], self.stretches], axis=-1)
+        result[self.stretched(self.stretches)] = both[:, None]
         return result
+
+    def of(self, p: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return z and its rates (rows, m) in states p and p' (rows, n)."""
+        u, s = np.exp(1j * p[:, self.angles]), p[:, self.stretches]
+        turning, along = 1j * v[:, self.angles] * u, u[:, self.angle_of]
+        rates = v[:, self.stretches] * along + s * turning[:, self.angle_of]
+
+        def joined(plain: np.ndarray, *vectors: np.ndarray) -> np.ndarray:
+            pairs = [np.ascontiguousarray(each).view(float) for each in vectors]
+            return np.hstack([np.where(self.linear, plain, 0.0), *pairs])
+
+        return joined(p, u, s * along), joined(v, turning, rates)
 
 
 class ConservingModel(NamedTuple):
-    """A model in two states.
+    """A model in two states, or in any.
 
-    matrix: view of the derivative of both equations by p and p'; nodal (2 vectors, m): nodal vectors of each block from
-    z; masses (n, 2) [kg]: of points, on which gravity acts; fixed (m,): forces that depend on neither time nor state;
-    others: equations of the forces that are not in z, None if there are none.
+    mass, ground (m, m): of z, and the stiffness of springs and foundations; nodal (2 vectors, m): nodal vectors of each
+    block from z; points (6 points, m): r', d and the third vector at its quadrature points; masses (n, 2) [kg]: of
+    points, on which gravity acts; fixed (m,): forces that depend on neither time nor state; others: equations of the
+    forces that are not in z, None if there are none; record: of steps; matrix: view of the derivative of both their
+    equations by p and p'.
     """
 
-    record: Conserving
-    matrix: csc_array
+    vectors: Vectors
+    mass: csr_array
+    ground: csr_array
     nodal: tuple[csr_array, ...]
+    points: tuple[csr_array, ...]
     masses: np.ndarray
     fixed: np.ndarray
     others: Equations | None
+    record: Conserving
+    matrix: csc_array
 
     def forces(self, system: System, time: float) -> np.ndarray:
         """Return the forces (m,) on z at a time."""
@@ -92,6 +110,20 @@ class ConservingModel(NamedTuple):
             np.add.at(force, _numbers(block)[at.element[dead]], own)
             result += nodal.T @ force.ravel()
         return result
+
+    def energies(self, system: System, p: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return kinetic, strain and potential energies (rows,) [J] in states p and p' (rows, n), without `others`."""
+        z, w = self.vectors.of(np.vstack([system.reference, p]), np.vstack([np.zeros_like(v[:1]), v]))
+        potential = ((0.5 * (self.ground @ z.T).T - self.forces(system, 0.0)) * z).sum(axis=1)
+        strain = np.zeros(len(z))
+        for block, points in zip(system.blocks, self.points, strict=True):
+            reference = block.reference[block.kind]
+            q = (points @ z.T).T.reshape(len(z), *reference.shape[:2], 3, 2)
+            strains = evaluate(MEASURES[block.measures], *np.moveaxis(q, -2, 0)) - reference
+            stress = (strains[..., None, :] @ block.stiffness[block.kind])[..., 0, :]
+            strain += 0.5 * np.einsum("req,eq->r", (stress * strains).sum(axis=-1), block.weight[block.kind])
+        kinetic = 0.5 * ((self.mass @ w.T).T * w).sum(axis=1)
+        return kinetic[1:], strain[1:], potential[1:] - potential[0]
 
 
 def conserving_model(system: System) -> ConservingModel:
@@ -118,8 +150,27 @@ def conserving_model(system: System) -> ConservingModel:
         ground = ground + csr_array(coo_array((stiffness, (springs, springs)), shape=(size, size)))
         np.add.at(fixed, springs, stiffness * system.springs.data[:, 1])
     mass = mass + csr_array(coo_array((masses.sum(axis=1), (np.arange(count),) * 2), shape=(size, size)))
-    record, matrix = _record(system, vectors, (csr_array(mass), csr_array(ground)), gathers)
-    return ConservingModel(record, matrix, nodal, masses, fixed, _others(system, plain))
+    mass, ground, others = csr_array(mass), csr_array(ground), _others(system, plain)
+    tables = _record(system, vectors, (mass, ground), gathers)
+    return ConservingModel(vectors, mass, ground, nodal, tuple(gathers), masses, fixed, others, *tables)
+
+
+def not_conserved(system: System) -> str | None:
+    """Return the name of what steps cannot conserve in a model, None if there is nothing."""
+    zeros = np.zeros(system.model.size)
+    if any(block.law is not None or block.imposed is not None for block in system.blocks):
+        return "a section law or imposed strains"
+    if any(block.damping.any() or block.mass_damping for block in system.blocks):
+        return "damping of beams"
+    if any(callable(item.value) for item in system.prescribed) or system.driven:
+        return "supports that move"
+    if len(system.connectors.multipliers):
+        return "conditions with multipliers"
+    for item in system.connectors.items:
+        inertia = item.tangent((system.reference, zeros, zeros), 0.0, np.zeros(2), (0.0, 0.0, 1.0))
+        if item.compiled != MASS and inertia.any():
+            return f"the inertia of {item.name}"
+    return None
 
 
 def _others(system: System, springs_known: bool) -> Equations | None:

@@ -12,6 +12,7 @@ from beamfem.results.energies import Energy
 from beamfem.results.energy_balance import Balance, balance, driven, masses
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics
+from beamfem.solve.motion.conserving_model import ConservingModel, conserving_model, not_conserved
 
 CHUNK = 8  # steps that are judged together
 _UNRESOLVED = 0.005  # (w h)^6 of vibrations times their share of the kinetic energy; below, energies are not evaluated
@@ -96,24 +97,41 @@ class EnergyJudge:
         good = steps
         if doubtful.any():
             chunks = [chunk for chunk, judged in zip(pairwise(bounds.tolist()), doubtful, strict=True) if judged]
-            good = self._first_refused(times, states, chunks, final)
+            good = self._first_refused(times, states, chunks, cut, final)
         number = int(np.argmax(np.where(ends <= good, speeds, -1.0)))
         if ends[number] <= good and speeds[number] > self._speed:
             self._speed, row = float(speeds[number]), ends[number : number + 1]
             self._fastest = self._solution(times[row], states[row])
         return good
 
-    def _first_refused(self, times: np.ndarray, states: np.ndarray, chunks: list[tuple[int, int]], final: bool) -> int:
+    def _first_refused(
+        self, times: np.ndarray, states: np.ndarray, chunks: list[tuple[int, int]], cut: bool, final: bool
+    ) -> int:
         """Return where the first chunk of steps begins that is refused, or the number of steps."""
         self._evaluate_exchanged()
         for group in [chunks] if self.conservative else _adjacent(chunks):
             rows = sorted({row for first, last in group for row in range(first, last + 1)})
-            found = balance(self._solution(times[rows], states[rows]), _ACCURACY)
+            some = self._solution(times[rows], states[rows])
+            found = balance(some, _ACCURACY, self._energy(some) if cut else None)
             place = {row: i for i, row in enumerate(rows)}
             for first, last in group:
                 if not self._passes(found, place[first], place[last], final):
                     return first
         return len(times) - 1
+
+    @cached_property
+    def _tables(self) -> ConservingModel | None:
+        """Tables for energies, worth their time where many steps are cut; None if they do not tell all of them."""
+        if not self.conservative or not_conserved(self._system) is not None:
+            return None
+        tables = conserving_model(self._system)
+        return tables if tables.others is None else None
+
+    def _energy(self, solution: Solution) -> Energy | None:
+        """Return the energies of rows by tables, if there are any."""
+        if self._tables is None:
+            return None
+        return Energy(*self._tables.energies(self._system, solution.p, solution.v), np.zeros(len(solution)))
 
     def _passes(self, found: Balance, first: int, last: int, final: bool) -> bool:
         """Judge the chunk of steps between two rows of a balance, and take it into account if it is good."""

@@ -7,14 +7,13 @@ from scipy.linalg import LinAlgError
 from scipy.sparse import coo_array, csc_array, csr_array
 
 from beamfem.equations.equations import linearise
-from beamfem.equations.system import System, system_of
+from beamfem.equations.system import system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.kernels.conserving_step import balance, place_vectors
 from beamfem.linalg.lapack import superlu
 from beamfem.linalg.tangent import UNROTATED
-from beamfem.physics.connections import MASS
 from beamfem.results.solution import State
-from beamfem.solve.motion.conserving_model import ConservingModel, conserving_model
+from beamfem.solve.motion.conserving_model import ConservingModel, conserving_model, not_conserved
 from beamfem.solve.motion.equations_of_motion import EquationsOfMotion
 from beamfem.solve.motion.time_marching import initial_acceleration
 
@@ -70,7 +69,8 @@ class EnergyMomentumRun:
         """Return the state after a step. Raises ConvergenceError."""
         system, h, middle = motion.system, end - begin.at, 0.5 * (begin.at + end)
         if self._model is None:
-            _require_conservable(system)
+            if (why := not_conserved(system)) is not None:
+                raise InputError(f"EnergyMomentum is not for {why}; use GeneralizedAlpha or Radau")
             self._model = conserving_model(system)
         model = self._model
         if self._forces is None or system.loads.varying:
@@ -123,26 +123,3 @@ class EnergyMomentumRun:
             return superlu(matrix, full_diagonal=True).solve(-left.ravel()).reshape(left.shape)
         except LinAlgError as error:
             raise ConvergenceError("the tangent of a step is singular") from error
-
-
-def _require_conservable(system: System) -> None:
-    """Raise InputError for what `EnergyMomentum` cannot conserve."""
-    why, zeros = None, np.zeros(system.model.size)
-    moving = [
-        item.name
-        for item in system.connectors.items
-        if item.compiled != MASS
-        and item.tangent((system.reference, zeros, zeros), 0.0, np.zeros(2), (0.0, 0.0, 1.0)).any()
-    ]
-    if any(block.law is not None or block.imposed is not None for block in system.blocks):
-        why = "a section law or imposed strains"
-    elif any(block.damping.any() or block.mass_damping for block in system.blocks):
-        why = "damping of beams"
-    elif system.driven:
-        why = "supports that move"
-    elif len(system.connectors.multipliers):
-        why = "conditions with multipliers"
-    elif moving:
-        why = f"the inertia of {moving[0]}"
-    if why is not None:
-        raise InputError(f"EnergyMomentum is not for {why}; use GeneralizedAlpha or Radau")

@@ -111,10 +111,15 @@ class ConservingModel(NamedTuple):
             result += nodal.T @ force.ravel()
         return result
 
-    def energies(self, system: System, p: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return kinetic, strain and potential energies (rows,) [J] in states p and p' (rows, n), without `others`."""
+    def energies(
+        self, system: System, p: np.ndarray, v: np.ndarray, forces: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return kinetic, strain and potential energies (rows,) [J] in states p and p' (rows, n), without `others`.
+
+        forces (m,): of loads, see `forces`.
+        """
         z, w = self.vectors.of(np.vstack([system.reference, p]), np.vstack([np.zeros_like(v[:1]), v]))
-        potential = ((0.5 * (self.ground @ z.T).T - self.forces(system, 0.0)) * z).sum(axis=1)
+        potential = ((0.5 * (self.ground @ z.T).T - forces) * z).sum(axis=1)
         strain = np.zeros(len(z))
         for block, points in zip(system.blocks, self.points, strict=True):
             reference = block.reference[block.kind]

@@ -120,18 +120,19 @@ class EnergyJudge:
         return len(times) - 1
 
     @cached_property
-    def _tables(self) -> ConservingModel | None:
-        """Tables for energies, worth their time where many steps are cut; None if they do not tell all of them."""
+    def _tables(self) -> tuple[ConservingModel, np.ndarray] | None:
+        """Tables for energies, and the forces of loads: worth their time where steps are cut; None if others act."""
         if not self.conservative or not_conserved(self._system) is not None:
             return None
         tables = conserving_model(self._system)
-        return tables if tables.others is None else None
+        return (tables, tables.forces(self._system, 0.0)) if tables.others is None else None
 
     def _energy(self, solution: Solution) -> Energy | None:
         """Return the energies of rows by tables, if there are any."""
         if self._tables is None:
             return None
-        return Energy(*self._tables.energies(self._system, solution.p, solution.v), np.zeros(len(solution)))
+        tables, forces = self._tables
+        return Energy(*tables.energies(self._system, solution.p, solution.v, forces), np.zeros(len(solution)))
 
     def _passes(self, found: Balance, first: int, last: int, final: bool) -> bool:
         """Judge the chunk of steps between two rows of a balance, and take it into account if it is good."""

@@ -2,6 +2,7 @@
 
 import copy
 import inspect
+import json
 import pickle
 import re
 import subprocess
@@ -53,12 +54,18 @@ def test_the_docstring_of_the_package_lists_every_public_name_once():
     assert max(map(len, bf.__doc__.splitlines())) <= 120
 
 
-def test_type_checkers_find_what_the_package_has(tmp_path):
+def test_type_checkers_find_what_the_package_has_and_nothing_in_examples_and_tutorials(tmp_path):
+    root = Path(bf.__file__).parents[1]
+    for path in (root / "docs" / "tutorials").glob("*.ipynb"):
+        cells = json.loads(path.read_text())["cells"]
+        code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+        (tmp_path / f"{path.stem}.py").write_text("\n\n".join(code))
     shown = "\n".join(f"reveal_type(bf.{name})" for name in bf.__all__)
     (tmp_path / "script.py").write_text(f"import beamfem as bf\n\n{shown}\nbf.solve_statik\nbf.__version__.upper()\n")
     command = [sys.executable, "-m", "mypy", "--config-file", "", "--follow-imports", "silent"]
-    settings = ["--ignore-missing-imports", "--cache-dir", str(tmp_path), str(tmp_path / "script.py")]
-    found = subprocess.run([*command, *settings], capture_output=True, text=True, check=False).stdout
+    settings = ["--strict", "--ignore-missing-imports", "--cache-dir", str(tmp_path)]
+    scripts = map(str, [*tmp_path.glob("*.py"), *(root / "examples").glob("*.py")])
+    found = subprocess.run([*command, *settings, *scripts], capture_output=True, text=True, check=False).stdout
     assert found.count("note: Revealed type is") == len(bf.__all__)
     assert [line for line in found.splitlines() if "error:" in line or '"Any"' in line] == [
         line for line in found.splitlines() if 'Module has no attribute "solve_statik"' in line

@@ -23,13 +23,11 @@ from beamfem.solve.accuracy.carried_start import carried
 from beamfem.solve.accuracy.coarse_mesh import warned_of_coarse_motion
 from beamfem.solve.motion.consistent_rows import finished_rows
 from beamfem.solve.motion.constraints import impact, require_met, stopped_by_conditions
-from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.error_control import march_to_tolerance
 from beamfem.solve.motion.events import Event
-from beamfem.solve.motion.generalized_alpha import Scheme
 from beamfem.solve.motion.initial_velocity import put_onto_supports, require_on_supports, start_velocity
 from beamfem.solve.motion.motion_error import MOST_MESHES, motion_attempt
-from beamfem.solve.motion.motion_plan import planned, settings_of
+from beamfem.solve.motion.motion_plan import AnyIntegrator, planned, settings_of
 from beamfem.solve.motion.period_error import detuned
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.saved_rows import SavedRows
@@ -46,7 +44,7 @@ def simulate(
     model: Model,
     duration: float,
     step: float | None = None,
-    integrator: Scheme | Integrator | None = None,
+    integrator: AnyIntegrator | None = None,
     start: State | Solution | None = None,
     velocity: RigidVelocity | Callable[[np.ndarray], np.ndarray] | None = None,
     save_every: int = 1,

@@ -26,12 +26,11 @@ from beamfem.results.solution_checks import warned
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.motion.cut_steps import StepCutter, keep_momentum
 from beamfem.solve.motion.energy_judgement import CHUNK
-from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.error_control import Reached, march_to_tolerance
 from beamfem.solve.motion.events import Event
 from beamfem.solve.motion.generalized_alpha import Scheme, is_scheme
 from beamfem.solve.motion.marching_by_step import Memory
-from beamfem.solve.motion.motion_plan import MotionPlan, MotionSettings, planned, settings_of
+from beamfem.solve.motion.motion_plan import AnyIntegrator, MotionPlan, MotionSettings, planned, settings_of
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.saved_rows import SavedRows
 from beamfem.solve.motion.start_acceleration import initial_acceleration
@@ -111,7 +110,7 @@ def resume(
     model: Model | None = None,
     *,
     events: Sequence[Event] = (),
-    integrator: Scheme | Integrator | None = None,
+    integrator: AnyIntegrator | None = None,
     duration: float | None = None,
     watch: bool = False,
 ) -> Solution:
@@ -386,9 +385,7 @@ def _is_plain(fields: dict[str, Any]) -> bool:
     return all(isinstance(value, bool | int | float | str | None) for value in fields.values())
 
 
-def _settings_in(
-    begun: dict[str, Any], integrator: Scheme | Integrator | None, events: Sequence[Event]
-) -> MotionSettings:
+def _settings_in(begun: dict[str, Any], integrator: AnyIntegrator | None, events: Sequence[Event]) -> MotionSettings:
     """Return the settings of a file, with what it cannot hold. Raises InputError for another integrator, or events."""
     name, fields = begun["integrator"]
     if integrator is None:

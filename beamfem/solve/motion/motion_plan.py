@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 
@@ -9,17 +10,19 @@ from beamfem.equations.compilation_notice import announce_compilation
 from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError
 from beamfem.model.model import Model
+from beamfem.solve.motion.energy_momentum import EnergyMomentum
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.events import Event, Watch
 from beamfem.solve.motion.generalized_alpha import GeneralizedAlpha, Scheme, is_scheme, require_rule
 from beamfem.solve.motion.saved_rows import SavedRows
 from beamfem.solve.motion.stable_step import stable_step
-from beamfem.solve.motion.stage_coefficients import Explicit, has_stages, is_explicit
+from beamfem.solve.motion.stage_coefficients import Explicit, Staged, has_stages, is_explicit
 from beamfem.solve.motion.time_steps import Stretch, stretches
 from beamfem.solve.start.functions_of_time import FunctionOfTime, functions_of_time
 from beamfem.solve.start.start_checks import refuse_frame, require_memory
 from beamfem.validation import count, positive, shown
 
+AnyIntegrator = Scheme | Integrator | Staged | EnergyMomentum  # as users give it
 _PARTS = 1000  # of a motion whose steps follow a tolerance, within which kinks of loads are found
 
 
@@ -75,7 +78,7 @@ class MotionPlan:
 def settings_of(
     duration: float,
     step: float | None,
-    integrator: Scheme | Integrator | None,
+    integrator: AnyIntegrator | None,
     save_every: int,
     tolerance: float | None,
     save_at: Sequence[float] | np.ndarray | None,
@@ -104,7 +107,8 @@ def settings_of(
             f"{type(integrator).__name__} needs an attribute order, of its error, to follow a tolerance; give a step"
         )
     at = None if save_at is None else _rows_at(save_at)
-    return MotionSettings(duration, step, integrator, save_every, tolerance, at, events)
+    known = cast(Scheme | Integrator, integrator)  # those with stages have their own loop
+    return MotionSettings(duration, step, known, save_every, tolerance, at, events)
 
 
 def planned(model: Model, settings: MotionSettings, in_memory: bool) -> MotionPlan:

@@ -7,7 +7,7 @@ from numbers import Real
 from os import PathLike
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,6 +20,11 @@ from beamfem.validation import flag, require_known, shown
 from beamfem.view.html_page import Entry, Part, Table, write_page
 from beamfem.view.notebook_paths import file_to_write
 from beamfem.view.plots import COLOURS, MARKERS, new_figure, save_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
+    from xarray import Dataset
 
 WORK = "accuracy or elements"  # refinement of studies that compare the work of fixed and adaptive meshes
 EXPLANATION = (
@@ -159,11 +164,11 @@ class Convergence:
         """Write the table of points with all digits; nan if there is no error or order. Raises FileError."""
         tabulate.write_csv(path, *self.points())
 
-    def to_pandas(self) -> Any:
+    def to_pandas(self) -> "DataFrame":
         """Return the table of points, without solutions, as a pandas.DataFrame. Raises MissingPackageError."""
         return tabulate.as_pandas(*self.points())
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> "Dataset":
         """Return the numbers of the study over curves and refinement as an xarray.Dataset. Raises MissingPackageError.
 
         Value, error, order, GCI, seconds [s] and the other numbers (curve, refinement), nan where a curve has no such
@@ -193,7 +198,7 @@ class Convergence:
         coordinates = {"curve": [curve.label for curve in self.curves], self.refine: refinement}
         return xarray.Dataset(data, coordinates, {"function": self.function, "quantity": self.quantity})
 
-    def plot(self, path: str | PathLike[str] | None = None, *, against: str | None = None, ax: Any = None) -> Any:
+    def plot(self, path: str | PathLike[str] | None = None, *, against: str | None = None, ax: Any = None) -> "Figure":
         """Plot the error against the refinement on logarithmic axes, one line per curve.
 
         against: another number that the function returns, such as that of unknowns, or "seconds", which are the default

@@ -25,6 +25,8 @@ from beamfem.units import Units, units_of
 from beamfem.validation import items, members, of_package, one_of, shown
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from beamfem.mesh.beam_mesh import BeamMesh
     from beamfem.mesh.model_meshes import NodesNeeded, NumberedMeshes
 
@@ -473,7 +475,7 @@ class Model:
 
         return with_imperfection(self, modes, size, mode)
 
-    def plot(self, path: str | PathLike[str] | None = None, *, ax: Any = None) -> Any:
+    def plot(self, path: str | PathLike[str] | None = None, *, ax: Any = None) -> "Figure":
         """Draw the undeformed model with its supports and loads and return the figure.
 
         Nothing is solved, so mechanisms and overloaded models can be drawn too. path: file to write (PNG, SVG, PDF);

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +19,10 @@ from beamfem.results.section_forces import stations
 from beamfem.results.solution import Solution
 from beamfem.tables import as_html, as_pandas, as_text, few
 from beamfem.validation import flag, items, shown
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
 
 _LISTED = ("normal", "shear", "moment", "tension", "compression", "von_mises", "utilisation")
 _BOTH = (("smallest", -1.0), ("largest", 1.0))
@@ -123,11 +127,13 @@ class Envelope:
             place = float(mesh.arc_length(np.array([element]), np.array([xi]))[0]) if row >= 0 else np.nan
             yield (sign * value if row >= 0 else -np.inf), place, case
 
-    def to_pandas(self) -> Any:
+    def to_pandas(self) -> "DataFrame":
         """Return the table as a pandas.DataFrame. Raises MissingPackageError without pandas."""
         return as_pandas(*self.table())
 
-    def plot(self, beam: Beam, name: str = "moment", path: str | PathLike[str] | None = None, *, ax: Any = None) -> Any:
+    def plot(
+        self, beam: Beam, name: str = "moment", path: str | PathLike[str] | None = None, *, ax: Any = None
+    ) -> "Figure":
         """Draw the envelope of a quantity along a beam, with the curves of its cases, and return the figure.
 
         path: file to write (PNG, SVG, PDF); ax: axes to draw in, see `Solution.plot`. Raises InputError for an unknown

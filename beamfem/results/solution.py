@@ -24,6 +24,10 @@ from beamfem.results.status import Statistics, Status, counted
 from beamfem.validation import number_below, shown, whole
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
+    from xarray import Dataset
+
     from beamfem.results.beam_stress import BeamStress, Part, Peak
     from beamfem.results.energies import Energy
     from beamfem.results.energy_balance import EnergyDrift
@@ -591,7 +595,7 @@ class Solution:
         supports: bool = True,
         loads: bool = True,
         ax: Any = None,
-    ) -> Any:
+    ) -> "Figure":
         """Draw the deformed body, at several steps later ones darker, and return the figure.
 
         path: file to write (PNG, SVG, PDF); folders are created. colour: by default the time or load factor; or a field
@@ -621,7 +625,7 @@ class Solution:
         path: str | PathLike[str] | None = None,
         *,
         ax: Any = None,
-    ) -> Any:
+    ) -> "Figure":
         """Plot a quantity at one or several points against time or load factor and return the figure.
 
         quantity: "displacement", "ux", "uy", "position" [m], "velocity" [m/s], "acceleration" [m/s^2], "rotation"
@@ -645,7 +649,7 @@ class Solution:
         *,
         row: int = -1,
         ax: Any = None,
-    ) -> Any:
+    ) -> "Figure":
         """Draw the diagram of a section force, a stress or another field along a beam and return the figure.
 
         name: one of `colour` in `plot`; path: file to write (PNG, SVG, PDF); row: load step or time; ax: axes to draw
@@ -659,7 +663,7 @@ class Solution:
 
         return plot_along(self, beam, name, path, row, ax)
 
-    def plot_curve(self, x: Any, y: Any, path: str | PathLike[str] | None = None, *, ax: Any = None) -> Any:
+    def plot_curve(self, x: Any, y: Any, path: str | PathLike[str] | None = None, *, ax: Any = None) -> "Figure":
         """Plot one quantity against another, one point per row, and return the figure.
 
         A quantity is a pair of a name and a point, such as ("uy", beam.end), with the names "ux", "uy", "x", "y" [m],
@@ -681,7 +685,7 @@ class Solution:
 
     def plot_load_displacement(
         self, point: Point, quantity: str = "uy", path: str | PathLike[str] | None = None, *, ax: Any = None
-    ) -> Any:
+    ) -> "Figure":
         """Plot the load factor against "ux", "uy" [m] or "rotation" [rad] of a point and return the figure.
 
         Limit points (circles) and bifurcations (diamonds) of a `Path` are marked, each with its load factor. path: file
@@ -783,7 +787,7 @@ class Solution:
 
         write_vtk(self, path, geometry=geometry, fields=fields, single=single)
 
-    def to_xarray(self, beam: Beam | None = None, *, errors: bool = False) -> Any:
+    def to_xarray(self, beam: Beam | None = None, *, errors: bool = False) -> "Dataset":
         """Return an xarray.Dataset of results along a beam, or along all beams, over the steps.
 
         Positions, rotations, section forces, stresses if sections have them, and energies; the statistics are its
@@ -801,7 +805,7 @@ class Solution:
 
         return to_xarray(self, beam, errors)
 
-    def to_pandas(self, beam: Beam | None = None, *, forces: bool = False, errors: bool = False) -> Any:
+    def to_pandas(self, beam: Beam | None = None, *, forces: bool = False, errors: bool = False) -> "DataFrame":
         """Return a pandas.DataFrame of results along a beam, or along all beams, with a row for each step and station.
 
         Its index is time [s] or load_factor, number of the beam and arc_length [m]. A node between two elements has two

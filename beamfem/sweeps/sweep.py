@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +19,11 @@ from beamfem.sweeps.result_cache import ResultCache
 from beamfem.sweeps.workers import ExecutorFactory, Failure, Outcome, TaskRunner
 from beamfem.validation import flag, require_known, shown
 from beamfem.view.plots import COLOURS, MARKERS, legend_over, new_figure, save_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
+    from xarray import Dataset
 
 _ROWS_REPORTED = 40
 _ROWS_PRINTED = 6
@@ -170,11 +175,11 @@ class Sweep:
         """Return the table of all points, without solutions, as Markdown text."""
         return tabulate.as_markdown(*self._rows())
 
-    def to_pandas(self) -> Any:
+    def to_pandas(self) -> "DataFrame":
         """Return the table of all points, without solutions, as a pandas.DataFrame. Raises MissingPackageError."""
         return tabulate.as_pandas(*self._rows())
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> "Dataset":
         """Return the numbers of all points as an xarray.Dataset over the varied parameters; nan for points that failed.
 
         Arrays of equal shape add dimensions of their own; solutions are left out. Raises MissingPackageError without
@@ -203,7 +208,7 @@ class Sweep:
         path: str | PathLike[str] | None = None,
         *,
         ax: Any = None,
-    ) -> Any:
+    ) -> "Figure":
         """Plot a result against a parameter, one curve for each combination of the others, without points that failed.
 
         value: name of the result; over: name of a varied numeric parameter; by default the first of each; path: file to

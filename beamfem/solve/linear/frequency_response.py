@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -17,6 +17,9 @@ from beamfem.results.solution import Solution, State
 from beamfem.solve.linear.linear_model import LinearModel, Quantity
 from beamfem.solve.linear.linearise import linearise
 from beamfem.validation import items, not_negative
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +65,7 @@ class FrequencyResponse:
         """Phases of the response [rad], (m,), from -pi to pi; negative where it lags behind the load."""
         return np.angle(self.values)
 
-    def plot(self, path: str | PathLike[str] | None = None, *, ax: Any = None) -> Any:
+    def plot(self, path: str | PathLike[str] | None = None, *, ax: Any = None) -> "Figure":
         """Draw amplitude and phase against frequency and return the figure.
 
         path: file to write (PNG, SVG, PDF); ax: two axes to draw in, see `Solution.plot`. Raises InputError for another

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -31,6 +31,11 @@ from beamfem.solve.start.start_state import resting_state
 from beamfem.tables import as_pandas
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared, vector
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
+    from xarray import Dataset
 
 _REAL = 1e-8  # imaginary parts of lambda below this fraction are round-off
 _SPARE = 4  # eigenvalues found beyond those asked for
@@ -269,7 +274,7 @@ class Modes:
         """
         return self.solution(mode, amplitude, 2)[0]
 
-    def to_pandas(self) -> Any:
+    def to_pandas(self) -> "DataFrame":
         """Return frequency [Hz], growth [1/s] and rigid motion of the modes as a table, one row per mode.
 
         Raises MissingPackageError without pandas.
@@ -278,7 +283,7 @@ class Modes:
         rows = list(zip(self.frequencies.tolist(), self.growth.tolist(), rigid, strict=True))
         return as_pandas(("frequency", "growth", "rigid"), rows)
 
-    def to_xarray(self, beam: Beam | None = None) -> Any:
+    def to_xarray(self, beam: Beam | None = None) -> "Dataset":
         """Return frequencies [Hz], growth [1/s] and rigid motions (mode,), and shapes ux, uy (mode, station), as a
         Dataset.
 
@@ -292,7 +297,7 @@ class Modes:
 
         return modes_to_xarray(self, beam)
 
-    def plot(self, path: str | PathLike[str] | None = None, *, most: int = 6, ax: Any = None) -> Any:
+    def plot(self, path: str | PathLike[str] | None = None, *, most: int = 6, ax: Any = None) -> "Figure":
         """Draw at most `most` modes, each with its frequency, and return the figure.
 
         Dark: the mode at its largest; pale: half a period later; dashed: the reference. path: file to write (PNG, SVG,

@@ -5,7 +5,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import pairwise
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -42,6 +42,11 @@ from beamfem.solve.start.start_state import last_state
 from beamfem.tables import as_pandas
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
+    from xarray import Dataset
 
 _LARGEST_MOVEMENT = 2.0  # of the model, as if it were turned over: the path is followed no further
 _LARGEST_LOAD = 300.0  # times the load factors of linear analysis: the path is followed no further
@@ -179,7 +184,7 @@ class Buckling:
         statistics = Statistics(0, 1, 0, "a critical state and its mode")
         return Solution(self.model, True, at, p, np.zeros_like(p), np.zeros_like(p), statistics)
 
-    def to_pandas(self) -> Any:
+    def to_pandas(self) -> "DataFrame":
         """Return load factor, kind and uncertainty of the critical points as a table, one row per point.
 
         Raises MissingPackageError without pandas.
@@ -187,7 +192,7 @@ class Buckling:
         rows = list(zip(self.load_factors.tolist(), self.kinds, self.uncertainty.tolist(), strict=True))
         return as_pandas(("load_factor", "kind", "uncertainty"), rows)
 
-    def to_xarray(self, beam: Beam | None = None) -> Any:
+    def to_xarray(self, beam: Beam | None = None) -> "Dataset":
         """Return load factors [-], kinds and uncertainty (mode,), and shapes ux, uy (mode, station), as a Dataset.
 
         Shapes are along a beam, or along all beams, scaled as `modes`. Raises InputError for a beam of another model,
@@ -197,7 +202,7 @@ class Buckling:
 
         return buckling_to_xarray(self, beam)
 
-    def plot(self, path: str | PathLike[str] | None = None, *, most: int = 6, ax: Any = None) -> Any:
+    def plot(self, path: str | PathLike[str] | None = None, *, most: int = 6, ax: Any = None) -> "Figure":
         """Draw at most `most` modes, each with its load factor, and return the figure.
 
         Pale: the critical state; dark: the same state plus the mode; dashed: the reference. path: file to write (PNG,

@@ -54,7 +54,7 @@ class Analysis:
         """Solve the model; asked: load factors at which outputs need a state. Raises InputError, ConvergenceError."""
         keys: dict[str, Any] = dict(self.keys)
         for name in {"about", "start"}.intersection(keys):
-            keys[name] = None if keys[name] is None else solve_static(model, at=[keys[name]])[-1]
+            keys[name] = None if keys[name] is None else solve_static(model, at=[keys[name]])
         if self.kind == "static":
             return Found(_static(model, asked, **keys))
         if self.kind == "path":

@@ -271,6 +271,25 @@ def test_modes_about_a_state_are_not_left_on_its_coarse_mesh(given):
     assert precise.frequencies == pytest.approx(exact, rel=1e-7)
 
 
+@pytest.mark.parametrize("loaded", [True, False])
+def test_linear_models_of_default_elements_are_not_those_of_one_element(loaded):
+    beam = auto()
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -1e-3 * EI))])
+    about = bf.solve_static(model) if loaded else None
+    exact = cantilever_frequencies(6)  # but for shear and rotary inertia
+    linear = bf.linearise(model, about)
+    assert linear.modes(6).frequencies == pytest.approx(exact, rel=0.01)
+    assert linear.modes(6).frequencies == pytest.approx(bf.solve_modes(model, 6, about).frequencies, rel=2e-4)
+    damper = bf.SpringDamper(beam.end, (1.0, 1.0), stiffness=1e-6, damping=1e-6)
+    damped = bf.linearise(model.with_(connectors=[damper]), about)
+    assert damped.modes(6).frequencies == pytest.approx(exact, rel=0.01)
+    tip = bf.reduce(model, [beam.end], 4, about)
+    assert tip.modes(3).frequencies == pytest.approx(exact[:3], rel=0.01)
+    push, sides = bf.PointForce(beam.end, (0.0, 1.0)), exact[2] * np.array([0.95, 1.0, 1.05])
+    response = bf.frequency_response(model, push, ("uy", beam.end), sides, about)
+    assert response.amplitude.argmax() == 1
+
+
 def test_buckling_from_a_state_is_not_left_on_its_coarse_mesh():
     beam = auto()
     model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-EI, 0.0))])

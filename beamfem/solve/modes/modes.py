@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 _REAL = 1e-8  # imaginary parts of lambda below this fraction are round-off
+_LOWEST = 10  # modes that default elements are refined for where no number is given
 _SPARE = 4  # eigenvalues found beyond those asked for
 _LARGE = 2.0**30  # acceleration beside whose inertia forces all others are round-off
 
@@ -345,6 +346,7 @@ def solve_modes(
     array([ 20.85, 129.12])
     """
     whole_number("count", count)
+    refuse_dampers(system_of(model, static=True))
     own = model
     model, accuracy = prepared(model, accuracy, about)
     if accuracy is not None:
@@ -357,6 +359,15 @@ def solve_modes(
             remedy = "give the whole solution, which tells its history, or find it with more elements"
             warn_of([kept_coarse(f"a frequency is off by about {100.0 * off:.2g} %", remedy)])
     return modes
+
+
+def meshed_for_modes(model: Model, about: State | Solution | None) -> tuple[Model, State | Solution | None]:
+    """Return a model whose default elements are refined for its lowest modes about a state, and the state on them."""
+    model, accuracy = prepared(model, None, about)
+    if accuracy is None:
+        return model, about
+    modes = refined_until(model, accuracy, lambda model: _attempt(model, _LOWEST, about))
+    return modes.model, modes.state
 
 
 def _attempt(model: Model, count: int, about: State | Solution | None) -> tuple[Modes | None, float, Shares]:
@@ -383,7 +394,6 @@ def _error(modes: Modes, finer: Modes) -> float:
 def _modes(model: Model, count: int, about: State | Solution | None) -> tuple[Modes, Sequence[Finding]]:
     """Return the modes, and warnings of them."""
     system = system_of(model, static=True)
-    refuse_dampers(system)
     p, load_factor = resting_state(system, about)
     unknown = len(system.free_dofs)
     if count > unknown:

@@ -7,7 +7,7 @@ import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.element import coordinates
-from beamfem.element.fields import Axis
+from beamfem.element.fields import Axis, cross, dot
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import interpolate, reference_position
 from beamfem.mesh.section_stress import Distributions, distributions, layers
@@ -159,3 +159,10 @@ class AxisPoints:
         step = _DIFFERENCE / np.maximum(np.abs(v).max(axis=1, initial=0.0), np.finfo(float).tiny)[:, None]
         after, before = (self.velocities(p + way * v, v) for way in (step, -step))
         return self.velocities(p, a) + (after - before) / (2.0 * step[..., None])
+
+    def angular_velocities(self, p: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Return the angular velocity of the sections (steps, points) [rad/s]."""
+        now, rate = self.now(p), rate_at(self.mesh, p, v, self.element, self.xi)
+        turns = "r_s" if self.mesh.beam.element.forces.turns_with == "r_x" else "d"
+        vector = getattr(now, turns)
+        return cross(vector, getattr(rate, turns)) / dot(vector, vector)

@@ -1,7 +1,7 @@
 """Energies of a solution, and the work done on a motion and what it dissipates, by the trapezoidal rule."""
 
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -11,16 +11,27 @@ from beamfem.equations.connectors import Connectors
 from beamfem.equations.equations import residual
 from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.equations.system import System, system_of
-from beamfem.model.beam import Point
+from beamfem.errors import InputError
+from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
 from beamfem.parts.at_points import ANALYTIC
 from beamfem.physics.stations import STATIONS
 from beamfem.reprs import brief
 from beamfem.results.axis_points import nodal_vectors
-from beamfem.results.postprocess import kinetic_energy
-from beamfem.results.reactions import energies_of
+from beamfem.results.postprocess import kinetic_energy, strain_energies
+from beamfem.results.reactions import energies_of, energies_of_part
 from beamfem.results.solution import Solution
-from beamfem.results.solution_system import loading
+from beamfem.results.solution_system import imposed_measures, loading
+
+
+@dataclass(frozen=True)
+class PartEnergy:
+    """Energies of a beam or part (steps,) [J], and the power [W] that the part exerts on the beams, nan for a beam."""
+
+    kinetic: np.ndarray
+    strain: np.ndarray
+    potential: np.ndarray
+    power: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -53,6 +64,22 @@ class Energy:
     def total(self) -> np.ndarray:
         """Sum of kinetic, strain and potential energy (steps,) [J]."""
         return self.kinetic + self.strain + self.potential
+
+    def of(self, part: Any) -> PartEnergy:
+        """Return the energies of a beam, connector, mass or motor, and the power that it exerts on the beams.
+
+        A mass has the potential of gravity; that of beams is in `potential` as a whole. Raises InputError for anything
+        else, and for energies that are of no solution.
+        """
+        if self.solution is None:
+            raise InputError("these energies are of no solution, of which parts could be known")
+        own, none = self.solution, np.zeros(len(self.kinetic))
+        if not isinstance(part, Beam):
+            kinetic, stored, power = energies_of_part(own, part).T
+            return PartEnergy(kinetic, none, stored, power)
+        mesh = own.model.meshes[own.model.number_of(part)]
+        strain = strain_energies(mesh, own.p, imposed_measures(own, mesh))[:, 0]
+        return PartEnergy(kinetic_energy(mesh, own.p, own.v), strain, none, np.full(len(none), np.nan))
 
     @cached_property
     def _exchange(self) -> tuple[np.ndarray, np.ndarray]:

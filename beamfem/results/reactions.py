@@ -2,7 +2,9 @@
 
 from collections import defaultdict
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -128,7 +130,7 @@ def multipliers(solution: Solution, connector: Contribution) -> np.ndarray:
     return solution.p[:, numbers]
 
 
-def _bound(solution: Solution, connector: Contribution) -> list[Connector]:
+def _bound(solution: Solution, connector: Any) -> list[Connector]:
     bound = [item for item in loading(solution)[0].connectors.items if item.given is connector]
     if bound:
         return bound
@@ -141,6 +143,21 @@ def energies_of(connectors: Connectors, solution: Solution, times: np.ndarray) -
         return np.zeros((len(solution), 2))
     energies = [connectors.energies(state, at) for state, at in _states(solution, times)]
     return np.array(energies).reshape(-1, 2)
+
+
+def energies_of_part(solution: Solution, part: Any) -> np.ndarray:
+    """Return kinetic and potential energy [J], and power [W], of a connector, mass or motor (steps, 3)."""
+    if isinstance(part, Motor) and any(part is load for load in solution.model.loads):
+        signs = (-1.0, 1.0)[-len(part.points) :]
+        speeds = [sign * solution.angular_velocity(point) for sign, point in zip(signs, part.points, strict=True)]
+        return np.column_stack([np.zeros((len(solution), 2)), _of_motor(solution, part)[:, 2] * sum(speeds)])
+    items, (system, times) = _bound(solution, part), loading(solution)
+    power = np.zeros(len(solution))
+    for row, (state, at) in enumerate(_states(solution, times)):
+        gravity = system.connectors.gravity(at)
+        for item in items:
+            power[row] -= item.force_in(state, at, gravity)[: len(item.dofs)] @ state[1][item.dofs]
+    return np.column_stack([energies_of(replace(system.connectors, items=tuple(items)), solution, times), power])
 
 
 def _states(solution: Solution, times: np.ndarray) -> list[tuple[Motion, float]]:

@@ -336,6 +336,11 @@ class Solution:
         points = AxisPoints.at(self.model.mesh_of(point), [point.fraction])
         return points.accelerations(self.p, self.v, self.a)[:, 0]
 
+    def angular_velocity(self, point: Point) -> np.ndarray:
+        """Return the angular velocity of the section (steps,) [rad/s]."""
+        points = AxisPoints.at(self.model.mesh_of(point), [point.fraction])
+        return points.angular_velocities(self.p, self.v)[:, 0]
+
     def rotation(self, point: Point) -> np.ndarray:
         """Return the rotation of the section (steps,) [rad], counter-clockwise positive, full turns included."""
         from beamfem.results.full_turns import rotation
@@ -503,6 +508,8 @@ class Solution:
         --------
         >>> energy = solution.energy()
         >>> energy.strain.round(1)
+        array([  0. , 152.6])
+        >>> energy.of(beam).strain.round(1)
         array([  0. , 152.6])
         """
         from beamfem.results.energies import Energy, potential, recorded

@@ -181,6 +181,34 @@ def test_a_mass_on_a_spring_swings_as_its_closed_form(damping):
     assert errors[2] < 2e-6
     assert 3.5 < errors[0] / errors[1] < 4.5
     assert 3.5 < errors[1] / errors[2] < 4.5
+    motion = bf.simulate(
+        model,
+        1.0,
+        1e-2,
+        velocity=lambda r: np.stack([0.1 * r[..., 0], 0.0 * r[..., 0]], axis=-1),
+        integrator=bf.Gauss(4),
+    )
+    expected = 0.1 / swing * np.exp(-rate * motion.at) * np.sin(swing * motion.at)
+    # a third of the mass of the rod swings too, 2e-10 of that of the ball
+    assert motion.displacement(rod.end)[:, 0] == pytest.approx(expected, abs=1e-10)
+
+
+def test_a_rod_on_a_torsion_spring_swings_as_its_closed_form():
+    """J phi'' + c phi' + k phi = 0 of a rod in a hinge with a torsion spring, at large angles."""
+    stiff = bf.Material(2.1e15, 0.3, 7850.0)
+    post = bf.Beam(bf.Line((0, -0.1), (0, 0)), 1, bf.CRBF(2), SQUARE, stiff)
+    rod = bf.Beam(bf.Line((0, 0), (0.5, 0)), 1, bf.CRBF(2), SQUARE, stiff)
+    spring, inertia, area = bf.TorsionSpring(post.end, rod.start, 20.0, 0.1), 0.05, 1e-4
+    about = 7850.0 * area * (0.5**3 / 3 + 0.5 * area / 12) + inertia
+    disc, joint = bf.PointMass(rod.start, 1e-6, inertia), bf.Hinge(post.end, rod.start)
+    model = bf.Model([post, rod], [bf.Clamp(post.start)], joints=[joint], connectors=[spring], masses=[disc])
+    start = bf.solve_static(model.with_loads([bf.PointMoment(rod.end, 12.0)]))[-1]
+    motion = bf.simulate(model, 0.5, 5e-4, start=start)
+    rate = 0.1 / (2 * about)
+    swing = np.sqrt(20.0 / about - rate**2)
+    expected = np.cos(swing * motion.at) + rate / swing * np.sin(swing * motion.at)
+    expected *= 12.0 / 20.0 * np.exp(-rate * motion.at)
+    assert motion.rotation(rod.start) == pytest.approx(expected, abs=1e-4)
 
 
 def test_a_torsion_spring_in_a_hinge_turns_by_the_moment_over_its_stiffness():

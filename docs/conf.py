@@ -6,6 +6,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
 
+import other_projects
 from drawn_by_pages import draw, show, with_pictures
 from plain_docstrings import as_markup, without_constants
 
@@ -13,12 +14,14 @@ project = "beamfem"
 version = release = installed("beamfem")
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax", "sphinx-mathjax-offline"]
 extensions += ["sphinx_design", "sphinx_copybutton", "sphinx.ext.viewcode"]  # cards, copy buttons, links to the source
-exclude_patterns = ["_pictures"]  # notebooks to download
+extensions += ["sphinx.ext.intersphinx"]
+intersphinx_mapping = other_projects.intersphinx_mapping(Path(__file__).parent / "_inventories")
+exclude_patterns = ["_pictures", "_inventories"]  # notebooks to download
 myst_enable_extensions = ["amsmath", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 nb_execution_mode = "off"  # tutorials have their outputs
 html_theme = "furo"
-html_title = "beamfem"
+html_title = f"beamfem {release}"
 html_static_path = ["_static"]
 html_css_files = ["wide.css"]
 html_show_copyright = False

@@ -197,6 +197,7 @@ class StepCutter:
             judged = self.judge.accept(times, rows.states[: good + 1], level > 0, good < count, final)
             if judged < good:
                 good, last, self.why = judged, min(judged + CHUNK, count), _REFUSED
+                done = good if self.judge.refuses_jumps else done
         if good == count or final:
             return good, None
         if good > 0:

@@ -50,6 +50,11 @@ class EnergyJudge:
         self._drift = self._total = 0.0
         self._parts = np.empty((3, 0))  # extreme kinetic, strain and potential energies so far
 
+    @property
+    def refuses_jumps(self) -> bool:
+        """Whether steps that it refuses have found another solution, and are of no use."""
+        return self._share >= BROKEN
+
     def memory(self) -> dict[str, np.ndarray]:
         """Return what `recall` needs to go on with the judgement of the same motion."""
         numbers = [self._speed, self._speed_evaluated, self._drift, self._total]

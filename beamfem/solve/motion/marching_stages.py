@@ -61,7 +61,13 @@ class StageSteps(StepsInCalls):
         size = self._statistics.correction
         if self._rule.explicit:
             return "it moves the model by more than its size, so that it is too long to be stable"
-        return f"the iteration on its stages did not converge; the last correction was {size:.2e} of the model"
+        of = ", which leave vibrations that steps do not resolve undamped, unlike Radau," if self._undamped else ""
+        return f"the iteration on its stages{of} did not converge; the last correction was {size:.2e} of the model"
+
+    @property
+    def _undamped(self) -> bool:
+        """Whether the end of a step is no stage, as in Gauss methods."""
+        return len(self._rule.samples) > len(self._rule.nodes)
 
     def _advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """Do what `advance` does in one compiled call."""

@@ -331,6 +331,17 @@ def test_motions_that_keep_the_coarse_mesh_of_a_moving_state_warn_of_it():
         bf.simulate(model, 0.05, 5e-4, start=moving, accuracy=1e-4)
 
 
+def test_modes_about_a_state_that_does_not_tell_its_history_warn_of_its_coarse_mesh():
+    mild = bf.ElasticPlastic(youngs_modulus=2.1e11, yield_stress=2.5e8, poisson_ratio=0.3, density=7850.0)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), section=bf.Fibres(bf.Rectangle(0.01, 0.01), mild))
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -50.0))])  # yields above 41.7 N
+    state = bf.solve_static(model, steps=2)
+    whole = bf.solve_modes(model, 3, about=state)
+    assert whole.frequencies[2] == pytest.approx(146.4, rel=0.01)  # of the elastic cantilever
+    with pytest.warns(bf.CoarseMeshWarning, match="a frequency is off by about .*; give the whole solution"):
+        bf.solve_modes(model, 3, about=state[-1])
+
+
 def test_only_results_of_the_same_beams_have_its_mesh():
     _, model = model_of(bf.CRBF(3), 4, bent)
     other, _ = model_of(bf.CRBF(3), 4, bent)

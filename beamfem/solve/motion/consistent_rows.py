@@ -20,20 +20,21 @@ _ENTRIES = 1_000_000  # of gradients at a time
 _OFF = 1e-12  # of the model: gap of a condition that is corrected
 _CORRECTIONS = 3  # of positions, at most
 _NEAR = 2.0**-7  # of the model, or rad: step of differences along the velocity
+_LARGEST = 1e6  # ratio of impulses to rates, above which conditions depend on each other in a state
 _SINGULAR = 1e-10  # of the largest compliance of the conditions
 
 
 class _Compliance(NamedTuple):
     """Coordinates (u,) that conditions and bodies act on, and the accelerations (n, u) by forces on them.
 
-    conditions, bodies: their parts with the places of their coordinates among these, and which of its conditions count;
-    still: inertia (u, u) of the
-    bodies in the reference; numbers (k,): of the multipliers.
+    conditions, bodies: their parts with the places of their coordinates among these; of a part with conditions also
+    which of them count, and their rows among all; still: inertia (u, u) of the bodies in the reference; numbers (k,):
+    those of the multipliers.
     """
 
     dofs: np.ndarray
     moved: np.ndarray
-    conditions: tuple[tuple[Connector, np.ndarray, np.ndarray], ...]
+    conditions: tuple[tuple[Connector, np.ndarray, np.ndarray, slice], ...]
     bodies: tuple[tuple[Connector, np.ndarray], ...]
     still: np.ndarray
     numbers: np.ndarray
@@ -99,9 +100,11 @@ def _compliance(system: System) -> _Compliance | None:
             moved[free, column] = factors.solve(np.eye(1, len(free), number)[0])
     if not np.isfinite(moved).all():
         return None
+    chosen = [np.flatnonzero(np.isin(item.multipliers, multipliers)) for item in kept]
+    ends = np.cumsum([len(own) for own in chosen]).tolist()
     conditions = tuple(
-        (item, np.searchsorted(dofs, item.dofs), np.flatnonzero(np.isin(item.multipliers, multipliers)))
-        for item in kept
+        (item, np.searchsorted(dofs, item.dofs), own, slice(end - len(own), end))
+        for item, own, end in zip(kept, chosen, ends, strict=True)
     )
     moving = tuple((item, np.searchsorted(dofs, item.dofs)) for item in bodies)
     found = _Compliance(dofs, moved, conditions, moving, np.zeros((len(dofs), len(dofs))), multipliers)
@@ -120,7 +123,7 @@ def _conditions(item: Connector, chosen: np.ndarray, q: np.ndarray, p: np.ndarra
 def _values(found: _Compliance, p: np.ndarray) -> np.ndarray:
     """Return the gaps (rows, k) of conditions."""
     gaps = []
-    for item, _, chosen in found.conditions:
+    for item, _, chosen, _ in found.conditions:
         gap = _conditions(item, chosen, p[:, item.dofs], p)
         given = chosen < len(item.values)
         gap[:, given] -= p[:, item.values[chosen[given]]]
@@ -131,7 +134,7 @@ def _values(found: _Compliance, p: np.ndarray) -> np.ndarray:
 def _along(found: _Compliance, p: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Return G p' (rows, k) of coordinates alone."""
     moved = (
-        (item, chosen, p[:, item.dofs] + 1j * COMPLEX_STEP * v[:, item.dofs]) for item, _, chosen in found.conditions
+        (item, chosen, p[:, item.dofs] + 1j * COMPLEX_STEP * v[:, item.dofs]) for item, _, chosen, _ in found.conditions
     )
     return np.concatenate([_conditions(item, chosen, q, p).imag for item, chosen, q in moved], axis=1) / COMPLEX_STEP
 
@@ -165,34 +168,43 @@ class _Impulses:
 
     def __init__(self, found: _Compliance, p: np.ndarray) -> None:
         self._found, self.gradients = found, np.zeros((len(p), len(found.numbers), len(found.dofs)))
-        first = 0
-        for item, places, chosen in found.conditions:
-            rows, q = slice(first, first + len(chosen)), p[:, item.dofs].astype(complex)
+        for item, places, chosen, rows in found.conditions:
+            q = p[:, item.dofs].astype(complex)
             for column, place in enumerate(places.tolist()):
                 q[:, column] += 1j * COMPLEX_STEP
                 self.gradients[:, rows, place] += _conditions(item, chosen, q, p).imag / COMPLEX_STEP
                 q[:, column] = q[:, column].real
-            first += len(chosen)
-        here, along = found.moved[found.dofs], self.gradients.swapaxes(1, 2)
+        here, self._along = found.moved[found.dofs], self.gradients.swapaxes(1, 2)
+        few = [(np.unique(places), rows) for _, places, _, rows in found.conditions]  # coordinates of each condition
         if found.bodies:
-            along = np.linalg.solve(np.eye(len(here)) + (_inertia(found, p) - found.still) @ here, along)
-        self._along = along
-        self._compliance = self.gradients @ (here @ along)
+            self._along = np.linalg.solve(np.eye(len(here)) + (_inertia(found, p) - found.still) @ here, self._along)
+            moved = here @ self._along
+        else:
+            moved = np.concatenate([here[:, own] @ self._along[:, own, rows] for own, rows in few], axis=2)
+        self._compliance = np.concatenate([self.gradients[:, rows, own] @ moved[:, own] for own, rows in few], axis=1)
 
     def rates(self, rates: np.ndarray) -> np.ndarray:
         """Return G p' less the rates of prescribed values (rows, k) for p' (rows, n), or the same of p''."""
         result = (self.gradients @ rates[:, self._found.dofs, None])[..., 0]
-        first = 0
-        for item, _, chosen in self._found.conditions:
+        for item, _, chosen, rows in self._found.conditions:
             given = np.flatnonzero(chosen < len(item.values))
-            result[:, first + given] -= rates[:, item.values[chosen[given]]]
-            first += len(chosen)
+            result[:, rows.start + given] -= rates[:, item.values[chosen[given]]]
         return result
 
     def by(self, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the changes (rows, n) of p' that change conditions by rates (rows, k), and their impulses."""
-        values, vectors = np.linalg.eigh(0.5 * (self._compliance + self._compliance.swapaxes(1, 2)))
-        inverse = np.where(values > _SINGULAR * values[:, -1:], 1.0 / np.where(values > 0.0, values, 1.0), 0.0)
-        impulses = vectors @ (inverse[..., None] * (vectors.swapaxes(1, 2) @ rates[..., None]))
-        changes = self._found.moved @ (self._along @ impulses)
-        return changes[..., 0], impulses[..., 0]
+        sizes = np.sqrt(np.diagonal(self._compliance, axis1=1, axis2=2))
+        sizes = np.where(sizes > 0.0, sizes, 1.0)
+        scaled, wanted = self._compliance / (sizes[:, :, None] * sizes[:, None, :]), rates / sizes
+        try:
+            found = np.linalg.solve(scaled, wanted[..., None])[..., 0]
+        except np.linalg.LinAlgError:
+            found = np.full_like(wanted, np.inf)
+        singular = ~(np.abs(found).max(axis=1) <= _LARGEST * np.abs(wanted).max(axis=1))
+        if singular.any():  # as in dead points: along what conditions determine
+            values, vectors = np.linalg.eigh(scaled[singular])
+            inverse = np.where(values > _SINGULAR * values[:, -1:], 1.0 / np.where(values > 0.0, values, 1.0), 0.0)
+            turned = vectors.swapaxes(1, 2) @ wanted[singular][..., None]
+            found[singular] = (vectors @ (inverse[..., None] * turned))[..., 0]
+        impulses = found / sizes
+        return (self._found.moved @ (self._along @ impulses[..., None]))[..., 0], impulses

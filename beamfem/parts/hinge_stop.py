@@ -15,7 +15,8 @@ class HingeStop(EndStop):
 
     At the excess d beyond a limit the moment is k d (1 + c dd/dt) towards it (Hunt and Crossley 1975). With a
     coefficient of restitution e it is k d, and k / e^2 (d - (1 - e^2) d_max) on the way back from the largest excess
-    d_max, so that bodies of any mass and speed bounce with e times their relative speed (Walton and Braun 1986).
+    d_max, so that bodies of any mass and speed bounce with e times their relative speed (Walton and Braun 1986). A body
+    that is too slow to leave the stop rests in it, by up to (1 - e^2) d_max.
 
     Parameters
     ----------

@@ -136,3 +136,26 @@ def test_some_random_mechanisms(seed):
 @pytest.mark.parametrize("seed", range(300))
 def test_random_mechanisms(seed):
     compare(seed, buckling=True)
+
+
+# in 162 the snap at a load factor of 0.04 takes more than 500 points of a path with a spring of 1e10 N/m
+FURTHER = [seed for seed in range(7, 300) if seed != 162]
+
+
+@pytest.mark.parametrize("seed", [1, 6, *(pytest.param(seed, marks=pytest.mark.slow) for seed in FURTHER)])
+def test_a_link_across_a_mechanism_is_a_very_stiff_spring(seed):
+    """Statics, or the load factor of a snap, path, modes and motion, extrapolated in the compliance of the spring."""
+    found = []
+    for brace in (bf.Link, lambda a, b: bf.SpringDamper(a, b, 1e9), lambda a, b: bf.SpringDamper(a, b, 1e10)):
+        model, bars = mechanism(seed, View())
+        end = bars[-1].end
+        model = model.with_(connectors=[*model.connectors, brace(bars[(len(bars) - 1) // 3].start, end)])
+        try:
+            static = bf.solve_static(model, 4).position(end)[-1]
+        except bf.LimitPointError as error:
+            static = np.array([error.load_factor])
+        moved = bf.trace_equilibrium(model, until=0.5), bf.simulate(model, 0.01, 5e-4)
+        squares = bf.solve_modes(model, 3).frequencies ** 2
+        found.append([static, *(each.position(end)[-1] for each in moved), squares / squares.mean()])
+    for linked, stiff, stiffer in zip(*found, strict=True):
+        assert linked == pytest.approx(stiffer + (stiffer - stiff) / 9.0, rel=1e-6, abs=1e-7)

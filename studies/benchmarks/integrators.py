@@ -156,7 +156,7 @@ def flying() -> Case:
 
         return thrown(16, own, ends, lambda time: float(np.interp(time, times, values)), 0.6)
 
-    peer_steps = {"TrapezoidalIndex2": (240, 960, 3840, 30720), "GeneralizedAlpha": (240, 960, 3840)}
+    peer_steps = {"TrapezoidalIndex2": (960, 3840, 15360, 61440), "GeneralizedAlpha": (960, 3840, 15360)}
     return Case("flying beam", bf.Model([beam], loads=loads), None, 6.0, steps, (bf.Radau(5), 7680), peer, peer_steps)
 
 
@@ -181,7 +181,7 @@ def stiff() -> Case:
         True,
         force=force,
     )
-    peer_steps = {"TrapezoidalIndex2": (2000, 8000, 32000, 256000), "GeneralizedAlpha": (2000, 8000, 32000)}
+    peer_steps = {"TrapezoidalIndex2": (8000, 32000, 128000, 512000), "GeneralizedAlpha": (8000, 32000, 128000)}
     bent, model = bf.solve_static(loaded), bf.Model([strip], [bf.Clamp(strip.start)])
     case = Case("steel strip", model, bent, 1.0, steps, (bf.Radau(5), 50000))
     return replace(case, peer=lambda: _chain(8, own, 0.1, released=True), peer_steps=peer_steps)

@@ -149,3 +149,12 @@ def test_exudyn_has_the_same_linkages(case, element, kind):
         other = exudyn_models.linkage(kind, case, elements, rigid)
         other.motion(200, case.duration, peer_cases.SPARSE, method="GeneralizedAlpha")
         assert np.abs(other.positions() - found).max() < 1e-4
+
+
+def test_exudyn_is_judged_by_its_own_limits():
+    """Its implicit and explicit methods have limits that differ by 8e-5 m; each is of second order."""
+    pytest.importorskip("exudyn")
+    steps = {"TrapezoidalIndex2": (200, 1600, 12800), "ExplicitMidpoint": (800, 3200, 25600)}
+    found = replace(integrators.soft(), peer_steps=steps).measured_peer()
+    for (few, many, _), runs in zip(steps.values(), found.values(), strict=True):
+        assert np.log(runs[0, 0] / runs[1, 0]) / np.log(many / few) == pytest.approx(2.0, abs=0.1)

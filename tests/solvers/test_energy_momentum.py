@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from conftest import ELEMENTS as ALL_ELEMENTS
+from conftest import FIELDS
 
 import beamfem as bf
 
@@ -56,6 +58,18 @@ def test_energy_of_a_pendulum_is_kept(element):
 def test_energy_and_momenta_of_a_soft_beam_that_is_bent_and_thrown_are_kept(element):
     for step in (1e-3, 1e-2):
         require_conserved(thrown(element, PRINTED, RUBBER, 0.5, step, 40), 1e-13)
+
+
+@quiet
+@pytest.mark.parametrize("field", FIELDS, ids=lambda field: field.name)
+def test_energy_and_momenta_of_every_combination_are_kept(field):
+    for element in ALL_ELEMENTS:
+        if element.field == field:
+            arc = bf.Beam(bf.Arc((0, 0), 1.0, 0.0, 1.0), 3, element, PRINTED, RUBBER)
+            velocity = bf.RigidVelocity((1.0, 0.5), angular=6.0)
+            motion = bf.simulate(bf.Model([arc]), 0.05, 1e-2, bf.EnergyMomentum(), velocity=velocity)
+            require_conserved(motion, 1e-13)
+            assert motion.statistics.rejected == 0
 
 
 @quiet

@@ -22,6 +22,7 @@ from beamfem.physics.discrete_gradients import DISCRETE_GRADIENTS
 from beamfem.physics.kinematics import MEASURES, evaluate
 from beamfem.physics.stations import DEAD, FOLLOWING, GROUNDED, STRETCHING
 
+_WIDEST = 60  # half width of a matrix that is stored as a band
 _TURNING = {ROTATION: 1, SHEAR_RIGID: 2, STRETCH: 2}  # number of the nodal vectors that turn with the angle of a node
 
 
@@ -93,7 +94,7 @@ class ConservingModel(NamedTuple):
     fixed: np.ndarray
     others: Equations | None
     record: Conserving
-    matrix: csc_array
+    matrix: csc_array | np.ndarray
 
     def forces(self, system: System, time: float) -> np.ndarray:
         """Return the forces (m,) on z at a time."""
@@ -156,7 +157,7 @@ def conserving_model(system: System) -> ConservingModel:
         np.add.at(fixed, springs, stiffness * system.springs.data[:, 1])
     mass = mass + csr_array(coo_array((masses.sum(axis=1), (np.arange(count),) * 2), shape=(size, size)))
     mass, ground, others = csr_array(mass), csr_array(ground), _others(system, plain)
-    tables = _record(system, vectors, (mass, ground), gathers)
+    tables = _record(system, vectors, (mass, ground), gathers, others)
     return ConservingModel(vectors, mass, ground, nodal, tuple(gathers), masses, fixed, others, *tables)
 
 
@@ -313,10 +314,44 @@ def _strained(block: Block, gather: csr_array) -> tuple[dict[str, np.ndarray | i
     return {**fields, **tables, "numbers": numbers, "moved": np.zeros(size)}, numbers
 
 
+class _Storage(NamedTuple):
+    """Where entries by p in the first equations are stored among `values`, and the others relative to them."""
+
+    places: np.ndarray
+    below: np.ndarray
+    by_rates: int
+    values: np.ndarray
+    matrix: csc_array | np.ndarray
+
+
+def _banded(row: np.ndarray, column: np.ndarray, unknown: int, half: int) -> _Storage:
+    """Return the band of LAPACK's dgbsv, for p' and p of a coordinate, and its first and second equation, in turn."""
+    height = 3 * half + 1
+    columns = np.zeros((2 * unknown, height))
+    places = 2 * half + 2 * row - (2 * column + 1) + (2 * column + 1) * height
+    return _Storage(places, np.ones(unknown, dtype=np.int64), 1 - height, columns.ravel(), columns.T)
+
+
+def _sparse(row: np.ndarray, column: np.ndarray, unknown: int) -> _Storage:
+    """Return a sparse matrix, with all first equations before the second ones and p before p'."""
+    start, count = np.searchsorted(column, np.arange(unknown + 1)), len(row)
+    below, places = np.diff(start), np.arange(count) + start[column]
+    indices, values = np.empty(4 * count, dtype=np.int32), np.zeros(4 * count)
+    for shift in (0, 2 * count):
+        indices[shift + places], indices[shift + places + below[column]] = row, row + unknown
+    pointers = np.concatenate([2 * start, 2 * count + 2 * start[1:]]).astype(np.int32)
+    matrix = csc_array((values, indices, pointers), shape=(2 * unknown, 2 * unknown), copy=False)
+    return _Storage(places, below, 2 * count, values, matrix)
+
+
 def _record(
-    system: System, vectors: Vectors, matrices: tuple[csr_array, csr_array], gathers: list[csr_array]
-) -> tuple[Conserving, csc_array]:
-    """Return the record of a model, and its matrix as a sparse one."""
+    system: System,
+    vectors: Vectors,
+    matrices: tuple[csr_array, csr_array],
+    gathers: list[csr_array],
+    others: Equations | None,
+) -> tuple[Conserving, csc_array | np.ndarray]:
+    """Return the record of a model, and a view of its matrix: sparse, or a band as of LAPACK's dgbsv."""
     size, unknown, free = vectors.size, len(system.free_dofs), system.unknowns.free
     groups = [_strained(*each) for each in zip(system.blocks, gathers, strict=True)]
     keys = [(numbers[:, :, None] * size + numbers[:, None, :]).ravel() for _, numbers in groups]
@@ -330,22 +365,18 @@ def _record(
     outside = (equations[columns][:, None, :] < 0) | (equations[rows][:, :, None] < 0)
     entries = np.unique(pairs[~outside])
     column, row = entries // unknown, entries % unknown
-    start = np.searchsorted(column, np.arange(unknown + 1))
-    below = np.diff(start)
-    places = np.arange(len(entries)) + start[column]
+    half = 2 * int(np.abs(row - column).max(initial=0)) + 1
+    plain = half <= _WIDEST and not system.inclined and others is None
+    stored = _banded(row, column, unknown, half) if plain else _sparse(row, column, unknown)
 
     def placed(rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
         """Return the places of entries by p in the first equations, -1 for none."""
         inside = (rows >= 0) & (columns >= 0)
         found = np.searchsorted(entries, np.where(inside, columns * unknown + rows, 0))
-        return np.where(inside, places[np.minimum(found, len(entries) - 1)], -1)
+        return np.where(inside, stored.places[np.minimum(found, len(entries) - 1)], -1)
 
-    count, (stretches, angles) = len(entries), (free[vectors.stretches], free[vectors.angles])
+    stretches, angles = free[vectors.stretches], free[vectors.angles]
     of = angles[vectors.angle_of]
-    indices = np.empty(4 * count, dtype=np.int32)
-    for shift in (0, 2 * count):
-        indices[shift + places], indices[shift + places + below[column]] = row, row + unknown
-    matrix = np.zeros(4 * count)
     mass, ground = (np.zeros(len(known)) for _ in matrices)
     for values, each in zip((mass, ground), given, strict=True):
         values[np.searchsorted(known, each.row.astype(np.int64) * size + each.col)] = each.data
@@ -368,10 +399,10 @@ def _record(
         places=placed(equations[rows][:, :, None], equations[columns][:, None, :]),
         angle_places=placed(angles, angles),
         stretch_places=np.stack([placed(of, stretches), placed(stretches, of)], axis=-1),
-        below=below,
-        by_rates=2 * count,
-        filled=4 * count,
-        matrix=matrix,
+        below=stored.below,
+        by_rates=stored.by_rates,
+        filled=len(stored.values),
+        matrix=stored.values,
         group_count=len(groups),
         groups=[
             Strained(
@@ -384,5 +415,4 @@ def _record(
     )
     names = "stiffness", "left", "p", "v", "load", "vectors", "rates", "lost", "force", "slopes"
     own.fill(**{name: np.zeros(shape) for name, shape in own.shapes(*names).items()})
-    pointers = np.concatenate([2 * start, 2 * count + 2 * start[1:]]).astype(np.int32)
-    return own, csc_array((matrix, indices, pointers), shape=(2 * unknown, 2 * unknown), copy=False)
+    return own, stored.matrix

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import LinAlgError
+from scipy.linalg.lapack import dgbsv
 from scipy.sparse import coo_array, csc_array, csr_array
 
 from beamfem.equations.equations import linearise
@@ -20,6 +21,7 @@ from beamfem.solve.motion.time_marching import initial_acceleration
 _TOLERANCE = 1e-13  # of the model: a correction that ends an iteration
 _NOISE = 1e-10  # of the model: smaller corrections that no longer decrease are round-off
 _ITERATIONS = 30
+_SINGULAR = "the tangent of a step is singular"
 
 
 @dataclass(frozen=True)
@@ -117,9 +119,15 @@ class EnergyMomentumRun:
             added = coo_array(tangent.sparse(UNROTATED))
             below = coo_array((added.data, (added.row + own.unknown, added.col)), shape=matrix.shape)
             matrix = csc_array(matrix + csc_array(below))
+        if isinstance(matrix, np.ndarray):
+            half = (matrix.shape[0] - 1) // 3
+            *_, found, failed = dgbsv(half, half, matrix, -left.T.ravel(), overwrite_ab=True, overwrite_b=True)
+            if failed:
+                raise ConvergenceError(_SINGULAR)
+            return found.reshape(-1, 2).T[::-1]
         if system.inclined:
             return motion.solver(csr_array(matrix))(-left.ravel()).reshape(left.shape)
         try:
             return superlu(matrix, full_diagonal=True).solve(-left.ravel()).reshape(left.shape)
         except LinAlgError as error:
-            raise ConvergenceError("the tangent of a step is singular") from error
+            raise ConvergenceError(_SINGULAR) from error

@@ -154,6 +154,22 @@ def test_energy_on_an_inclined_roller_is_kept(element):
 
 @quiet
 @pytest.mark.parametrize("element", [bf.CRBF(2), bf.ShearRigid(), bf.ANCF()], ids=lambda element: element.name)
+def test_rigid_bodies_keep_energy_and_momenta_and_move_as_they_should(element):
+    arm = bf.Beam(bf.Line((0, 0), (1.2, 0.3)), 3, element, PRINTED, RUBBER)
+    bodies = [bf.RigidBody(arm.end, 1.0, 0.1, (0.1, -0.05)), bf.RigidBody(arm.at(0.5), 1.0, 0.02)]
+    thrown = {"duration": 0.1, "velocity": bf.RigidVelocity((1.0, 0.5), angular=5.0)}
+    motion, fine = (
+        bf.simulate(bf.Model([arm], masses=bodies), step=step, integrator=integrator, **thrown)
+        for step, integrator in ((2e-3, bf.EnergyMomentum()), (1e-3, bf.Radau(3)))
+    )
+    require_conserved(motion, 1e-13)
+    np.testing.assert_allclose(motion.position(arm.end)[-1], fine.position(arm.end)[-1], atol=3e-5)
+    falling = bf.Model([arm], [bf.Pin(arm.start)], [bf.Gravity((0, -9.81))], masses=bodies)
+    assert drift(bf.simulate(falling, 0.2, 1e-2, integrator=bf.EnergyMomentum())) < 1e-13
+
+
+@quiet
+@pytest.mark.parametrize("element", [bf.CRBF(2), bf.ShearRigid(), bf.ANCF()], ids=lambda element: element.name)
 def test_a_curved_beam_with_its_mass_off_the_axis_keeps_energy_and_momenta(element):
     light, heavy = bf.Layer(bf.Material(5e5, 0.3, 500.0), 0.02), bf.Layer(bf.Material(1e6, 0.3, 5000.0), 0.02)
     arc = bf.Beam(bf.Arc((0, 0), 1.0, 0.0, 2.0), 4, element, bf.Layered((light, heavy), 0.02))
@@ -165,7 +181,7 @@ def test_a_curved_beam_with_its_mass_off_the_axis_keeps_energy_and_momenta(eleme
     ("change", "why"),
     [
         ({"material": bf.Material(0.7e6, 0.3, 5540.0, retardation_time=1e-3)}, "damping of beams"),
-        ({"connector": lambda arm: bf.RigidBody(arm.end, 1.0, 0.1, (0.1, 0.0))}, "the inertia of RigidBody"),
+        ({"connector": lambda arm: bf.Link(arm.start, arm.end)}, "conditions with multipliers"),
         ({"moved": True}, "supports that move"),
     ],
 )

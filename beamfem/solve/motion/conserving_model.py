@@ -3,9 +3,10 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_array, csc_array, csr_array, kron
+from scipy.sparse import coo_array, csc_array, csr_array, dia_array, kron
 
 from beamfem.equations.assembler import Equations
+from beamfem.equations.connectors import Connector
 from beamfem.equations.element_group import make_group
 from beamfem.equations.system import System
 from beamfem.kernels.block import (
@@ -17,11 +18,12 @@ from beamfem.kernels.block import (
     Block,
 )
 from beamfem.kernels.conserving_step import Conserving, Strained
-from beamfem.physics.connections import MASS
+from beamfem.physics.connections import BODY, MASS
 from beamfem.physics.discrete_gradients import DISCRETE_GRADIENTS
 from beamfem.physics.kinematics import MEASURES, evaluate
 from beamfem.physics.stations import DEAD, FOLLOWING, GROUNDED, STRETCHING
 
+_BODIES = (MASS, BODY)
 _WIDEST = 60  # half width of a matrix that is stored as a band
 _TURNING = {ROTATION: 1, SHEAR_RIGID: 2, STRETCH: 2}  # number of the nodal vectors that turn with the angle of a node
 
@@ -79,10 +81,10 @@ class ConservingModel(NamedTuple):
     """A model in two states, or in any.
 
     mass, ground (m, m): of z, and the stiffness of springs and foundations; nodal (2 vectors, m): nodal vectors of each
-    block from z; points (6 points, m): r', d and the third vector at its quadrature points; masses (n, 2) [kg]: of
-    points, on which gravity acts; fixed (m,): forces that depend on neither time nor state; others: equations of the
-    forces that are not in z, None if there are none; record: of steps; matrix: view of the derivative of both their
-    equations by p and p'.
+    block from z; points (6 points, m): r', d and the third vector at its quadrature points; masses (m, 2) [kg]: of
+    parts at points, on which gravity acts; fixed (m,): forces that depend on neither time nor state; others: equations
+    of the forces that are not in z, None if there are none; record: of steps; matrix: view of the derivative of both
+    their equations by p and p'.
     """
 
     vectors: Vectors
@@ -100,7 +102,7 @@ class ConservingModel(NamedTuple):
         """Return the forces (m,) on z at a time."""
         loads = system.loads.at(time)
         result = self.fixed.copy()
-        result[: system.model.size] += self.masses @ loads.gravity
+        result += self.masses @ loads.gravity
         for block, at, values, nodal in zip(system.blocks, system.stations, loads.points, self.nodal, strict=True):
             force = np.zeros((nodal.shape[0] // 2, 2))
             tables = (block.gravity, loads.body[:, :2]), (block.length, loads.body[:, 2:])
@@ -135,9 +137,9 @@ class ConservingModel(NamedTuple):
 def conserving_model(system: System) -> ConservingModel:
     """Return the tables of a model."""
     vectors = _vectors(system)
-    size, count = vectors.size, system.model.size
+    size = vectors.size
     nodal = tuple(_nodal(block, vectors) for block in system.blocks)
-    masses, mass, ground, fixed = np.zeros((count, 2)), csr_array((size, size)), csr_array((size, size)), np.zeros(size)
+    masses, mass, ground, fixed = np.zeros((size, 2)), csr_array((size, size)), csr_array((size, size)), np.zeros(size)
     gathers = []
     for block, at, own in zip(system.blocks, system.stations, nodal, strict=True):
         mass = mass + own.T @ _mass(block, own.shape[0] // 2) @ own
@@ -148,14 +150,15 @@ def conserving_model(system: System) -> ConservingModel:
         ground = ground + r.T @ csr_array(r * stiffness[:, None])
         fixed += r.T @ (stiffness * at.constants[some, 2:4].ravel())
     for item in system.connectors.items:
-        if item.compiled == MASS:
-            masses[item.all, [0, 1]] += item.data[0]
+        if item.compiled in _BODIES:
+            centre, rotary = _centre_of_mass(item, vectors)
+            mass = mass + item.data[0] * (centre.T @ centre) + rotary
+            masses += item.data[0] * centre.T.toarray()
     springs, stiffness = system.springs.numbers[:, 0], system.springs.data[:, 0]
     plain = bool(vectors.linear[springs].all())
     if plain:
         ground = ground + csr_array(coo_array((stiffness, (springs, springs)), shape=(size, size)))
         np.add.at(fixed, springs, stiffness * system.springs.data[:, 1])
-    mass = mass + csr_array(coo_array((masses.sum(axis=1), (np.arange(count),) * 2), shape=(size, size)))
     mass, ground, others = csr_array(mass), csr_array(ground), _others(system, plain)
     tables = _record(system, vectors, (mass, ground), gathers, others)
     return ConservingModel(vectors, mass, ground, nodal, tuple(gathers), masses, fixed, others, *tables)
@@ -174,7 +177,7 @@ def not_conserved(system: System) -> str | None:
         return "conditions with multipliers"
     for item in system.connectors.items:
         inertia = item.tangent((system.reference, zeros, zeros), 0.0, np.zeros(2), (0.0, 0.0, 1.0))
-        if item.compiled != MASS and inertia.any():
+        if item.compiled not in _BODIES and inertia.any():
             return f"the inertia of {item.name}"
     return None
 
@@ -184,7 +187,7 @@ def _others(system: System, springs_known: bool) -> Equations | None:
     parts = [
         each
         for each in system.parts
-        if getattr(each, "connection", None) is not MASS and not (springs_known and each is system.springs)
+        if getattr(each, "connection", None) not in _BODIES and not (springs_known and each is system.springs)
     ]
     turning = any(np.isin(at.kind, (FOLLOWING, STRETCHING)).any() for at in system.stations)
     if not parts and not turning and not any(actions.unit[:, 2].any() for actions in system.loads.actions):
@@ -196,6 +199,18 @@ def _others(system: System, springs_known: bool) -> Equations | None:
         bare = bare._replace(gravity=np.zeros_like(block.gravity), length=np.zeros_like(block.length))
         groups.append(make_group(bare, layout, at._replace(position=np.where(known, 0.0, at.position))))
     return Equations(groups, system.model.size, [each.record for each in parts], system.called)
+
+
+def _centre_of_mass(item: Connector, vectors: Vectors) -> tuple[csr_array, csr_array]:
+    """Return the centre of mass (2, m) of a part at a point from z, and the mass matrix (m, m) of its rotation."""
+    rows, columns, weights, turning = [0, 1], item.all[:2].tolist(), [1.0, 1.0], np.zeros(vectors.size)
+    if item.compiled == BODY:
+        (x, y), (_, inertia, along, across, *_) = vectors.units(item.all[2]).tolist(), item.data.tolist()
+        rows, columns = [*rows, 0, 0, 1, 1], [*columns, x, y, x, y]
+        weights += [along, -across, across, along]
+        turning[[x, y]] = inertia
+    centre = coo_array((weights, (rows, columns)), shape=(2, vectors.size))
+    return csr_array(centre), csr_array(dia_array((turning[None], [0]), shape=(vectors.size,) * 2))
 
 
 def _vectors(system: System) -> Vectors:

@@ -28,7 +28,7 @@ _SINGULAR = "the tangent of a step is singular"
 class EnergyMomentum:
     """Energy-momentum method: conserves energy and both momenta at any step size; second order.
 
-    In vectors z by which all nodal vectors are linear, with a constant mass M: M (w1 - w0) / h + f = 0 and
+    In vectors z by which all nodal vectors are linear, with rates w and a constant mass M: M (w1 - w0) / h + f = 0 and
     M (z1 - z0) / h = M (w0 + w1) / 2. f has the mean of the stresses of both states, and algebraic differences of the
     strains, which are functions of products of r', d and d', so that f . (z1 - z0) is the change of the strain energy
     (Simo and Tarnow 1992; Gonzalez 2000). Where coordinates are angles or stretches, z and w satisfy |d| = 1 and its
@@ -43,7 +43,7 @@ class EnergyMomentum:
     ------
     InputError
         As the motion begins, if the model has section laws, damping of beams, imposed strains, moved supports,
-        conditions, a rotating frame, or masses other than a `PointMass` without inertia.
+        conditions, or bodies other than `PointMass` and `RigidBody`.
 
     Examples
     --------

@@ -168,6 +168,22 @@ def test_rigid_bodies_keep_energy_and_momenta_and_move_as_they_should(element):
     assert drift(bf.simulate(falling, 0.2, 1e-2, integrator=bf.EnergyMomentum())) < 1e-13
 
 
+def test_a_ring_keeps_energy_and_what_cannot_move_stays():
+    corners = [(np.cos(angle), np.sin(angle)) for angle in np.linspace(0.0, 2.0 * np.pi, 6, endpoint=False)]
+    sides = [
+        bf.Beam(bf.Line(a, b), 2, bf.CRBF(2), PRINTED, RUBBER)
+        for a, b in zip(corners, corners[1:] + corners[:1], strict=True)
+    ]
+    joints = [bf.Rigid(a.end, b.start) for a, b in zip(sides, sides[1:] + sides[:1], strict=True)]
+    ring = bf.Model(sides, joints=joints)
+    motion = bf.simulate(ring, 0.1, 1e-2, bf.EnergyMomentum(), velocity=lambda x: (x[0], -2 * x[1]))
+    assert drift(motion) < 1e-13
+    held = bf.Beam(bf.Line((0, 0), (1, 0)), 1, bf.CRBF(1), PRINTED, RUBBER)
+    model = bf.Model([held], [bf.Clamp(held.start), bf.Clamp(held.end)], [bf.Gravity((0, -9.81))])
+    motion = bf.simulate(model, 0.01, 1e-3, bf.EnergyMomentum())
+    assert np.ptp(motion.p, axis=0).max() == 0.0
+
+
 @quiet
 @pytest.mark.parametrize("element", [bf.CRBF(2), bf.ShearRigid(), bf.ANCF()], ids=lambda element: element.name)
 def test_a_curved_beam_with_its_mass_off_the_axis_keeps_energy_and_momenta(element):

@@ -388,7 +388,7 @@ def _record(
         """Return the places of entries by p in the first equations, -1 for none."""
         inside = (rows >= 0) & (columns >= 0)
         found = np.searchsorted(entries, np.where(inside, columns * unknown + rows, 0))
-        return np.where(inside, stored.places[np.minimum(found, len(entries) - 1)], -1)
+        return np.where(inside, np.append(stored.places, -1)[found], -1)
 
     stretches, angles = free[vectors.stretches], free[vectors.angles]
     of = angles[vectors.angle_of]

@@ -92,6 +92,8 @@ class EnergyMomentumRun:
     def _solved(self, motion: EquationsOfMotion, model: ConservingModel, begin: State, middle: float) -> bool:
         """Find p and p' at the end of a step by Newton's method; return whether it converges."""
         own, free, before = model.record, motion.free, np.inf
+        if not len(free):
+            return True
         for _ in range(_ITERATIONS):
             place_vectors(own, 1)
             balance(own)

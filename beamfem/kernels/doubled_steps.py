@@ -19,7 +19,7 @@ _LARGEST, _SMALLEST = 4.0, 0.2  # changes of the step at once
 _RECOVERED = 1.25  # after a step was refused, the largest change grows by
 _HALVED = 0.4  # the same if its iterations do not converge
 _ROUND_OFF = 2e-14  # of the model: error of a step that may be round-off
-_ITERATED = 1e-2  # of the error allowed: that of iterations
+_ITERATED = 1e-3  # of the error allowed: that of iterations
 _LINEAR, _USELESS = 0.1, 0.4  # rates of convergence with which one iteration shows the difference, or a tangent ends
 
 

@@ -307,6 +307,8 @@ def iterate(system: System, solver: MotionSolver, stages: Stages, step: int, fre
         statistics.correction = size
         if not size < _LARGEST:
             return 0
+        if size == 0.0:  # at rest
+            return 1
         if stages.accuracy > 0.0:
             tolerance = stages.accuracy
         elif iteration == 0 and stages.known != 0:

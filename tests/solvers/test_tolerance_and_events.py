@@ -48,31 +48,34 @@ def test_the_error_is_that_of_the_tolerance(pendulum, motion_of, tolerance):
 
 def test_a_tighter_tolerance_takes_shorter_steps(pendulum):
     model = pendulum[1]
-    motions = [bf.simulate(model, 0.5, tolerance=tolerance) for tolerance in (1e-3, 1e-4, 1e-5)]
-    numbers = [motion.statistics.steps for motion in motions]
-    assert [len(motion) - 1 for motion in motions] == numbers  # each step is a row
-    assert all(2.0 < tight / loose < 8.0 for loose, tight in pairwise(numbers))
-    for motion in motions:
-        assert motion.time[-1] == pytest.approx(0.5, rel=1e-12)
+    for integrator, least, most in ((bf.GeneralizedAlpha(), 2.0, 8.0), (bf.Radau(2), 1.5, 4.0), (None, 1.2, 3.0)):
+        motions = [bf.simulate(model, 0.5, None, integrator, tolerance=tolerance) for tolerance in (1e-4, 1e-5, 1e-6)]
+        numbers = [motion.statistics.steps for motion in motions]
+        assert [len(motion) - 1 for motion in motions] == numbers  # each step is a row
+        assert all(least < tight / loose < most for loose, tight in pairwise(numbers))
+        for motion in motions:
+            assert motion.time[-1] == pytest.approx(0.5, rel=1e-12)
 
 
+@pytest.mark.parametrize("integrator", [bf.GeneralizedAlpha(), bf.Radau(1)], ids=["generalized-alpha", "Radau"])
 @pytest.mark.parametrize("duration", [0.3475, 0.35, 0.3525])
-def test_the_last_step_is_as_long_as_the_time_that_it_takes(pendulum, duration):
+def test_the_last_step_is_as_long_as_the_time_that_it_takes(pendulum, duration, integrator):
     """The number of equal steps that are judged together need not divide what is left."""
     beam, model = pendulum
-    motion = bf.simulate(model, duration, tolerance=1e-4)
+    motion = bf.simulate(model, duration, integrator=integrator, tolerance=1e-4)
     moved, mean = np.diff(motion.position(beam.end), axis=0), motion.velocity(beam.end)
     expected = 0.5 * (mean[1:] + mean[:-1]) * np.diff(motion.time)[:, None]
     assert np.max(np.abs(moved[-1] - expected[-1])) < 1e-3 * np.max(np.abs(moved[-1]))
 
 
-def test_steps_end_at_the_kinks_of_loads():
+@pytest.mark.parametrize(("integrator", "tolerance"), [(bf.GeneralizedAlpha(), 1e-4), (None, 1e-6)])
+def test_steps_end_at_the_kinks_of_loads(integrator, tolerance):
     """A pulse of 1 ms in a motion of 1 s: its impulse is found, and steps are short beside it."""
     steel = bf.Material(2e11, 0.3, 7800.0)
     rod = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Circle(0.02), steel)
     pulse = bf.Piecewise(lambda t: float(0.3004 < t < 0.3014), (0.3004, 0.3014))
     model = bf.Model([rod], loads=[bf.PointForce(rod.at(0.5), (0.0, 100.0), amplitude=pulse)])
-    motion = bf.simulate(model, 1.0, tolerance=1e-4)
+    motion = bf.simulate(model, 1.0, integrator=integrator, tolerance=tolerance)
     assert motion.linear_momentum()[-1, 1] == pytest.approx(0.1, rel=1e-6)
     assert np.abs(motion.time[:, None] - [0.3004, 0.3014]).min(axis=0).max() < 1e-9
 

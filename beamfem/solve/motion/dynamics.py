@@ -27,7 +27,7 @@ from beamfem.solve.motion.error_control import march_to_tolerance
 from beamfem.solve.motion.events import Event
 from beamfem.solve.motion.initial_velocity import put_onto_supports, require_on_supports, start_velocity
 from beamfem.solve.motion.motion_error import MOST_MESHES, motion_attempt
-from beamfem.solve.motion.motion_plan import AnyIntegrator, planned, settings_of
+from beamfem.solve.motion.motion_plan import AnyIntegrator, planned, settings_of, usual_integrator
 from beamfem.solve.motion.period_error import detuned
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.saved_rows import SavedRows
@@ -70,8 +70,9 @@ def simulate(
     step : float, [s], optional
         Time step; with a tolerance, the time between rows, if it is given.
     integrator : GeneralizedAlpha, Gauss, Radau, Scheme or Integrator, optional
-        Time integration method, by default `GeneralizedAlpha()`; a user-defined one is a `Scheme` of the same family,
-        such as Newmark's method, or any other `Integrator`.
+        Time integration method, by default `GeneralizedAlpha()`, with a tolerance `Radau()` unless the model remembers
+        its past; a user-defined one is a `Scheme` of the same family, such as Newmark's method, or any other
+        `Integrator`.
     start : State or Solution, optional
         State to start from: a state of any solution, static or a motion, or a solution for its last state; by default
         the reference at rest. It may come from a model with other supports or connectors, if the state satisfies those
@@ -153,6 +154,7 @@ def simulate(
         with ends_as_a_whole():
             refined = refined_until(model, accuracy, lambda model: motion_attempt(model, solve), MOST_MESHES)
         return _told(refined)
+    integrator = usual_integrator(model, tolerance) if integrator is None else integrator
     settings = settings_of(duration, step, integrator, save_every, tolerance, save_at, events)
     settings = replace(settings, watch=flag("watch", watch))
     plan = planned(model, settings, in_memory=file is None)

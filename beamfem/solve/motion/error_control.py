@@ -133,7 +133,8 @@ def _march_pairs(
     most: float,
 ) -> Failure | None:
     """Do what `march_to_tolerance` does with a method of stages, in compiled pairs of steps."""
-    system, taken, room = cutter.system, 0, max(cutter.size, 2)
+    system, taken = cutter.system, 0
+    room = 2 if saved.watch.events else max(cutter.size, 2)  # what follows an error in an event is lost
     with progress("time [s]", cutter.end) as report, motion_workspace(system) as space:
         motion = DoubledSteps(system, space, coefficients(method), method.order, cutter.statistics)
         own = motion.record

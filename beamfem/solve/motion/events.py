@@ -59,10 +59,14 @@ class Event:
 
 @dataclass
 class Watch:
-    """Looks for events in steps; found: names and times [s]; values (k,): of functions at the end of the last step."""
+    """Looks for events in steps; found: names and times [s]; values (k,): of functions at the end of the last step.
+
+    smooth: see `between`.
+    """
 
     system: System
     events: Sequence[Event]
+    smooth: bool = False
     found: list[tuple[str, float]] = field(default_factory=list)
     values: list[float] = field(default_factory=list)
 
@@ -105,7 +109,7 @@ class Watch:
         return begin + step * float(brentq(value, 0.0, 1.0, xtol=_CLOSE))
 
     def _at(self, time: float, times: np.ndarray, states: np.ndarray) -> MotionState:
-        return self._state(time, between(self.system, times, states, np.array([time]))[0])
+        return self._state(time, between(self.system, times, states, np.array([time]), self.smooth)[0])
 
     def _state(self, time: float, state: np.ndarray) -> MotionState:
         p, v, a = state[:3].copy()

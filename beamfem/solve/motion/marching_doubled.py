@@ -94,7 +94,7 @@ class DoubledSteps(StepsInCalls):
         held[:, 0] = system.prescribed_values(0.0)
         self._part = part
         self._fill(state, held, times, Saving(rows.states, 1, 1, pairs, rotations, rows.rotations))
-        solver.fill(conditions=len(system.connectors.multipliers), varies=own.varies)
+        solver.fill(conditions=len(system.connectors.multipliers))
         own.fill(
             end=float(part.times[-1]),
             failed=0,

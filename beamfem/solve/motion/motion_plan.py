@@ -10,6 +10,7 @@ from beamfem.equations.compilation_notice import announce_compilation
 from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError
 from beamfem.model.model import Model
+from beamfem.solve.motion.collocation import Radau
 from beamfem.solve.motion.energy_momentum import EnergyMomentum
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.events import Event, Watch
@@ -63,7 +64,7 @@ class MotionPlan:
         """Return what collects the rows."""
         settings, pairs = self.settings, self.system.model.numbered.rotation_pairs
         smooth = not is_scheme(settings.integrator)
-        return SavedRows(self.system, pairs, self.wanted, Watch(self.system, settings.events), smooth)
+        return SavedRows(self.system, pairs, self.wanted, Watch(self.system, settings.events, smooth), smooth)
 
     def live_view(self) -> Callable[[float, np.ndarray], None]:
         """Return what shows states (3, n) at times [s] while the motion runs, if it is to be watched."""
@@ -75,10 +76,20 @@ class MotionPlan:
         return live_view(self.system.model)
 
 
+def usual_integrator(model: Model, tolerance: float | None) -> AnyIntegrator:
+    """Return the integrator that a motion has by default.
+
+    Of random motions Radau's method of three stages meets tolerances from 1e-3 to 1e-9 with the least work, see
+    `studies.benchmarks.random_tolerances`. Steps with history are compiled for the generalized-alpha family only.
+    """
+    follows = tolerance is not None and not len(system_of(model, static=False).history.numbers)
+    return Radau() if follows else GeneralizedAlpha()
+
+
 def settings_of(
     duration: float,
     step: float | None,
-    integrator: AnyIntegrator | None,
+    integrator: AnyIntegrator,
     save_every: int,
     tolerance: float | None,
     save_at: Sequence[float] | np.ndarray | None,
@@ -91,7 +102,6 @@ def settings_of(
     step, tolerance = (None if x is None else positive(n, x) for n, x in (("step", step), ("tolerance", tolerance)))
     if step is not None and step > duration:
         raise InputError(f"step ({step:g}) must not exceed duration ({duration:g})")
-    integrator = GeneralizedAlpha() if integrator is None else integrator
     user_defined = not is_scheme(integrator) and not has_stages(integrator)
     steps = any(callable(getattr(integrator, name, None)) for name in ("step", "run"))
     if isinstance(integrator, type) or (user_defined and not steps):

@@ -14,7 +14,7 @@ from beamfem.curves import Parametric
 from beamfem.errors import InputError
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import energy_points, length_points, stations
-from beamfem.model.along_beam import AlongBeam, functions_along, jumps_along, kinks_along
+from beamfem.model.along_beam import AlongBeam, functions_along, jumps_along
 from beamfem.model.beam import Beam, Point
 from beamfem.model.check_replaceable import require_remade
 from beamfem.model.model import Model
@@ -158,7 +158,7 @@ def _with_own_values(load: Any, model: Model) -> Any:
         drawn = np.linspace(0.0, 1.0, _DRAWN * mesh.elements + 1) * load.beam.curve.length
         at = np.unique(np.concatenate([*points, drawn, [0.5 * load.beam.curve.length]]))
         values = tuple(tuple(value) if np.ndim(value) else value for value in load.values_of(name, at).tolist())
-        saved[name] = SampledAlong(tuple(at.tolist()), values, kinks_along(load, name))
+        saved[name] = SampledAlong(tuple(at.tolist()), values, load.kinks_along[name])
     return replace(load, **saved) if saved else load
 
 

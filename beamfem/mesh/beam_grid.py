@@ -149,7 +149,7 @@ def make_grid(beam: Beam, fractions: Iterable[float]) -> Grid:
         return _knot_spans(beam, fractions)
     length = beam.curve.length
     corners = np.array(beam.curve.corners, dtype=float)
-    vertices = _vertices(beam, [*fractions, *(corners / length)]) * length
+    vertices = element_ends(beam, fractions)
     inner = beam.element.field.nodes
     last = len(inner) - 1
     elements = len(vertices) - 1
@@ -168,6 +168,15 @@ def make_grid(beam: Beam, fractions: Iterable[float]) -> Grid:
     # a user's curve may modify its argument
     position, tangent = beam.curve.position(arc.copy()), beam.curve.tangent(seen_from)
     return Grid(beam, vertices, vertices, 1.0, node, arc, position, tangent, np.ones(len(arc)))
+
+
+def element_ends(beam: Beam, fractions: Iterable[float]) -> np.ndarray:
+    """Return the arc lengths [m] at which the elements of a beam end, see `make_grid`."""
+    if beam.elements == "knots":
+        return _knot_spans(beam, fractions).vertices
+    length = beam.curve.length
+    corners = np.array(beam.curve.corners, dtype=float)
+    return _vertices(beam, [*fractions, *(corners / length)]) * length
 
 
 def _knot_spans(beam: Beam, fractions: Iterable[float]) -> Grid:

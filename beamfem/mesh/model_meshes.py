@@ -22,7 +22,7 @@ from beamfem.kernels.block import GRADIENTS, NO_HISTORY, ROTATED_GRADIENTS, ROTA
 from beamfem.mesh.beam_grid import Grid, make_grids
 from beamfem.mesh.beam_mesh import BeamMesh, Nodes
 from beamfem.mesh.reference import curvature, energy_points, reference_angle, reference_axis, sections_at
-from beamfem.model.along_beam import AlongBeam, functions_along, kinks_along
+from beamfem.model.along_beam import AlongBeam
 from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import amplitudes_of, prescribed_by, remembered, uses_rotations
 from beamfem.section.protocol import CrossSection, HasParts
@@ -109,7 +109,7 @@ def required_nodes(model: "Model") -> list[list[tuple[float, str]]]:
         nodes += [(jump / beam.curve.length, "section") for jump in beam.jumps]
     lines: tuple[AlongBeam, ...] = (*model.line_loads, *(load for _, load in model.imposing))
     for line in lines:
-        kinks = [kink for name in functions_along(line) for kink in kinks_along(line, name)]
+        kinks = [kink for group in line.kinks_along.values() for kink in group]
         length, name = line.beam.curve.length, type(line).__name__
         result[model.number_of(line.beam)] += [(kink / length, name) for kink in kinks]
     return result

@@ -6,6 +6,7 @@ from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
+from beamfem.cached_properties import cached_property
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam
 from beamfem.model.jumps import find_jumps
@@ -30,6 +31,11 @@ class AlongBeam(ABC):
         """The beam."""
         return self.beam
 
+    @cached_property
+    def kinks_along(self) -> dict[str, tuple[float, ...]]:
+        """Arc lengths (nj,) [m] at which each function of the arc length jumps, or declares kinks."""
+        return {name: _kinks_along(self, name) for name in functions_along(self)}
+
     @abstractmethod
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
         """Return the values (n, ...) of the field `name` at arc lengths (n,) [m].
@@ -44,8 +50,7 @@ def functions_along(load: _Varying) -> dict[str, Callable[[float], Any]]:
     return {name: value for name, value in fields.items() if callable(value)}
 
 
-def kinks_along(load: AlongBeam, name: str) -> tuple[float, ...]:
-    """Return the arc lengths (nj,) [m] at which a function of a load jumps, or declares kinks."""
+def _kinks_along(load: AlongBeam, name: str) -> tuple[float, ...]:
     beam = load.beam
 
     def numbers(arc_length: float) -> np.ndarray:
@@ -56,8 +61,7 @@ def kinks_along(load: AlongBeam, name: str) -> tuple[float, ...]:
 
 def jumps_along(load: AlongBeam) -> tuple[float, ...]:
     """Return the arc lengths [m] at which a load, or the section of its beam, jumps or has a declared kink."""
-    kinks = [kinks_along(load, name) for name in functions_along(load)]
-    return (*load.beam.jumps, *(kink for group in kinks for kink in group))
+    return (*load.beam.jumps, *(kink for group in load.kinks_along.values() for kink in group))
 
 
 def require_names(load: AlongBeam) -> None:

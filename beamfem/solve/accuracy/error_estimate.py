@@ -1,11 +1,13 @@
 """Discretisation error of a static result, estimated by the equilibrium on an enriched space; shares of elements."""
 
 from collections.abc import Callable, Iterable, Sequence
+from copy import copy
 from dataclasses import dataclass, fields, replace
 from itertools import chain
 from typing import Any, cast
 
 import numpy as np
+from numpy.polynomial.legendre import legvander
 from scipy.linalg import LinAlgError
 
 from beamfem.cached_properties import cached_property
@@ -21,17 +23,29 @@ from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import reference_axis, reference_position
 from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
+from beamfem.precision.roundoff import FEW_DIGITS
 from beamfem.results import postprocess
 from beamfem.results.axis_points import axis_at
 from beamfem.results.full_turns import first_turns
 from beamfem.results.postprocess import position
 from beamfem.results.solution import Solution, State
-from beamfem.results.status import Statistics
-from beamfem.solve.newton.newton import Newton, NewtonResult, PivotedProblem, PrescribedStep
+from beamfem.results.status import Statistics, Status
+from beamfem.solve.newton.newton import (
+    Newton,
+    NewtonResult,
+    PivotedProblem,
+    PrescribedStep,
+    Termination,
+    largest_change,
+    solve_banded,
+    solve_equilibrium,
+)
 from beamfem.validation import number_below, shown
 
 # halved elements of order k have an error of about 2^-2k of the others, for the same cost as those of order k + 1
 _RAISED = 2  # orders up to this one are raised
+_CLOSE = 0.01  # of the size of the model, or rad: how far an iteration may go from a state whose strains are off
+_INSIDE = 1e-6  # of the way to the middle of an element: where points are seen from
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -55,7 +69,8 @@ class EnrichedModel(Model):
 def enriched(model: Model) -> EnrichedModel:
     """Return a model whose elements are of order k + 1 instead of k = 1 or 2, and halves of other ones.
 
-    Those of models that `Model.with_loads` has made share their meshes and tables as these do.
+    A mesh found by refinement may have the finer one of the mesh before. Those of models that `Model.with_loads` has
+    made share their meshes and tables as these do.
     """
     known: EnrichedModel | None = model.tables.get("enriched")
     if known is None:
@@ -68,10 +83,21 @@ def remeshed(model: Model, beams: Sequence[Beam]) -> EnrichedModel:
 
     The parts at points and along beams are those of the model itself, so that results are found by them.
     """
+    result = object.__new__(EnrichedModel)
+    # valid, as the model is; beams on the same curves need nodes at the same places
+    values = {field.name: getattr(model, field.name) for field in fields(Model)}
     original = getattr(model, "original", ()) or tuple(model.beams)
-    parts = {field.name: getattr(model, field.name) for field in fields(Model) if field.name not in ("beams", "units")}
-    result = EnrichedModel(beams, **parts, original=original)
-    vars(result)["units"] = model.units  # of which the model has warned
+    vars(result).update(values, beams=tuple(beams), original=original)
+    if not any(isinstance(beam.elements, int) for beam in model.beams):
+        vars(result)["nodes_needed"] = model.nodes_needed
+    return result
+
+
+def with_elements(beam: Beam, ends: np.ndarray | tuple[float, ...], element: Element | None = None) -> Beam:
+    """Return a beam with elements between some fractions [-] of its length, which are not checked."""
+    result = copy(beam)
+    vars(result).update(elements=tuple(np.asarray(ends).tolist()), element=element or beam.element)
+    vars(result).pop("mesh", None)
     return result
 
 
@@ -93,10 +119,10 @@ def _enriched(mesh: BeamMesh) -> Beam:
     beam = mesh.beam
     field = beam.element.field
     if type(field) is Lagrange and field.order <= _RAISED:
-        return replace(beam, element=of_order(beam.element, field.order + 1))
+        return with_elements(beam, mesh.vertices / mesh.vertices[-1], of_order(beam.element, field.order + 1))
     along = mesh.arc_length(np.arange(mesh.elements), np.full(mesh.elements, 0.5))
     ends = np.sort(np.concatenate([mesh.vertices, along])) / mesh.vertices[-1]
-    return replace(beam, elements=tuple(ends.tolist()))
+    return with_elements(beam, ends)
 
 
 def of_order(element: Element, order: int) -> Element:
@@ -130,9 +156,8 @@ def carried_stresses(state: State, target: Model, step: np.ndarray | None = None
     """
     source = state.model
     acting = _stresses_after(state, np.zeros(len(state.p)) if step is None else step)
-    system = system_of(target, static=True)
-    zeros = np.zeros(target.size)
-    result = tuple(np.zeros_like(each) for each in predicted_stresses(system, system.reference, zeros, state.at))
+    blocks = system_of(target, static=True).blocks
+    result = tuple(np.zeros((len(block.kind), *block.stiffness.shape[1:3])) for block in blocks)
     for old, new in zip(source.meshes, target.meshes, strict=True):
         known, own = (each[mesh.block][_elements(mesh)] for each, mesh in ((acting, old), (result, new)))
         counted, wanted = (_counted(mesh) for mesh in (old, new))
@@ -162,20 +187,24 @@ def _interpolated(old: BeamMesh, new: BeamMesh, at: np.ndarray, wanted: np.ndarr
     every = np.arange(len(at))
     factors = (xi[..., None, None] - at) / (at[:, None] - at + np.eye(len(at)))
     factors[..., every, every] = 1.0
-    return np.einsum("epi,eik->epk", factors.prod(axis=-1), values[element[:, 0]])
+    return np.einsum("epi,epik->epk", factors.prod(axis=-1), values[element])
 
 
 def places(old: BeamMesh, new: BeamMesh, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return element and xi (new elements, m) in the old mesh of points xi (m,) of every new element."""
+    """Return element and xi (new elements, m) in the old mesh of points xi (m,) of every new element.
+
+    At ends of old elements, it is the one towards the middle of the new element.
+    """
     every = np.repeat(np.arange(new.elements), len(xi))
     along, ends = new.arc_length(every, np.tile(xi, new.elements)).reshape(new.elements, -1), old.vertices
     middle = 0.5 * (new.vertices[1:] + new.vertices[:-1])
-    element = np.clip(np.searchsorted(ends, middle, side="right") - 1, 0, old.elements - 1)
+    inside = along + _INSIDE * (middle[:, None] - along)
+    element = np.clip(np.searchsorted(ends, inside, side="right") - 1, 0, old.elements - 1)
     if old.beam.elements == "knots":
         curve: Any = old.beam.curve
         along, ends = curve.parameter(along.ravel()).reshape(along.shape), old.parameter
-    start, end = ends[element][:, None], ends[element + 1][:, None]
-    return np.repeat(element[:, None], len(xi), axis=1), np.clip((along - start) / (end - start), 0.0, 1.0)
+    start, end = ends[element], ends[element + 1]
+    return element, np.clip((along - start) / (end - start), 0.0, 1.0)
 
 
 def _values_at_nodes(old: BeamMesh, new: BeamMesh, state: State) -> dict[str, np.ndarray]:
@@ -262,12 +291,17 @@ class _Enriched:
     """Rows of a solution on the enriched space, each found once."""
 
     def __init__(self, solution: Solution) -> None:
-        self._solution, self._rows = solution, dict[int, Solution]()
+        self._solution, self.rows = solution, dict[int, Solution]()
 
     def row(self, number: int) -> Solution:
-        if number not in self._rows:
-            self._rows[number] = enriched_row(self._solution, number)
-        return self._rows[number]
+        if number not in self.rows:
+            self.rows[number] = enriched_row(self._solution, number)
+        return self.rows[number]
+
+
+def keep_enriched_row(solution: Solution, finer: Solution) -> None:
+    """Keep the last row of a solution on the enriched space, which has been found before."""
+    solution.computed(_Enriched).rows[len(solution) - 1] = finer
 
 
 def enriched_row(solution: Solution, number: int, model: Model | None = None) -> Solution:
@@ -293,6 +327,42 @@ def enriched_row(solution: Solution, number: int, model: Model | None = None) ->
     return Solution(model, True, np.array([state.at]), p[None], none, none.copy(), statistics, turned=turned)
 
 
+NEAR = 0.05  # of the size of the model, or rad: how far a state may move to become one of another mesh
+
+
+def carried_path(path: Solution, finer: Solution | None, model: Model) -> Solution | None:
+    """Return the rows of a static solution as equilibria of a model with other elements, next to those that it has.
+
+    finer: its last row on the enriched space, if it is known. None if they may be those of another path: if some are
+    unstable or beyond a jump, far from the ones before, or the count of negative pivots is not zero; the rows of models
+    with history depend on the way to them.
+    """
+    system, known = system_of(model, static=True), system_of(path.model, static=True)
+    plain = path.statistics.ended in (Termination.CONVERGED.value, Termination.ROUND_OFF.value)
+    if not plain or len(system.history.numbers) or not (np.diff(path.at) > 0.0).all():
+        return None
+    rows, iterations, ended, digits = list[np.ndarray](), 0, Termination.CONVERGED, path.statistics.digits
+    for number in range(len(path)):
+        state = finer[0] if finer is not None and number == len(path) - 1 else path[number]
+        if np.array_equal(state.p, known.reference):
+            rows.append(system.reference)
+            continue
+        p = state.p if state.model is model else carried_coordinates(state, model)
+        result = solve_equilibrium(system, p, state.at, Newton(), keep=0)
+        ended, digits = result.ended, result.digits
+        if not ended.good or digits < FEW_DIGITS or largest_change(system, result.state - p) > NEAR:
+            return None
+        iterations += result.iterations
+        rows.append(result.state)
+    turned = path.turned
+    if turned is not None:
+        turned = np.array([first_turns(model, *each) for each in zip(rows, turned, strict=True)])
+    none = np.zeros((len(rows), model.size))
+    status = Status.COMPLETED if ended is Termination.CONVERGED else Status.ROUND_OFF
+    statistics = Statistics(iterations, len(rows) - 1, 0, ended.value, status, digits=digits)
+    return Solution(model, True, path.at, np.array(rows), none, none, statistics, path.stability, turned)
+
+
 def enriched_state(state: State) -> State:
     """Return the equilibrium next to a state on the enriched space; that of a state without stress is the reference.
 
@@ -308,11 +378,15 @@ def enriched_state(state: State) -> State:
 
 
 def _equilibrium(system: System, p: np.ndarray, state: State) -> NewtonResult:
-    """Return the equilibrium next to a state carried over to p (n,), with its stress resultants as independent ones.
+    """Return the equilibrium next to a state carried over to p (n,). Raises ConvergenceError.
 
-    The first iteration is the linear estimate. Raises ConvergenceError.
+    If it is not near, as p strains finer elements where the old ones had no strain, stress resultants are carried over
+    as well; the first iteration is then the linear estimate.
     """
     step, newton = PrescribedStep(system, p, state.at), Newton()
+    result = solve_banded(system, p, state.at, newton, step)
+    if result is not None and result.ended.good and largest_change(system, result.state - p) <= _CLOSE:
+        return result
     problem = PivotedProblem(system, p, state.at, newton, step, stresses=carried_stresses(state, system.model))
     try:
         result = problem.find()
@@ -382,6 +456,29 @@ def position_shares(state: State, finer: Solution) -> list[np.ndarray]:
     elements = sum(map(len, within))
     pairs = zip(error_shares(state, finer), within, strict=True)
     return [np.maximum(at_ends / largest * share, own / (largest * elements)) for share, own in pairs]
+
+
+_LOWEST = 3  # order of the axis whose coefficients tell its error
+
+
+def decay_errors(state: State) -> list[np.ndarray] | None:
+    """Return the error (ne,) [-] of the axis in each element of each beam, by the decay of its Legendre coefficients.
+
+    It is relative to the size of the model, and without another solve. The coefficients of analytic functions fall as
+    a_n = rho^-n, and the error of an element of order k as rho^-(k + 1); two of them count, as symmetric functions have
+    none of odd degree. On random models it is 0.2 to 2 times the error. None for elements whose nodes do not tell it.
+    """
+    extent, result = system_of(state.model, static=True).extent, []
+    for mesh in state.model.meshes:
+        field = mesh.beam.element.field
+        if type(field) is not Lagrange or field.order < _LOWEST:
+            return None
+        order = field.order
+        to_coefficients = np.linalg.inv(legvander(2.0 * np.asarray(field.nodes) - 1.0, order))
+        highest = to_coefficients[-2:] @ state.p[mesh.kinematics.dof[mesh.node][..., :2]]
+        sizes = np.linalg.norm(highest, axis=-1) / extent
+        result.append((sizes ** ((order + 1) / np.array([order - 1, order]))).max(axis=1))
+    return result
 
 
 def mode_shares(modes: Iterable[tuple[State, np.ndarray, State, np.ndarray]]) -> list[np.ndarray]:

@@ -524,12 +524,25 @@ def _with_digits(system: System, load_factor: float, newton: Newton, result: New
 def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton, keep: int | None) -> NewtonResult:
     """Iterate with the fastest method that the model allows, and with pivoting if that fails."""
     step = PrescribedStep(system, start, load_factor)
-    result = None
-    banded = system.unknowns.pattern is None and system.model.frame is None and not len(system.connectors.one_sided)
-    if banded and Proven.LOSES_DIGITS not in system.proven:
-        problem = BandProblem(system, start, load_factor, newton, step, keep)
-        result = problem.find()
-        problem.space.return_scratch(system)
+    result = solve_banded(system, start, load_factor, newton, step, keep)
     if result is None or result.ended is Termination.SINGULAR:
         result = PivotedProblem(system, start, load_factor, newton, step, keep).find()
+    return result
+
+
+def solve_banded(
+    system: System,
+    start: np.ndarray,
+    load_factor: float,
+    newton: Newton,
+    step: PrescribedStep,
+    keep: int | None = None,
+) -> NewtonResult | None:
+    """Return the result of the compiled iteration without pivoting; None for a model that it is not for."""
+    banded = system.unknowns.pattern is None and system.model.frame is None and not len(system.connectors.one_sided)
+    if not banded or Proven.LOSES_DIGITS in system.proven:
+        return None
+    problem = BandProblem(system, start, load_factor, newton, step, keep)
+    result = problem.find()
+    problem.space.return_scratch(system)
     return result

@@ -1,6 +1,7 @@
 """Linearisation of a model about an equilibrium or a state of a motion."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array
@@ -32,9 +33,10 @@ def linearise(model: Model, about: State | Solution | None = None, loads: Sequen
 
     M, C and K are the derivatives of the residual by p'', p' and p, the exact tangents of the state with its loads:
     geometric stiffness, dampers, and for a moving state gyroscopic terms. Prescribed coordinates are eliminated, as are
-    those that constraints with multipliers and inclined rollers determine; K includes the curvature of the constraints
-    times their multipliers. Beams with default elements are refined until the 10 lowest frequencies about a state at
-    rest are accurate to 1e-4.
+    those that constraints with multipliers and inclined rollers determine, p = T z; K includes the curvature of the
+    constraints times their multipliers. About a moving state, T changes with time: C includes 2 T^T M T' and K includes
+    T^T (C T' + M T''). Beams with default elements are refined until the 10 lowest frequencies about a state at rest
+    are accurate to 1e-4.
 
     Parameters
     ----------
@@ -42,7 +44,7 @@ def linearise(model: Model, about: State | Solution | None = None, loads: Sequen
         Beams, supports, loads, joints and connectors.
     about : State or Solution, optional
         A static equilibrium, or a state of a motion, or a solution for its last state; by default the reference at
-        load factor 0. About a moving state, matrices hold at its time; with multipliers it must be at rest.
+        load factor 0. About a moving state, matrices hold at its time.
     loads : sequence, optional
         The inputs f: factors of loads of the model, or of further loads that do not act in the state; by default all
         loads of the model.
@@ -77,10 +79,12 @@ def linearise(model: Model, about: State | Solution | None = None, loads: Sequen
     place = csr_array(coo_array((np.ones(len(free)), (free, np.arange(len(free)))), shape=(model.size, len(free))))
     transformation = csr_array(place @ basis)
     names = _names(system)
-    mass, damping, stiffness = (
-        csr_array(basis.T @ matrix @ basis)
-        for matrix in (_matrix(system, state, INERTIA), _matrix(system, state, _DAMPING), stiffness)
-    )
+    inertia, resistance = (_matrix(system, state, weights) for weights in (INERTIA, _DAMPING))
+    by_rates, by_positions = resistance @ basis, stiffness @ basis
+    if len(system.connectors.multipliers) and np.any(state.v):
+        rate, second = _rates_of_basis(system, state, independent)
+        by_rates, by_positions = by_rates + 2.0 * inertia @ rate, by_positions + resistance @ rate + inertia @ second
+    mass, damping, stiffness = (csr_array(basis.T @ each) for each in (inertia @ basis, by_rates, by_positions))
     scale = scale_of(model, transformation)
     return LinearModel(
         model,
@@ -107,8 +111,8 @@ def _state(model: Model, about: State | Solution | None) -> tuple[System, State]
         require_finite("about", given)
         if given.model is not model:
             raise InputError("about must be a state of the same model if it moves")
-        if len(system.connectors.multipliers):
-            raise InputError("a model with multipliers is linearised about a state at rest only, this one moves")
+        if system.connectors.conditions_follow_time:
+            raise InputError("conditions that depend on time are linearised about a state at rest only, this one moves")
         return system, given
     system = system_of(model, static=True)
     p, load_factor = resting_state(system, about)
@@ -169,16 +173,8 @@ def independent_motions(system: System, p: np.ndarray, tangent: csr_array) -> tu
     rollers. They are solved for as many coordinates, which pivoting selects. Multipliers have zero rows. Raises
     InputError if conditions are redundant.
     """
-    unknown = len(system.free_dofs)
-    multipliers = len(system.connectors.multipliers)
-    size = unknown - multipliers
-    first, normals = system.rotated
-    active = size + np.flatnonzero(tangent.diagonal()[size:] == 0.0)  # of conditions that come and go, too
-    rows = tangent[active, :size].toarray() if len(active) else np.empty((0, size))
-    rollers = np.zeros((len(first), size))
-    rollers[np.arange(len(first)), first] = normals[:, 0]
-    rollers[np.arange(len(first)), first + 1] = normals[:, 1]
-    conditions = np.vstack([rows, rollers])
+    unknown, conditions = len(system.free_dofs), _conditions(system, tangent)
+    size = conditions.shape[1]
     constrained = np.flatnonzero(conditions.any(axis=0))
     scale = system.scale[system.free_dofs[constrained]]
     solved, free, solution = _solved_for(conditions[:, constrained] * scale, system, p)
@@ -191,6 +187,46 @@ def independent_motions(system: System, p: np.ndarray, tangent: csr_array) -> tu
     entries = np.concatenate([np.ones(len(independent)), solution[row, column]])
     places = np.append(independent, dependents[row]), np.append(number[independent], number[drivers[column]])
     return independent, csr_array(coo_array((entries, places), shape=(unknown, len(independent))))
+
+
+def _conditions(system: System, tangent: csr_array) -> np.ndarray:
+    """Return the gradients (k, m) of conditions and inclined rollers by the unknowns that are no multipliers."""
+    size = len(system.free_dofs) - len(system.connectors.multipliers)
+    first, normals = system.rotated
+    active = size + np.flatnonzero(tangent.diagonal()[size:] == 0.0)  # of conditions that come and go, too
+    rows = tangent[active, :size].toarray() if len(active) else np.empty((0, size))
+    rollers = np.zeros((len(first), size))
+    rollers[np.arange(len(first)), first] = normals[:, 0]
+    rollers[np.arange(len(first)), first + 1] = normals[:, 1]
+    return np.vstack([rows, rollers])
+
+
+_NEAR = 2.0**-7  # of the model, or rad: step of differences along a motion
+_FIRST, _SECOND = (3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0), (3.0 / 2.0, -3.0 / 20.0, 1.0 / 90.0)  # of sixth order
+
+
+def _rates_of_basis(system: System, state: State, independent: np.ndarray) -> tuple[csr_array, csr_array]:
+    """Return T' and T'' (unknown, m) along a motion, with the same independent coordinates."""
+    size = len(system.free_dofs) - len(system.connectors.multipliers)
+    dependents = np.setdiff1d(np.arange(size), independent)
+    speed, push = (float(np.max(np.abs(values) / system.held.scale)) for values in (state.v, state.a))
+    width = min(_NEAR / speed, np.sqrt(_NEAR / push) if push else np.inf)
+
+    def solution(time: float) -> np.ndarray:
+        p = state.p + time * state.v + 0.5 * time**2 * state.a
+        own = _conditions(system, _matrix(system, replace(state, p=p), STATICS))
+        return -np.linalg.solve(own[:, dependents], own[:, independent])
+
+    rate, second = np.zeros((len(dependents), len(independent))), -49.0 / 18.0 * solution(0.0)
+    for number, (first, other) in enumerate(zip(_FIRST, _SECOND, strict=True), 1):
+        before, after = solution(-number * width), solution(number * width)
+        rate, second = rate + first * (after - before), second + other * (after + before)
+    found = []
+    for values in (rate / width, second / width**2):
+        whole = np.zeros((len(system.free_dofs), len(independent)))
+        whole[dependents] = values
+        found.append(csr_array(whole))
+    return found[0], found[1]
 
 
 def _solved_for(conditions: np.ndarray, system: System, p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -74,6 +74,8 @@ def prepared(model: Model, accuracy: float | None, start: State | Solution | Non
     InputError.
     """
     automatic = system_of(model, static=True).model.automatic
+    if accuracy is None and not automatic:
+        return model, None
     if automatic and isinstance(start, State | Solution):
         model = model.meshed(start)
     tied = tied_to_mesh(start)
@@ -85,7 +87,7 @@ def prepared(model: Model, accuracy: float | None, start: State | Solution | Non
                 remedy="Ask for an accuracy where this state is found; what starts from it has the same mesh",
             )
         return model, accuracy
-    return model, DEFAULT if automatic and not tied else None
+    return model, None if tied else DEFAULT
 
 
 def refined_until(

@@ -240,6 +240,92 @@ def test_motions_are_as_accurate_as_asked_for():
     assert errors.max() < 1.2 * 2e-5  # of the diameter of the circle of its reach
 
 
+def falling(**mesh):
+    """A printed pendulum that is let go."""
+    material, section = bf.Material(0.7e6, 0.3, 5540.0), bf.Section(1.6e-3, 8.533e-6)
+    arm = bf.Beam(bf.Line((0, 0), (1.2, 0)), section=section, material=material, **mesh)
+    return arm, bf.Model([arm], [bf.Pin(arm.start)], [bf.Gravity((0, -9.81))])
+
+
+def test_motions_have_short_elements_where_they_bend():
+    """On a foundation only the loaded end moves; meshes that were refined evenly had twelve elements."""
+
+    def swing(accuracy=None, **mesh):
+        beam = bf.Beam(bf.Line((0, 0), (1, 0)), section=SECTION, material=STEEL, **mesh)
+        force = bf.PointForce(beam.end, (0.0, 300.0 * EI), amplitude=lambda t: np.sin(500.0 * t) ** 2)
+        model = bf.Model([beam], [bf.Roller(beam.start, (1, 0)), bf.Foundation(beam, (0.0, 4e5 * EI))], [force])
+        motion = bf.simulate(model, 0.01, 5e-5, save_every=5, accuracy=accuracy)
+        return motion, np.array([motion.position(beam.at(x)) for x in np.linspace(0.0, 1.0, 17)])
+
+    (motion, found), (_, exact) = swing(1e-7), swing(elements=16, element=bf.CRBF(8))
+    assert np.linalg.norm(found - exact, axis=2).max() < 1e-7
+    lengths = motion.model.meshes[0].lengths
+    assert len(lengths) <= 8
+    assert lengths[0] > 1.5 * lengths[-1]
+
+
+def test_motions_whose_steps_follow_a_tolerance_are_accurate_at_all_rows():
+    """They were compared at their last rows only, with the steps of the tolerance on every mesh."""
+    arm, model = falling()
+    motion = bf.simulate(model, 0.3, tolerance=1e-5, accuracy=1e-3)
+    assert "steps; the estimated error is" in motion.statistics.ended
+    fine_arm, fine = falling(elements=6, element=bf.CRBF(8))
+    exact = bf.simulate(fine, 0.3, tolerance=1e-6, save_at=motion.time)
+    error = motion.position(arm.end) - exact.position(fine_arm.end)
+    assert np.linalg.norm(error, axis=1).max() < 2.4 * 1e-3
+    again = bf.simulate(model.meshed(motion), 0.3, tolerance=1e-5)
+    assert np.array_equal(again.p, motion.p)
+
+
+def test_a_quantity_of_a_motion_may_be_what_is_accurate():
+    (arm, model), (fine_arm, fine) = falling(), falling(elements=8, element=bf.CRBF(8))
+
+    def largest_tension(beam):
+        return lambda motion: motion.section_forces(beam).normal.max()
+
+    exact = bf.simulate(fine, 0.3, 1e-3)
+    force = bf.simulate(model, 0.3, 1e-3, accuracy=1e-3, quantity=largest_tension(arm))
+    assert largest_tension(arm)(force) == pytest.approx(largest_tension(fine_arm)(exact), rel=1e-3)
+    tip = bf.simulate(model, 0.3, 1e-3, accuracy=1e-3, quantity=arm.end)
+    error = np.linalg.norm(tip.displacement(arm.end) - exact.displacement(fine_arm.end), axis=1)
+    assert error.max() < 1e-3 * np.linalg.norm(exact.displacement(fine_arm.end), axis=1).max()
+
+
+def test_motions_that_an_event_ends_are_compared_up_to_there():
+    arm, model = falling()
+    passes = bf.Event("passes", lambda state: state.position(arm.end)[1] + 0.3, stop=True)
+    asked = {"events": [passes], "accuracy": 1e-4}
+    motion = bf.simulate(model, 5.0, 2e-3, **asked)
+    assert motion.time[-1] == motion.events[0].time < 0.5
+    timed = bf.simulate(model, 0.5, 2e-3, **asked, quantity=lambda motion: motion.events[0].time)
+    assert timed.events[0].time == pytest.approx(motion.events[0].time, rel=2e-4)
+
+
+def test_a_quantity_of_a_path_may_be_what_is_accurate():
+    toggle = williams_toggle.toggle(None, 1, 1)
+
+    def limits(path):
+        return [point.load_factor for point in path.limit_points]
+
+    path = bf.trace_equilibrium(toggle.meshed("auto"), until=40.0, accuracy=1e-5, quantity=limits)
+    assert limits(path) == pytest.approx([load for load, _, _ in williams_toggle.LIMITS], rel=1e-5)
+    crown = toggle.beams[0].end
+    at_crown = bf.trace_equilibrium(toggle.meshed("auto"), until=40.0, accuracy=1e-4, quantity=crown)
+    for point, (_, deflection, _) in zip(at_crown.limit_points, williams_toggle.LIMITS, strict=True):
+        assert -point.displacement(crown)[1] == pytest.approx(deflection, abs=1e-4)
+    with pytest.raises(IndexError):
+        bf.trace_equilibrium(toggle.meshed("auto"), until=40.0, accuracy=1e-2, quantity=lambda path: limits(path)[2])
+
+
+@pytest.mark.parametrize("solve", [bf.trace_equilibrium, lambda *given, **asked: bf.simulate(*given, 0.01, **asked)])
+def test_a_quantity_needs_an_accuracy(solve):
+    beam, model = model_of(bf.CRBF(2), 2, bent)
+    with pytest.raises(bf.InputError, match="a quantity is what is to be accurate, so it needs an accuracy"):
+        solve(model, 1.0, quantity=beam.end)
+    with pytest.raises(bf.InputError, match="quantity is a function of a solution, such as"):
+        solve(model, 1.0, quantity="tip", accuracy=1e-3)
+
+
 def test_motions_from_a_static_state_begin_in_it_on_a_finer_mesh():
     beam = auto()
     model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, EI))])

@@ -15,7 +15,7 @@ from beamfem.equations.system import system_of
 from beamfem.errors import ConvergenceError, InputError, LimitPointError, LockingWarning
 from beamfem.mesh.beam_grid import distances, element_ends
 from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.model.beam import Beam, Point
+from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 from beamfem.results.locking import locking
 from beamfem.results.solution import Solution, State
@@ -23,12 +23,10 @@ from beamfem.results.status import Finding
 from beamfem.solve.accuracy.carried_start import tied_to_mesh
 from beamfem.solve.accuracy.error_estimate import (
     NEAR,
-    Quantity,
     carried_path,
     decay_errors,
     enriched,
     enriched_row_kept,
-    error,
     error_shares,
     keep_enriched_row,
     largest_displacement_error,
@@ -37,6 +35,7 @@ from beamfem.solve.accuracy.error_estimate import (
     remeshed,
     with_elements,
 )
+from beamfem.solve.accuracy.quantity_change import Quantity, relative_change, require_quantity
 from beamfem.validation import positive
 
 DEFAULT = 1e-4  # accuracy of beams whose elements are "auto"
@@ -58,7 +57,6 @@ _MOST_STALLED = 3  # meshes divided evenly whose error is not the smallest so fa
 # meshes that may have no solution, or end at limit points, before a finer one does not
 _MOST_LOST, _MOST_LIMITED = 2, 5
 _TINY = 1e-30  # error [-] of elements that have none
-_NOISE = 10.0  # by how much a quantity is to exceed what round-off of the coordinates makes of it
 _SAME = 1e-9  # of the length of a beam: tolerance between places
 _SAME_LOAD = 1e-2  # relative difference of limit points that two meshes agree on
 
@@ -66,19 +64,22 @@ _Result = TypeVar("_Result")
 Shares = list[np.ndarray] | None
 
 
-def prepared(model: Model, accuracy: float | None, start: State | Solution | None = None) -> tuple[Model, float | None]:
+def prepared(
+    model: Model, accuracy: float | None, start: State | Solution | None = None, quantity: Quantity = None
+) -> tuple[Model, float | None]:
     """Return a model and the accuracy [-] that its mesh is to be refined to, None for the mesh as it is.
 
     It is that which is asked for, or the default for beams whose elements are "auto". With a state to start from, the
     first of their meshes is that of the state, and the only one if the state cannot be found on another one. Raises
-    InputError.
+    InputError, also for a quantity without an accuracy.
     """
+    require_quantity(quantity)
     automatic = system_of(model, static=True).model.automatic
-    if accuracy is None and not automatic:
-        return model, None
     if automatic and isinstance(start, State | Solution):
         model = model.meshed(start)
-    tied = tied_to_mesh(start)
+    tied = tied_to_mesh(start) if automatic or accuracy is not None else ""
+    if quantity is not None and accuracy is None and (tied or not automatic):
+        raise InputError("a quantity is what is to be accurate, so it needs an accuracy, such as accuracy=1e-4")
     if accuracy is not None:
         accuracy = positive("accuracy", accuracy)
         if tied:
@@ -87,7 +88,7 @@ def prepared(model: Model, accuracy: float | None, start: State | Solution | Non
                 remedy="Ask for an accuracy where this state is found; what starts from it has the same mesh",
             )
         return model, accuracy
-    return model, None if tied else DEFAULT
+    return model, DEFAULT if automatic and not tied else None
 
 
 def refined_until(
@@ -215,13 +216,7 @@ class StaticAttempts:
             self._known = solution, finer
         if self._quantity is None:
             return solution, off, lambda: position_shares(state, finer)
-        change = float(np.abs(error(solution, self._quantity, last)).max())
-        row = solution[last:]
-        evaluated = _evaluated(row, self._quantity)
-        size = float(np.abs(evaluated).max())
-        if max(size, change) <= _NOISE * float(np.abs(_evaluated(_rounded(row), self._quantity) - evaluated).max()):
-            return solution, 0.0, None  # zero, as far as numbers can tell
-        return solution, change / size if size > 0.0 else change, lambda: error_shares(state, finer)
+        return solution, relative_change(solution[last:], finer, self._quantity), lambda: error_shares(state, finer)
 
     def _too_coarse(self, solution: Solution) -> tuple[Solution, float, Shares] | None:
         """Return what the decay of coefficients tells of a mesh without an estimate, None if it may be fine enough."""
@@ -233,19 +228,6 @@ class StaticAttempts:
         if largest <= self._accuracy:
             return None
         return solution, largest, [each / (elements * largest) for each in errors]
-
-
-def _evaluated(row: Solution, quantity: Callable[[Solution], Any] | Point) -> np.ndarray:
-    return np.asarray(quantity(row) if callable(quantity) else row.displacement(quantity)[-1], dtype=float)
-
-
-def _rounded(row: Solution) -> Solution:
-    """Return a solution of one row with other round-off: every coordinate off by one part in 2^52, up or down."""
-    system = system_of(row.model, static=True)
-    signs = np.random.default_rng(0).choice((-1.0, 1.0), row.p.shape)
-    off = np.where(system.positions, system.extent, 1.0)
-    off[system.history.numbers] = 0.0
-    return replace(row, p=row.p + np.finfo(float).eps * signs * off)
 
 
 def refined(

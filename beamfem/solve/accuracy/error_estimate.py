@@ -30,6 +30,7 @@ from beamfem.results.full_turns import first_turns
 from beamfem.results.postprocess import position
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
+from beamfem.solve.accuracy.quantity_change import Quantity, evaluated, require_quantity
 from beamfem.solve.newton.newton import (
     Newton,
     NewtonResult,
@@ -146,17 +147,17 @@ def carried_coordinates(state: State, target: Model) -> np.ndarray:
     return p
 
 
-def carried_stresses(state: State, target: Model, step: np.ndarray | None = None) -> Stresses:
+def carried_stresses(state: State, target: Model, step: np.ndarray | None = None, *, static: bool = True) -> Stresses:
     """Return the stress resultants (ne, nq, ns) of each block of a model: polynomials through those of a state.
 
-    step (n,): a linearised change of the state that they are taken after.
+    step (n,): a linearised change of the state that they are taken after; static: whether the state is one of statics.
 
     The carried coordinates alone strain the finer elements between the points where the old ones had no strain, which
     would spoil the first tangent.
     """
     source = state.model
-    acting = _stresses_after(state, np.zeros(len(state.p)) if step is None else step)
-    blocks = system_of(target, static=True).blocks
+    acting = _stresses_after(state, np.zeros(len(state.p)) if step is None else step, static)
+    blocks = system_of(target, static).blocks
     result = tuple(np.zeros((len(block.kind), *block.stiffness.shape[1:3])) for block in blocks)
     for old, new in zip(source.meshes, target.meshes, strict=True):
         known, own = (each[mesh.block][_elements(mesh)] for each, mesh in ((acting, old), (result, new)))
@@ -237,28 +238,14 @@ def _complex(vectors: np.ndarray) -> np.ndarray:
     return np.asarray(vectors[..., 0] + 1j * vectors[..., 1])
 
 
-Quantity = Callable[[Solution], Any] | Point | None
-
-
 def error(solution: Solution, quantity: Quantity, row: int) -> Any:
     """Return the estimated change of a quantity with an infinitely fine mesh, see `Solution.error`."""
-    if not (quantity is None or isinstance(quantity, Point) or callable(quantity)):
-        raise InputError(
-            "quantity is a function of a solution, such as lambda s: s.rotation(beam.end)[-1], or a point, got "
-            f"{shown(quantity)}"
-        )
+    require_quantity(quantity)
     number, finer = enriched_row_kept(solution, row)
     if quantity is None:
         return largest_displacement_error(solution[number], finer)
-    evaluate = (lambda s: s.displacement(quantity)[-1]) if isinstance(quantity, Point) else quantity
-    before, after = evaluate(solution[number : number + 1]), evaluate(finer)
-    try:
-        change = np.asarray(after, dtype=float) - np.asarray(before, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(
-            f"quantity must return a number, or numbers of which there are as many on every mesh, got {shown(before)} "
-            f"and {shown(after)}"
-        ) from None
+    before, after = evaluated(quantity, solution[number : number + 1], finer)
+    change = (after - before)[-1] if isinstance(quantity, Point) else after - before
     return float(change) if change.ndim == 0 else change
 
 
@@ -423,11 +410,14 @@ def largest_displacement_error(state: State, finer: Solution, between_nodes: boo
 def error_shares(state: State, finer: Solution) -> list[np.ndarray]:
     """Return the share (ne,) [-] of each element of each beam in the error of a state; their sum is 1, or 0.
 
-    finer: the equilibrium on the enriched space. The error is measured by the complementary energy of the stress
-    resultants in which the two differ, 1/2 int dS C^-1 dS ds, with the diagonal of the section stiffness C.
+    finer: the equilibrium on the enriched space, or the row of a motion. The error is measured by the complementary
+    energy of the stress resultants in which the two differ, 1/2 int dS C^-1 dS ds, with the diagonal of the section
+    stiffness C.
     """
-    now = _stresses_after(finer[0], np.zeros(finer.model.size))
-    changes = [after - before for after, before in zip(now, carried_stresses(state, finer.model), strict=True)]
+    static = finer.static
+    now = _stresses_after(finer[0], np.zeros(finer.model.size), static)
+    carried = carried_stresses(state, finer.model, static=static)
+    changes = [after - before for after, before in zip(now, carried, strict=True)]
     return _shares(state.model, finer.model, _energies(finer.model, changes))
 
 
@@ -456,6 +446,21 @@ def position_shares(state: State, finer: Solution) -> list[np.ndarray]:
     elements = sum(map(len, within))
     pairs = zip(error_shares(state, finer), within, strict=True)
     return [np.maximum(at_ends / largest * share, own / (largest * elements)) for share, own in pairs]
+
+
+def shares_of_rows(
+    rows: Iterable[tuple[State, Solution]], errors: np.ndarray, shares_of: Callable[[State, Solution], list[np.ndarray]]
+) -> list[np.ndarray]:
+    """Return the largest share (ne,) [-] of each element of each beam in the errors (m,) of some rows.
+
+    rows: of each its state and its row on the enriched space; shares_of: `error_shares` or `position_shares`. The
+    shares of a row count as much as its error does beside the largest one, so that elements are short enough for all.
+    """
+    largest = float(errors.max()) or 1.0
+    weighed = [
+        [weight * share for share in shares_of(*row)] for row, weight in zip(rows, errors / largest, strict=True)
+    ]
+    return [np.max(beam, axis=0) for beam in zip(*weighed, strict=True)]
 
 
 _LOWEST = 3  # order of the axis whose coefficients tell its error
@@ -508,8 +513,8 @@ def mode_shares(modes: Iterable[tuple[State, np.ndarray, State, np.ndarray]]) ->
     return _shares(*known, total) if total else []
 
 
-def _stresses_after(state: State, step: np.ndarray) -> Stresses:
-    return predicted_stresses(system_of(state.model, static=True), state.p, step, state.at)
+def _stresses_after(state: State, step: np.ndarray, static: bool = True) -> Stresses:
+    return predicted_stresses(system_of(state.model, static), state.p, step, state.at)
 
 
 def _energies(model: Model, stresses: Sequence[np.ndarray]) -> list[np.ndarray]:

@@ -21,12 +21,13 @@ from beamfem.results.status import Statistics, Status
 from beamfem.solve.accuracy.adapted_mesh import prepared, refined_until
 from beamfem.solve.accuracy.carried_start import carried
 from beamfem.solve.accuracy.coarse_mesh import warned_of_coarse_motion
+from beamfem.solve.accuracy.quantity_change import Quantity
 from beamfem.solve.motion.consistent_rows import finished_rows
 from beamfem.solve.motion.constraints import impact, require_met, stopped_by_conditions
 from beamfem.solve.motion.error_control import march_to_tolerance
 from beamfem.solve.motion.events import Event
 from beamfem.solve.motion.initial_velocity import put_onto_supports, require_on_supports, start_velocity
-from beamfem.solve.motion.motion_error import MOST_MESHES, motion_attempt
+from beamfem.solve.motion.motion_error import LOOSE, MOST_MESHES, motion_attempt, rows_of, with_estimate_of
 from beamfem.solve.motion.motion_plan import AnyIntegrator, planned, settings_of, usual_integrator
 from beamfem.solve.motion.period_error import detuned
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
@@ -36,7 +37,7 @@ from beamfem.solve.motion.time_marching import Last, Record, cutter_of, march
 from beamfem.solve.motion.time_steps import SIDE
 from beamfem.solve.start.functions_of_time import name_unresolved
 from beamfem.solve.start.start_state import last_state, start_state, transferred_turns
-from beamfem.validation import flag
+from beamfem.validation import flag, positive
 
 
 @returned_on_interrupt
@@ -54,6 +55,7 @@ def simulate(
     events: Sequence[Event] = (),
     file: str | PathLike[str] | None = None,
     accuracy: float | None = None,
+    quantity: Quantity = None,
     watch: bool = False,
 ) -> Solution:
     """Integrate the equations of motion over time, with a fixed step, or with steps that follow a tolerance.
@@ -91,8 +93,12 @@ def simulate(
     events : sequence of Event, optional
         Functions of the state whose crossings of zero are recorded in the `events` of the solution, or end the motion.
     accuracy : float, [-], optional
-        Refine the mesh, as `solve_static` does, until positions are off by at most this number times the size of the
-        model, by an estimate of the error of the mesh alone; each mesh costs two motions.
+        Refine the mesh, as `solve_static` does, until positions at all rows are off by at most this number times the
+        size of the model, or the quantity by this number times its largest value; this is an estimate of the error of
+        the mesh alone, and each mesh costs two motions.
+    quantity : callable or Point, optional
+        What is to be accurate: a function of the motion that returns a number or numbers, such as a reaction at all
+        rows or the time of an event, or a point for its displacements at all rows; by default all positions.
     file : path, optional
         HDF5 file for the rows, which then take no memory while the motion runs; `resume` continues an interrupted
         motion, and `load` reads the file at any time. Tangents are factorised anew every 1000 steps at the latest, so
@@ -137,23 +143,35 @@ def simulate(
     """
     last_state(start)
     own = model
-    model, accuracy = prepared(model, accuracy, start)
+    model, accuracy = prepared(model, accuracy, start, quantity)
     if accuracy is not None and file is not None:
         raise InputError(
             "a motion in a file has one mesh; find it first, by motion = simulate(model, ..., accuracy=...)",
             remedy="Then simulate model.meshed(motion)" + (", with start=motion[0]" if start is not None else ""),
         )
     if accuracy is not None or (own.automatic and file is None):
-        others: dict[str, Any] = {"tolerance": tolerance, "save_at": save_at, "events": events, "watch": watch}
+        asked: dict[str, Any] = {"duration": duration, "save_every": save_every, "save_at": save_at, "events": events}
+        others: dict[str, Any] = {"step": step, "integrator": integrator, "velocity": velocity, "watch": watch}
+        loose = tolerance
+        if tolerance is not None and accuracy is not None:
+            # errors of steps far below those of the mesh would cost many steps on every mesh
+            loose = max(positive("tolerance", tolerance), LOOSE * accuracy)
 
-        def solve(model: Model) -> Solution:
-            return simulate(model, duration, step, integrator, carried(start, model), velocity, save_every, **others)
+        def solve(model: Model, like: Solution | None = None) -> Solution:
+            rows = asked
+            if like is not None and ((step is None and save_at is None) or any(event.stop for event in events)):
+                lasts = duration if quantity is not None else max(float(like.time[-1]), step or 0.0)
+                rows = rows_of(like, lasts, events)
+            return simulate(model, start=carried(start, model), tolerance=loose, **others, **rows)
 
         if accuracy is None:
             return warned_of_coarse_motion(solve(model), solve)
         with ends_as_a_whole():
-            refined = refined_until(model, accuracy, lambda model: motion_attempt(model, solve), MOST_MESHES)
-        return _told(refined)
+            refined = refined_until(model, accuracy, lambda model: motion_attempt(model, solve, quantity), MOST_MESHES)
+            if loose == tolerance:
+                return _told(refined)
+            final = simulate(refined.model, start=carried(start, refined.model), tolerance=tolerance, **others, **asked)
+            return with_estimate_of(refined, final)
     integrator = usual_integrator(model, tolerance) if integrator is None else integrator
     settings = settings_of(duration, step, integrator, save_every, tolerance, save_at, events)
     settings = replace(settings, watch=flag("watch", watch))

@@ -10,6 +10,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
+from beamfem.model.beam import Point
 from beamfem.model.model import Model
 from beamfem.precision.roundoff import FEW_DIGITS, remainder
 from beamfem.progress import kept, progress
@@ -26,7 +27,10 @@ from beamfem.solve.accuracy.error_estimate import (
     enriched,
     error_shares,
     largest_displacement_error,
+    position_shares,
+    shares_of_rows,
 )
+from beamfem.solve.accuracy.quantity_change import LOST, Quantity, change_if_found
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 from beamfem.solve.continuation.steps import Refused, Step, longest_accepted, longest_step, take_step, too_small
@@ -120,12 +124,13 @@ class PathRecord:
 _MOST_ROWS = 24  # of a path whose errors are estimated
 
 
-def path_attempt(path: Path) -> tuple[Path, float, Shares]:
+def path_attempt(path: Path, quantity: Quantity, trace: Callable[[Model], Path]) -> tuple[Path, float, Shares]:
     """Return a path, its largest estimated error [-], and the shares of the elements in it.
 
     The error is that of displacements relative to the size of the model, or that of load factors relative to the
     largest one. Each of some rows is corrected in the plane across the path, so that limit points do not amplify it.
-    Raises InputError for elements that lock.
+    With a quantity it is that of a point at these rows, or of a function of the path, which is traced on finer elements
+    for it, relative to the largest value. Raises InputError for elements that lock.
     """
     require_unlocked(path.computed(locking))
     model = enriched(path.model)
@@ -134,23 +139,33 @@ def path_attempt(path: Path) -> tuple[Path, float, Shares]:
     line = Continuation(system, newton, largest, largest)
     rows = np.unique(np.linspace(0, len(path) - 1, _MOST_ROWS).round().astype(int)).tolist()
     points = [np.append(carried_coordinates(path[row], model), path[row].at) for row in rows]
-    worst, shares = 0.0, None
+    pairs, moved, off = list[tuple[PathState, Solution]](), list[float](), list[float]()
+    lost = False
     for number in range(1, len(rows)):
         chord = points[min(number + 1, len(rows) - 1)] - points[number - 1]
         state = path[rows[number]]
-        stresses = carried_stresses(state, model)
-        corrected = line.correct(points[number], stresses, chord / line.length(chord))
+        corrected = line.correct(points[number], carried_stresses(state, model), chord / line.length(chord))
         if not corrected.ended.good:
-            return path, np.inf, None
+            lost = True
+            continue
         p, at = corrected.y[:-1], float(corrected.y[-1])
         rest = np.zeros((1, model.size))
         summary = Statistics(corrected.iterations, 1, 0, "an equilibrium on the enriched space")
         finer = Solution(model, True, np.array([at]), p[None], rest, rest.copy(), summary)
-        moved = largest_displacement_error(state, finer, between_nodes=True) / system.extent
-        error = max(moved, abs(at - state.at) / largest)
-        if error > worst:
-            worst, shares = error, error_shares(state, finer)
-    return path, worst, shares
+        change = largest_displacement_error(state, finer, between_nodes=True) / system.extent
+        moved.append(max(change, abs(at - state.at) / largest))
+        if isinstance(quantity, Point):
+            off.append(float(np.linalg.norm(finer.displacement(quantity)[-1] - state.displacement(quantity))))
+        pairs.append((state, finer))
+    if not pairs:
+        return path, np.inf, None
+    error = max(moved)
+    if isinstance(quantity, Point):
+        error = max(off) / (float(np.linalg.norm(path.displacement(quantity), axis=1).max()) or 1.0)
+    elif quantity is not None:
+        error = change_if_found(path, trace(model), quantity, LOST if lost else error)
+    shares = shares_of_rows(pairs, np.array(moved), position_shares if quantity is None else error_shares)
+    return path, max(error, LOST) if lost else error, shares
 
 
 _FIRST_MODE = 0.02  # distance along the mode of the first search: lengths of the model, radians
@@ -236,6 +251,7 @@ def trace_equilibrium(
     points: int = 500,
     newton: Newton | None = None,
     accuracy: float | None = None,
+    quantity: Quantity = None,
 ) -> Path:
     """Trace the equilibrium path from load factor 0, past limit points, or a branch from a bifurcation.
 
@@ -263,7 +279,11 @@ def trace_equilibrium(
         Tolerances of the iteration.
     accuracy : float, [-], optional
         Refine the mesh, as `solve_static` does, until displacements are off by at most this number times the size of
-        the model, and load factors by this number times the largest one, at every point of the path.
+        the model, and load factors by this number times the largest one, at every point of the path; or the quantity by
+        this number times its largest value.
+    quantity : callable or Point, optional
+        What is to be accurate: a function of the path that returns a number or numbers, such as the load factor of its
+        first limit point, or a point for its displacements; by default all displacements and load factors.
 
     Raises
     ------
@@ -304,14 +324,14 @@ def trace_equilibrium(
     if direction is None:
         direction = -1 if start is None and isinstance(until, float) and until < 0.0 else 1
     newton = require_newton(newton, Newton(iterations=_ITERATIONS))
-    model, accuracy = prepared(model, accuracy, start)
+    model, accuracy = prepared(model, accuracy, start, quantity)
 
     def trace(model: Model) -> Path:
         return _traced(model, until, start, direction, step, points, newton)
 
     if accuracy is None:
         return warned(trace(model))
-    return warned(refined_until(model, accuracy, lambda model: path_attempt(trace(model))))
+    return warned(refined_until(model, accuracy, lambda model: path_attempt(trace(model), quantity, trace)))
 
 
 def _traced(

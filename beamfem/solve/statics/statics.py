@@ -22,7 +22,7 @@ from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import warned
 from beamfem.solve.accuracy.adapted_mesh import DEFAULT, StaticAttempts, refined_until
 from beamfem.solve.accuracy.coarse_mesh import warned_of_coarse_mesh
-from beamfem.solve.accuracy.error_estimate import Quantity
+from beamfem.solve.accuracy.quantity_change import Quantity
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
 from beamfem.solve.newton.newton import (
     Newton,

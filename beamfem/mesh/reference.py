@@ -61,7 +61,7 @@ def interpolate(grid: Grid, vectors: np.ndarray, element: np.ndarray, xi: np.nda
     element_type = grid.beam.element
     field = element_type.field
     local = vectors * scales(element_type, grid.lengths[element])[:, :, None]
-    r, d = (local.take(chosen, axis=2) for chosen in (r_slots(field), d_slots(field)))
+    r, d = local[:, :, r_slots(field)], local[:, :, d_slots(field)]
     size, bend = jacobians(grid, element, xi)
     slope = 1.0 / size[:, None]
 

@@ -1,6 +1,6 @@
 """Linear models of small motions: against differences of nonlinear solutions, and modes found in another way."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -52,7 +52,7 @@ def test_the_steady_response_about_a_bent_state_is_the_derivative_of_static_solu
 
 
 def _with_amplitude(load, amplitude):
-    return type(load)(**{**load.__dict__, "amplitude": amplitude})
+    return replace(load, amplitude=amplitude)
 
 
 def test_one_load_that_is_listed_twice_is_one_input():

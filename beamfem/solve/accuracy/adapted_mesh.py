@@ -45,7 +45,7 @@ _LOWEST, _LOWEST_CURVED = 2, 4
 _REACH = 1e-2  # to the power of an order: by how much an error falls as far as elements of this order can tell
 _FROM = 3  # order from which on an error of 1 / _FROM belongs to a solution that is singular at once, see `_distance`
 _LARGEST = 0.2  # error that is believed; beyond, all that is known is that the mesh is too coarse
-_MOST_PARTS, _FEW_PARTS = 8.0, 2.0  # of an element from one mesh to the next, and where errors fall slowly
+_MOST_PARTS, _FEW_PARTS = 4.0, 2.0  # of an element from one mesh to the next, and where little is known or gained
 _PACE = 0.5  # part of the promised decrease of errors, in digits, below which that is slow
 _ENOUGH = 1.3  # times the unknowns needed: if the enriched space has no more, it is the next mesh
 _BETTER = 0.1  # of an error: that of the space it is estimated by
@@ -248,7 +248,8 @@ def refined(
     """
     elements = sum(mesh.elements for mesh in model.meshes)
     even = [np.full(mesh.elements, 1.0 / elements) for mesh in model.meshes]
-    error = min(error, _LARGEST) if np.isfinite(error) else _LARGEST
+    if not error < _LARGEST:
+        error, most_parts = _LARGEST, _FEW_PARTS
     lowest = min(mesh.beam.element.field.degree for mesh in model.meshes)
     target = error * max((target / error) ** (1.0 / pace), _REACH**lowest)
     errors = [np.minimum(elements * error * share, _LARGEST) for share in shares or even]

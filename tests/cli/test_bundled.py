@@ -121,7 +121,8 @@ def test_the_studies_of_the_repository_have_options(monkeypatch):
     found = json.loads(done.stdout)["result"]
     assert found["ANCF-CRBF, continuum, plane stress"][1] == pytest.approx(0.01819510330389, rel=2e-4)
     message = invoke("study", "penduum").stderr
-    assert "did you mean pendulum? Known are accuracy/random_motions, accuracy/random_statics, all, benchmarks/chain_growth, " in message
+    known = "accuracy/random_motions, accuracy/random_statics, all, benchmarks/chain_growth, "
+    assert f"did you mean pendulum? Known are {known}" in message
     assert message.count("chain_growth") == 1
 
 

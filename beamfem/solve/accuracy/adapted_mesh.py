@@ -35,6 +35,7 @@ from beamfem.solve.accuracy.error_estimate import (
     remeshed,
     with_elements,
 )
+from beamfem.solve.accuracy.narrow_features import profiles_of, resolved
 from beamfem.solve.accuracy.quantity_change import Quantity, relative_change, require_quantity
 from beamfem.validation import positive
 
@@ -105,7 +106,10 @@ def refined_until(
     smallest error, or that of a solve that fails on finer meshes, too.
     """
     # a result lists its elements, and has beams with numbers of them to be saved
-    first = [_first(*each, accuracy) for each in zip(model.beams, model.nodes_needed.fractions, strict=True)]
+    profiles = profiles_of(model)
+    jumps = [() if profile is None else profile.jumps for profile in profiles]
+    needed = [(*own, *others) for own, others in zip(model.nodes_needed.fractions, jumps, strict=True)]
+    first = [_first(*each, accuracy) for each in zip(model.beams, needed, strict=True)]
     fixed = [ends for _, ends in first]
     model = remeshed(model, [beam for beam, _ in first])
     iterations = elements = stalled = number = 0
@@ -116,6 +120,7 @@ def refined_until(
     evenly = False
     while number < most and stalled < _MOST_STALLED:
         number += 1
+        model = resolved(model, profiles, accuracy)
         try:
             result, error, shares = attempt(model)
         except ConvergenceError as reason:

@@ -117,13 +117,18 @@ def meshed(model: Model, like: State | Solution | str) -> Model:
 
 
 def _enriched(mesh: BeamMesh) -> Beam:
-    beam = mesh.beam
+    length = mesh.vertices[-1]
+    middles = mesh.arc_length(np.arange(mesh.elements), np.full(mesh.elements, 0.5))
+    return finer_beam(mesh.beam, mesh.vertices / length, middles / length)
+
+
+def finer_beam(beam: Beam, ends: np.ndarray, middles: np.ndarray | None = None) -> Beam:
+    """Return a beam on the enriched space; ends (ne + 1,): fractions at which elements end, middles (ne,): of each."""
     field = beam.element.field
     if type(field) is Lagrange and field.order <= _RAISED:
-        return with_elements(beam, mesh.vertices / mesh.vertices[-1], of_order(beam.element, field.order + 1))
-    along = mesh.arc_length(np.arange(mesh.elements), np.full(mesh.elements, 0.5))
-    ends = np.sort(np.concatenate([mesh.vertices, along])) / mesh.vertices[-1]
-    return with_elements(beam, ends)
+        return with_elements(beam, ends, of_order(beam.element, field.order + 1))
+    between = 0.5 * (ends[1:] + ends[:-1]) if middles is None else middles
+    return with_elements(beam, np.sort(np.concatenate([ends, between])))
 
 
 def of_order(element: Element, order: int) -> Element:

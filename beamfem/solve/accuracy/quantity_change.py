@@ -39,11 +39,11 @@ def evaluated(
     found = [each.displacement(quantity) if isinstance(quantity, Point) else quantity(each) for each in (before, after)]
     with suppress(TypeError, ValueError):
         numbers = tuple(np.asarray(each, dtype=float) for each in found)
-        if numbers[0].shape == numbers[1].shape:
+        if numbers[0].shape == numbers[1].shape and all(np.isfinite(each).all() for each in numbers):
             return numbers[0], numbers[1]
     raise InputError(
-        f"quantity must return a number, or numbers of which there are as many on every mesh, got {shown(found[0])} "
-        f"and {shown(found[1])}"
+        "quantity must return a number, or numbers of which there are as many on every mesh, and finite ones, got "
+        f"{shown(found[0])} and {shown(found[1])}"
     )
 
 

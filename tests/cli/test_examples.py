@@ -68,6 +68,7 @@ def test_the_cantilever_is_reissners(printed):
     tip = tip_displacement(1.0, (0.0, force), rigidity.bending, rigidity.axial, rigidity.shear)
     assert numbers(lines[0]) == pytest.approx(tip, abs=1e-6)
     moment = force * (1.0 + tip[0])
+    # forces and moments are printed with two decimals
     assert numbers(lines[1]) == pytest.approx([0.0, -force, -moment], abs=6e-3)
     assert numbers(lines[2]) == pytest.approx([moment], abs=6e-3)
 
@@ -82,13 +83,14 @@ def test_the_bracket_sinks_as_a_beam_column(printed):
     sag = reach * weight * reach * np.tan(k * height) / (k * rigidity.bending)
     sag += weight * (reach**3 / (3.0 * rigidity.bending) + height / rigidity.axial + reach / rigidity.shear)
     assert numbers(lines[0])[0] == pytest.approx(1e3 * sag, abs=2e-4)
-    assert numbers(lines[1]) == pytest.approx([0.0, weight, weight * reach / np.cos(k * height)], abs=1e-3)
+    # printed with five digits
+    assert numbers(lines[1]) == pytest.approx([0.0, weight, weight * reach / np.cos(k * height)], abs=6e-4)
 
 
 def test_the_frame_snaps_where_collocation_says(printed):
     lines, _ = printed("snap_through")
     for line, (load, _, down) in zip(lines, lee_frame.LIMITS, strict=True):
-        assert numbers(line) == pytest.approx([load, down], abs=6e-3)
+        assert numbers(line) == pytest.approx([load, down], abs=6e-3)  # loads are printed with two decimals
 
 
 def test_the_column_buckles_and_bends_as_reissner_and_the_elastica(printed):
@@ -224,7 +226,7 @@ def test_the_arch_takes_what_its_snaps_release(printed):
     snaps = np.flatnonzero(np.abs(np.diff(way)) > 0.02)
     assert len(snaps) == 2
     released = sum(force[i : i + 2].mean() * np.diff(way[i : i + 2]) - np.diff(stored[i : i + 2]) for i in snaps)
-    assert numbers(lines[0])[0] == pytest.approx(released[0], rel=0.02)
+    assert numbers(lines[0])[0] == pytest.approx(released[0], rel=1e-4)  # printed with four digits
     assert abs(way[-1]) < 1e-8
 
 
@@ -257,8 +259,9 @@ def test_the_footbridge_swings_as_a_ritz_model_of_its_deck_and_mast(printed):
         across = np.eye(2) - np.outer(unit, unit)
         stiffness += moves.T @ (spring * np.outer(unit, unit) + tension / away * across) @ moves
     found = np.sqrt(eigh(stiffness, inertia, eigvals_only=True)[:3]) / (2.0 * np.pi)
-    assert numbers(lines[1]) == pytest.approx(found, rel=0.025)
-    assert sum(pull) == pytest.approx(0.0, abs=0.01 * pull[-1])
+    # a deck that does not shorten explains 0.7 and 0.2 of the 1.4 and 1.9 % of the second and third mode; open otherwise
+    assert numbers(lines[1]) == [pytest.approx(f, rel=rel) for f, rel in zip(found, (1e-4, 0.02, 0.02), strict=True)]
+    assert sum(pull) == pytest.approx(0.0, abs=0.004 * pull[-1])  # the mast, bent a little, carries 0.3 %
 
 
 def test_the_strip_is_rolled_up_into_two_circles(printed):

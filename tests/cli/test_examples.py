@@ -259,7 +259,7 @@ def test_the_footbridge_swings_as_a_ritz_model_of_its_deck_and_mast(printed):
         across = np.eye(2) - np.outer(unit, unit)
         stiffness += moves.T @ (spring * np.outer(unit, unit) + tension / away * across) @ moves
     found = np.sqrt(eigh(stiffness, inertia, eigvals_only=True)[:3]) / (2.0 * np.pi)
-    # a deck that does not shorten explains 0.7 and 0.2 of the 1.4 and 1.9 % of the second and third mode; open otherwise
+    # a deck that does not shorten explains 0.7 and 0.2 of 1.4 and 1.9 % of modes 2 and 3; the rest is open
     assert numbers(lines[1]) == [pytest.approx(f, rel=rel) for f, rel in zip(found, (1e-4, 0.02, 0.02), strict=True)]
     assert sum(pull) == pytest.approx(0.0, abs=0.004 * pull[-1])  # the mast, bent a little, carries 0.3 %
 

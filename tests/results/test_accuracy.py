@@ -599,6 +599,23 @@ def test_frequencies_and_critical_loads_refine_only_where_shapes_bend():
         assert post < 0.8 * mast
 
 
+def test_critical_loads_refine_the_beams_whose_stress_resultants_are_off():
+    """A column between hinges buckles, whose force depends on how the rest of a portal bends; it had 22 elements."""
+
+    def portal(**mesh):
+        places, section = [(0, 0), (0, 3), (4, 3), (4, 0)], bf.Rectangle(0.05, 0.05)
+        beams = [bf.Beam(bf.Line(a, b), section=section, material=STEEL, **mesh) for a, b in pairwise(places)]
+        left, top, right = beams
+        loads = [bf.PointForce(top.start, (2e3, 0.0)), bf.DistributedLoad(top, (0.0, -1.5e3))]
+        joints = [bf.Rigid(left.end, top.start), bf.Hinge(top.end, right.start)]
+        return bf.Model(beams, [bf.Clamp(left.start), bf.Pin(right.end)], loads, joints)
+
+    exact = bf.solve_buckling(portal(elements=4, element=bf.CRBF(8)), 2).load_factors
+    found = bf.solve_buckling(portal(), 2, accuracy=1e-6)
+    assert found.load_factors == pytest.approx(exact, rel=1e-6)
+    assert sum(mesh.elements for mesh in found.model.meshes) <= 12
+
+
 def test_there_are_no_more_elements_than_shares_ask_for():
     """Two and five elements, beside a force, of which 1.2 times as many are enough, become three and six."""
     _, model = model_of(bf.CRBF(8), 6, bent)

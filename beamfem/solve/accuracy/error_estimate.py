@@ -422,7 +422,7 @@ def error_shares(state: State, finer: Solution) -> list[np.ndarray]:
     static = finer.static
     now = _stresses_after(finer[0], np.zeros(finer.model.size), static)
     carried = carried_stresses(state, finer.model, static=static)
-    changes = [after - before for after, before in zip(now, carried, strict=True)]
+    changes = tuple(after - before for after, before in zip(now, carried, strict=True))
     return _shares(state.model, finer.model, _energies(finer.model, changes))
 
 
@@ -491,44 +491,64 @@ def decay_errors(state: State) -> list[np.ndarray] | None:
     return result
 
 
-def mode_shares(modes: Iterable[tuple[State, np.ndarray, State, np.ndarray]]) -> list[np.ndarray]:
+def mode_shares(
+    modes: Iterable[tuple[State, np.ndarray, State, np.ndarray]], errors: np.ndarray, stiffness: np.ndarray
+) -> list[np.ndarray]:
     """Return the share (ne,) [-] of each element of each beam in the relative errors of eigenvalues; their sum is 1.
 
-    modes: state and shape (n,) of each, and both on the enriched space. An eigenvalue is off by twice the energy of the
-    difference of the shapes, if both have a modal mass of 1; shapes are compared by their stress resultants.
+    modes: state and shape (n,) of each, and both on the enriched space; errors (m,): relative ones of the eigenvalues;
+    stiffness (m,): of the shapes on the enriched space. The elastic stiffness of a shape is the energy of its stress
+    resultants, and the rest is geometric. This is linear in the stress resultants of the state, so that it is off by
+    what these are; whatever this does not explain of the error is due to the shape.
     """
-    total: list[np.ndarray] = []
-    for state, shape, finer, finer_shape in modes:
+    total = list[np.ndarray]()
+    for (state, shape, finer, finer_shape), error, all_stiffness in zip(modes, errors, stiffness, strict=True):
         rest, finer_rest = np.zeros_like(shape), np.zeros_like(finer_shape)
-        pairs = [
-            (carried_stresses(state, finer.model, shape), carried_stresses(state, finer.model, rest)),
-            (_stresses_after(finer, finer_shape), _stresses_after(finer, finer_rest)),
-        ]
-        before, after = ([moved - still for moved, still in zip(*pair, strict=True)] for pair in pairs)
-        # a mode has no sign
-        both = [
-            _energies(finer.model, [sign * a - b for a, b in zip(before, after, strict=True)]) for sign in (1.0, -1.0)
-        ]
-        least = min(both, key=lambda energies: sum(float(each.sum()) for each in energies))
-        size = sum(float(each.sum()) for each in _energies(finer.model, after))
-        if size > 0.0:
-            parts = [each / size for each in least]
-            total = parts if not total else [a + b for a, b in zip(total, parts, strict=True)]
-            known = state.model, finer.model
-    return _shares(*known, total) if total else []
+        still, finer_still = carried_stresses(state, finer.model, rest), _stresses_after(finer, finer_rest)
+        moved, finer_moved = carried_stresses(state, finer.model, shape), _stresses_after(finer, finer_shape)
+        before, after = (
+            tuple(a - b for a, b in zip(*pair, strict=True)) for pair in ((moved, still), (finer_moved, finer_still))
+        )
+        off, elastic, by_shape = _difference(state.model, finer.model, before, after)
+        if not elastic > 0.0:
+            continue
+        of_state, by_state = 0.0, by_shape
+        if not np.array_equal(state.p, system_of(state.model, static=True).reference):
+            state_off, _, by_state = _difference(state.model, finer.model, still, finer_still)
+            geometric = abs(all_stiffness / elastic - 1.0)
+            of_state = min(max(error - off, 0.0), geometric * state_off**0.5)
+        parts = [(error - of_state) * a + of_state * b for a, b in zip(by_shape, by_state, strict=True)]
+        total = parts if not total else [a + b for a, b in zip(total, parts, strict=True)]
+    whole = sum(float(each.sum()) for each in total)
+    return [each / whole if whole > 0.0 else each for each in total]
+
+
+def _difference(model: Model, finer: Model, before: Stresses, after: Stresses) -> tuple[float, float, list[np.ndarray]]:
+    """Return the energy of the difference of stress resultants over that of those after, the latter, and shares in it.
+
+    Those before are scaled so that it is least, as shapes have no scale, and states belong to other load factors.
+    """
+    joint, own, size = (
+        sum(float(each.sum()) for each in _energies(finer, *pair))
+        for pair in ((before, after), (before, before), (after, after))
+    )
+    scale = joint / own if own > 0.0 else 0.0
+    off = _energies(finer, tuple(scale * a - b for a, b in zip(before, after, strict=True)))
+    return (sum(float(each.sum()) for each in off) / size if size > 0.0 else 0.0), size, _shares(model, finer, off)
 
 
 def _stresses_after(state: State, step: np.ndarray, static: bool = True) -> Stresses:
     return predicted_stresses(system_of(state.model, static), state.p, step, state.at)
 
 
-def _energies(model: Model, stresses: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """Return twice the complementary energy (ne,) of stress resultants in the elements of each block."""
+def _energies(model: Model, stresses: Stresses, others: Stresses | None = None) -> list[np.ndarray]:
+    """Return the complementary work (ne,) of stress resultants on the strains of others, their own by default."""
     result = []
-    for block, values in zip(system_of(model, static=True).blocks, stresses, strict=True):
+    blocks = system_of(model, static=True).blocks
+    for block, values, other in zip(blocks, stresses, others or stresses, strict=True):
         stiffness = np.einsum("cqii->cqi", block.stiffness)
         flexibility = np.divide(1.0, stiffness, out=np.zeros_like(stiffness), where=stiffness > 0.0)
-        result.append(((values**2 * flexibility[block.kind]).sum(axis=-1) * block.weight[block.kind]).sum(axis=-1))
+        result.append(((values * other * flexibility[block.kind]).sum(axis=-1) * block.weight[block.kind]).sum(axis=-1))
     return result
 
 

@@ -354,7 +354,8 @@ def solve_modes(
     modes, findings = _modes(model, count, about)
     warn_of(findings)
     if own.automatic:
-        off = _error(modes, _modes(enriched(model), count, enriched_state(modes.state))[0])
+        finer = _modes(enriched(model), count, enriched_state(modes.state))[0]
+        off = float(np.max(_errors(modes, finer), initial=0.0))
         if off > WARNED:
             remedy = "give the whole solution, which tells its history, or find it with more elements"
             warn_of([kept_coarse(f"a frequency is off by about {100.0 * off:.2g} %", remedy)])
@@ -378,17 +379,17 @@ def _attempt(model: Model, count: int, about: State | Solution | None) -> tuple[
     require_unlocked(findings)
     richer = enriched(model)
     finer = _modes(richer, count, carried(about, richer))[0]
-    elastic = finer.frequencies > 0.0
+    elastic, errors = finer.frequencies > 0.0, _errors(modes, finer)
     shapes = zip(np.real(modes.modes[elastic]), np.real(finer.modes[elastic]), strict=True)
-    shares = mode_shares((modes.state, before, finer.state, after) for before, after in shapes)
-    return modes, _error(modes, finer), shares or None
+    stiffness = (2.0 * np.pi * finer.frequencies[elastic]) ** 2  # with a modal mass of 1
+    shares = mode_shares(((modes.state, a, finer.state, b) for a, b in shapes), 2.0 * errors, stiffness)
+    return modes, float(np.max(errors, initial=0.0)), shares or None
 
 
-def _error(modes: Modes, finer: Modes) -> float:
-    """Return the largest relative error of frequencies beside those of a finer mesh."""
+def _errors(modes: Modes, finer: Modes) -> np.ndarray:
+    """Return the relative errors (m,) of elastic frequencies beside those of a finer mesh."""
     elastic = finer.frequencies > 0.0
-    change = np.abs(modes.frequencies[elastic] / finer.frequencies[elastic] - 1.0)
-    return float(np.max(change, initial=0.0))
+    return np.asarray(np.abs(modes.frequencies[elastic] / finer.frequencies[elastic] - 1.0))
 
 
 def _modes(model: Model, count: int, about: State | Solution | None) -> tuple[Modes, Sequence[Finding]]:

@@ -285,7 +285,8 @@ def _attempt(model: Model, count: int, about: State | Solution | None) -> tuple[
         return None, np.inf, None
     change = np.abs(buckling.load_factors - finer.load_factors) / np.abs(finer.load_factors)
     shapes = zip(_shapes(buckling), _shapes(finer), strict=True)
-    return (buckling, findings), float(np.max(change, initial=0.0)), mode_shares((*a, *b) for a, b in shapes) or None
+    shares = mode_shares(((*a, *b) for a, b in shapes), change, np.zeros_like(change))
+    return (buckling, findings), float(np.max(change, initial=0.0)), shares or None
 
 
 def _shapes(buckling: Buckling) -> Iterator[tuple[State, np.ndarray]]:

@@ -95,6 +95,12 @@ def test_open_conditions_are_no_conditions():
         np.testing.assert_allclose(other, one, rtol=1e-8, atol=1e-12)
 
 
+def test_a_path_goes_on_as_conditions_close():
+    model, beam, _ = laid(8, 3e-3, 2000.0)
+    path, static = bf.trace_equilibrium(model, until=1.0), bf.solve_static(model)
+    np.testing.assert_allclose(path.position(beam.end)[-1], static.position(beam.end)[-1], rtol=0, atol=1e-10)
+
+
 def test_a_beam_that_touches_a_floor_vibrates_and_is_stable_as_on_a_roller():
     height, load = 1e-3, 20.0 * BENDING * 1e-3
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 8, bf.CRBF(2), SECTION, STEEL)

@@ -80,3 +80,35 @@ def test_loads_may_begin_to_grow_late():
         path = bf.trace_equilibrium(bf.Model([beam], [bf.Clamp(beam.start)], [push]), until=until)
         ends.append(path.displacement(beam.end)[-1])
     assert ends[0] == pytest.approx(ends[1], rel=1e-10)
+
+
+STRIP = bf.Rectangle(0.01, 0.005), bf.Material(2.1e11, 0.3, 7850.0)
+HALF = bf.Beam(bf.Line((-1, 0), (0, 0.1)), 4, bf.CRBF(3), *STRIP)
+SYMMETRY = bf.Clamp(HALF.start), bf.Prescribed(HALF.end, ux=0.0, rotation=0.0)
+TOGGLE = bf.Model([HALF], SYMMETRY, [bf.PointForce(HALF.end, (0.0, -50.0))])
+
+
+@pytest.mark.filterwarnings("ignore::beamfem.UnstableWarning")
+@pytest.mark.parametrize(("height", "stiffness"), [(0.05, 1e8), (0.02, 3e3), (0.02, 1e5), (-0.03, 1e5)])
+def test_a_snapping_toggle_is_caught_by_a_stop(height, stiffness):
+    """Half of such paths ended there. A stop that ends the fall of the load factor makes a limit point at its place."""
+    stop = bf.Stop(HALF.end, (0.0, height), (0.0, 1.0), stiffness)
+    path = bf.trace_equilibrium(TOGGLE.with_(connectors=[stop]), until=6.0)
+    high, low = path.limit_points
+    assert high.at == pytest.approx(3.0912387, rel=1e-6)
+    at = float(low.position(HALF.end)[1])
+    if height > -0.02 and stiffness > 1e4:
+        assert at == pytest.approx(height, abs=1e-6)
+    held = bf.Model([HALF], [SYMMETRY[0], bf.Prescribed(HALF.end, ux=0.0, uy=at - 0.1, rotation=0.0)])
+    by_beams = -bf.solve_static(held).reaction(HALF.end)[-1, 1] / 50.0
+    assert low.at == pytest.approx(by_beams + max(height - at, 0.0) * stiffness / 50.0, abs=1e-4)
+    assert path.load_factor[-1] == 6.0
+
+
+def test_a_path_over_a_stop_ends_in_the_state_of_statics():
+    stop = bf.Stop(BAR.end, (100.0, -3.0), (0.0, 1.0), 1e6)
+    model = bf.Model([BAR], [CLAMP], [bf.PointForce(BAR.end, (-50.0, -1000.0))], connectors=[stop])
+    path, static = bf.trace_equilibrium(model, 1.0), bf.solve_static(model)
+    np.testing.assert_allclose(path.position(BAR.end)[-1], static.position(BAR.end)[-1], rtol=0, atol=1e-9)
+    assert len(path) < 30
+    assert not bf.solve_buckling(model, 1).load_factors.size

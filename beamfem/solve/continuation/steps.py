@@ -8,6 +8,7 @@ from typing import TypeVar
 import numpy as np
 from scipy.linalg import LinAlgError
 
+from beamfem.equations.equations import load_change, residual_at_rest
 from beamfem.errors import InputError
 from beamfem.solve.continuation.bifurcations import Crossing, bifurcations
 from beamfem.solve.continuation.continuation import Continuation, Corrected, PathPoint
@@ -35,7 +36,11 @@ _WANTED_ITERATIONS = 8
 # one that keeps the determinant away from zero, as two pivots can change their signs together.
 _PAIR = 1.0 / 64.0
 _LARGEST_INCREASE = 4.0
-
+_KINK = 1e-6  # shorter steps may cross a kink of the path, such as where a stop is hit
+_INTO = 2.0  # steps into a kink, and along the path behind it
+_BEHIND = 8.0
+_BENDS = 0.1  # of the growth of unbalanced forces along three steps: less at a kink, 0.25 on a smooth path
+_STIFFENS = 0.1  # of the change of loads: the least growth at a kink
 
 _Found = TypeVar("_Found")
 
@@ -127,7 +132,13 @@ def take_step(
     to: load factor at the end of the step, if it is given; strict: whether to refuse a step whose iteration passed
     states with other counts of negative pivots than its ends.
     """
+    smooth = point
+    if size < _KINK:
+        point = _behind_kink(line, point, size)
     change = size * point.tangent
+    if point is not smooth:  # far enough for the new stiffness to act
+        change = size * (_INTO * smooth.tangent + _BEHIND * point.tangent)
+        size *= _BEHIND
     farthest = _FARTHEST * size
     start, stresses, plane = point.y + change, line.stresses(point.y, change), line.plane(point.tangent)
     if to is not None:
@@ -154,7 +165,7 @@ def take_step(
         return Refused("the path turns too sharply", corrected.iterations)
     if leaves_arc(correction, turn) and correction * size > _ANOTHER:
         return Refused("the equilibrium beside the end of the step is on another path", corrected.iterations)
-    if _beside_tangents(line, point, new) > _ASIDE:
+    if point is smooth and _beside_tangents(line, point, new) > _ASIDE:
         return Refused("the step leaves the plane of the tangents at its ends", corrected.iterations)
     segment = Segment(line, point, new)
     try:
@@ -162,9 +173,39 @@ def take_step(
         crossings = bifurcations(segment, limits)
     except SegmentLostError as error:
         return Refused(f"a critical point was not found: {error}", corrected.iterations + segment.iterations)
+    if point.tangent[-1] * smooth.tangent[-1] < 0.0:
+        limits = [0.0, *limits]
     increase = min(_WANTED_TURN / max(turn, 1e-12), _WANTED_ITERATIONS / corrected.iterations, _LARGEST_INCREASE)
     iterations = corrected.iterations + segment.iterations
     return Step(segment, limits, crossings, iterations, size * max(increase, 0.25))
+
+
+def _behind_kink(line: Continuation, point: PathPoint, size: float) -> PathPoint:
+    """Return a point with the tangent behind a kink of the path that lies within a step ahead, if there is one.
+
+    There the stiffness jumps, as where a part hits a stop, so that forces which a step along the tangent leaves
+    unbalanced grow linearly. The sign of the determinant times the slope of the load factor stays the same.
+    """
+    system, at = line.system, point.load_factor
+    scale = line.scale[system.free_dofs]
+
+    def unbalanced(steps: float) -> np.ndarray:
+        y = point.y + steps * size * point.tangent
+        return np.asarray(residual_at_rest(system, y[:-1], float(y[-1]))[system.free_dofs] * scale)
+
+    try:
+        one, two, three = map(unbalanced, (1.0, 2.0, 3.0))
+        loads = load_change(system, point.y[:-1], at, at + size * point.tangent[-1])[system.free_dofs] * scale
+        growth = float(np.linalg.norm(three - one))
+        bend = float(np.linalg.norm(three - 2.0 * two + one))
+        if bend > _BENDS * growth or growth < _STIFFENS * float(np.linalg.norm(loads)):
+            return point
+        new = line.linearised(point.y + _INTO * size * point.tangent, point.tangent)
+    except LinAlgError:
+        return point
+    odd = (new.negative_pivots - point.negative_pivots) % 2 == 1
+    forward = (new.tangent[-1] * point.tangent[-1] < 0.0) == odd
+    return PathPoint(point.y, new.tangent if forward else -new.tangent, new.factors)
 
 
 def leaves_arc(deviation: float, turn: float) -> bool:

@@ -212,7 +212,8 @@ def _bar_of_rows(axes: Any, solution: Solution, rows: np.ndarray, own: bool) -> 
     colours = [shade((order + 1) / len(rows)) for order in range(len(rows))]
     norm = BoundaryNorm(np.arange(len(rows) + 1) - 0.5, len(rows))
     colour_bar = _add_bar(axes, ScalarMappable(norm, ListedColormap(colours)), f"{name} [{unit}]", own)
-    colour_bar.set_ticks(np.arange(len(rows)), labels=[f"{value:.3g}" for value in values])
+    labels = ([f"{value:.{digits}g}" for value in values] for digits in (3, 4, 5, 6))
+    colour_bar.set_ticks(np.arange(len(rows)), labels=max(labels, key=lambda found: len(set(found))))
     colour_bar.ax.tick_params(length=0)
 
 

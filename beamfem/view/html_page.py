@@ -12,6 +12,7 @@ from beamfem.atomic_write import path_of, whole
 from beamfem.view.notebook_paths import WrittenFile
 
 _WORD = " class='word'"
+_LONG = 24  # rows of a table above which it is folded
 
 
 @dataclass(frozen=True)
@@ -76,5 +77,7 @@ def _table(table: Table) -> str:
     # a browser would break 1.5e-02 and ANCF-CRBF after the sign
     cells = [[f"<td{'' if ' ' in text else _WORD}>{escape(text)}</td>" for text in row] for row in table.rows]
     rows = "".join(f"<tr>{''.join(row)}</tr>" for row in cells)
-    title = f"<h3>{escape(table.title)}</h3>"
-    return f"{title}<div class='wide'><table><tr>{head}</tr>{rows}</table></div><p>{escape(table.remark)}</p>"
+    body = f"<div class='wide'><table><tr>{head}</tr>{rows}</table></div>"
+    if len(cells) > _LONG:
+        body = f"<details><summary>{len(cells)} rows</summary>{body}</details>"
+    return f"<h3>{escape(table.title)}</h3>{body}<p>{escape(table.remark)}</p>"

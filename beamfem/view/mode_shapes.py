@@ -76,7 +76,8 @@ def _plot(
     height = np.clip(_WIDTH * size[1] / size[0] if size[0] > 0.0 else np.inf, _LEAST_HEIGHT, 1.4 * _WIDTH) + 0.7
     width = np.clip((height - 0.7) * size[0] / max(size[1], 1e-12), 2.2, _WIDTH)
     if ax is None:
-        figure = empty_figure(columns * width + 0.6, lines * height + 0.7, pyplot=path is None)
+        legend = 0.7 if columns > 1 else 1.1  # in a line, or below one another [inch]
+        figure = empty_figure(columns * width + 0.6, lines * height + legend, pyplot=path is None)
         grid = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True).ravel().tolist()
     else:
         grid = given_axes(ax, number)
@@ -94,5 +95,6 @@ def _plot(
         axes.set_visible(False)
     if ax is None:
         entries = [original, *(entry(0.5 * (order + 1), name) for order, name in enumerate(names))]
-        figure.legend(handles=entries, loc="outside lower center", ncols=len(entries), frameon=False, fontsize=9)
+        options = {"ncols": 3 if columns > 1 else 1, "frameon": False, "fontsize": 9}
+        figure.legend(handles=entries, loc="outside lower center", **options)
     return save_figure(grid[0].figure.figure, path)

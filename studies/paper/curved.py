@@ -218,7 +218,7 @@ def _draw(result: Curved, path: Path) -> None:
     axes.minorticks_off()
     axes.set_xlabel("elements")
     axes.set_ylabel("error of the tip / R")
-    axes.legend(frameon=False, fontsize=8, loc="lower left")
+    axes.legend(frameon=False, fontsize=8, loc="lower left", bbox_to_anchor=(1.0, 0.0))
     save_figure(canvas, path)
     save_figure(canvas, path.with_suffix(".png"))
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from beamfem.view.html_page import Entry, Table
-from beamfem.view.plots import COLOURS, new_figure, save_figure
+from beamfem.view.plots import COLOURS, legend_over, new_figure, save_figure
 from studies.paper.pendulum import Run
 
 ANCF, CRBF, BILINEAR = "ANCF", "ANCF-CRBF", "bilinear-CRBF"
@@ -128,15 +128,15 @@ def judge(figure: Figure, runs: Runs) -> tuple[str, bool]:
     largest, mean, spread = difference(figure, runs)
     if figure.quantity == "length_of_r_y":
         deviations = {key: np.abs(values(runs[key], "length_of_r_y") - 1.0).max() for key in figure.curves}
-        found = ", ".join(f"{name} {value:.1e}" for (name, _), value in deviations.items())
+        found = ", ".join(f"{value:.2g} with {name}" for (name, _), value in deviations.items())
         rotations = [value for (name, _), value in deviations.items() if name != ANCF]
         return f"the largest ||r_y| - 1| is {found}; close to 1 is at most {GOOD:g}.", max(rotations) < GOOD
     if figure.number == 12:
-        found = f"the largest difference is {largest:.1e} (range {spread:.1e}); about 0.0005 is 2.5e-4 to 7.5e-4."
+        found = f"the largest difference is {largest:.2g} (range {spread:.2g}); about 0.0005 is 0.00025 to 0.00075."
         return found, 2.5e-4 < largest < 7.5e-4
     share = mean / spread
     found = (
-        f"the rms difference is {mean:.1e}, {100 * share:.1f} % of the range, the largest {largest:.1e}; "
+        f"the rms difference is {mean:.2g}, {100 * share:.2g} % of the range, the largest {largest:.2g}; "
         f"good is an rms difference of at most {100 * GOOD:.0f} % of the range."
     )
     return found, share <= GOOD
@@ -148,10 +148,11 @@ def draw(figure: Figure, runs: Runs, folder: Path) -> Entry:
     for i, key in enumerate(figure.curves):
         run = runs[key]
         style = ("-", "--", ":")[i]
-        axes.plot(run.time, values(run, figure.quantity), style, color=COLOURS[i], label=f"{key[0]}, {key[1]}")
+        axes.plot(run.time, values(run, figure.quantity), style, color=COLOURS[i], label=f"{key[1]} {key[0]}")
     axes.set_xlabel("time [s]")
     axes.set_ylabel(figure.label)
-    axes.legend(frameon=False, title="element, number")
+    axes.ticklabel_format(useOffset=False)
+    legend_over(axes, 2)
     path = folder / f"figure{figure.number:02d}.svg"
     save_figure(canvas, path)
     save_figure(canvas, path.with_suffix(".png"))

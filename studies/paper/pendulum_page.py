@@ -9,12 +9,12 @@ from studies.paper.pendulum_figures import FIGURES, draw, table_of_times
 CASES = {  # second moment of area [m^4], and what it means
     "printed": (
         pendulum.PRINTED,
-        "I = 8.533e-6 m^4 as printed: a rectangle 0.253 m deep. The thickness can change with ANCF coordinates, but "
-        "not with rotations, so the two converge to different motions (tip at 0.5 s: 0.324 and 0.301 m).",
+        "I = 8.533e-6 m⁴ as printed: a rectangle 0.253 m deep. The thickness can change with ANCF coordinates, but "
+        "not with rotations, so the two converge to different motions (x of the tip at 0.5 s: 0.324 and 0.301 m).",
     ),
     "thin": (
         pendulum.THIN,
-        "I = 8.533e-9 m^4: the 0.2 m x 0.008 m section of the same area. The paper did not compute this section; its "
+        "I = 8.533e-9 m⁴: the 0.2 m x 0.008 m section of the same area. The paper did not compute this section; its "
         "claims are compared with it all the same.",
     ),
 }

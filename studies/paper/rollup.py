@@ -200,8 +200,9 @@ def _axis(element: bf.Element, elements: int, turns: float, fractions: np.ndarra
 
 def _cells(run: Rolled) -> list[str]:
     if run.failed:
-        return [run.failed, "", "", ""]
-    return [f"{run.gap:.1e}", f"{run.turns:.8f}", str(run.steps), str(run.iterations)]
+        return [run.failed, "", ""]
+    steps = f"{run.iterations} in {run.steps} steps" if run.steps > 1 else f"{run.iterations}"
+    return [f"{run.gap:.1e}", f"{run.turns:.8f}", steps]
 
 
 def _tables(result: RollUp) -> list[Table]:
@@ -219,7 +220,7 @@ def _tables(result: RollUp) -> list[Table]:
         rows.append(row)
     header = ["field", "coordinates", "forces", "elements"]
     for turns in ("one", "two"):
-        header += [f"{turns}: turns expected", "gap / L", "turns", "load steps", "iterations"]
+        header += [f"{turns}: turns expected", "gap / L", "turns", "iterations"]
     everything = Table(
         "Rolled up, L/h = 100",
         header,
@@ -232,12 +233,12 @@ def _tables(result: RollUp) -> list[Table]:
     )
     thin = Table(
         "One circle, structural forces, rotations, k points",
-        ["order", "elements", "L/h", "gap / L", "turns", "load steps", "iterations"],
+        ["order", "elements", "L/h", "gap / L", "turns", "iterations"],
         [[str(order), str(COUNTS[order]), str(ratio), *_cells(run)] for (order, ratio), run in result.thin.items()],
     )
     bilinear = Table(
         "12 bilinear CRBF elements, moment for one circle, L/h = 100",
-        ["integration, forces", "gap / L", "turns", "load steps", "iterations"],
+        ["integration, forces", "gap / L", "turns", "iterations"],
         [[name, *_cells(run)] for name, run in result.bilinear.items()],
         f"With one Gauss point and structural forces they turn {bilinear_turns(12):.6f} of a circle at any thickness: "
         "n atan(t) / pi turns where t + t^3 = pi / n, because the director is interpolated and not its angle. "

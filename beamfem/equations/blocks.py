@@ -11,10 +11,11 @@ from beamfem.element.element import Element
 from beamfem.equations.law_pass import LawPass
 from beamfem.kernels.block import NO_HISTORY, Block, Imposed
 from beamfem.mesh.beam_grid import Grid
-from beamfem.mesh.beam_mesh import BeamMesh, Classes, likenesses
+from beamfem.mesh.beam_mesh import BeamMesh, Classes, join, likenesses
 from beamfem.mesh.reference import energy_points, reference_axis
 from beamfem.model.along_beam import jumps_along
 from beamfem.model.imposed_strains import ImposedStrain, free_strain_of
+from beamfem.section.law import THICKNESS
 
 PER_CLASS = tuple(name for name in Classes._fields if name != "kind")
 
@@ -34,6 +35,7 @@ def build_block(
     imposing: loads that impose strains, each with the number of its beam.
     """
     beam_meshes = [mesh for _, mesh in meshes]
+    grid = join(beam_meshes)
     first_kind = 0
     known: dict[Hashable, np.ndarray] = {}  # classes of elements, shared by similar beams
     parts: dict[str, list[np.ndarray]] = {name: [] for name in PER_CLASS}
@@ -46,9 +48,15 @@ def build_block(
             first_kind += len(mesh.classes.scale)
         kinds.append(known[like])
     joined = {name: _joined(values) for name, values in parts.items()}
-    joined.update(_numbers(meshes), kind=_joined(kinds))
     law = beam_meshes[0].beam.law
     return Block(
+        node=grid.node,
+        beam=np.array([number for number, _ in meshes]).repeat([mesh.elements for mesh in beam_meshes]),
+        node_kind=grid.kinematics.node_kind,
+        frame=np.ascontiguousarray(grid.kinematics.frame),
+        dof=np.ascontiguousarray(grid.kinematics.dof),
+        home=homes(grid.node, grid.nodes),
+        kind=_joined(kinds),
         measures=element.forces.code,
         director=element.tables.director,
         law=None if law is None else LawPass(law, element.law_points, isinstance(element.coordinates, Gradients)),
@@ -57,24 +65,6 @@ def build_block(
         history=_joined([mesh.history for mesh in beam_meshes]) if beam_meshes[0].history.size else NO_HISTORY,
         **joined,
     )
-
-
-def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
-    """Return the fields of `kernels.block.Block` that differ by element or node, for beams (number, mesh)."""
-    beam_meshes = [mesh for _, mesh in meshes]
-    elements, nodes = [mesh.elements for mesh in beam_meshes], np.array([mesh.nodes for mesh in beam_meshes])
-    node = _joined([mesh.node for mesh in beam_meshes])
-    if len(beam_meshes) > 1:
-        node += np.repeat(np.cumsum(nodes) - nodes, elements)[:, None]
-    width = max(mesh.kinematics.dof.shape[1] for mesh in beam_meshes)
-    return {
-        "node": node,
-        "beam": np.array([number for number, _ in meshes]).repeat(elements),
-        "node_kind": _joined([mesh.kinematics.node_kind for mesh in beam_meshes]),
-        "frame": _joined([mesh.kinematics.frame for mesh in beam_meshes]),
-        "dof": _joined([_widened(mesh.kinematics.dof, width) for mesh in beam_meshes]),
-        "home": homes(node, int(nodes.sum())),
-    }
 
 
 def homes(node: np.ndarray, nodes: int) -> np.ndarray:
@@ -88,12 +78,6 @@ def homes(node: np.ndarray, nodes: int) -> np.ndarray:
 def _joined(parts: Sequence[np.ndarray]) -> np.ndarray:
     """Concatenate arrays; a single one is not copied, because it may be large."""
     return np.ascontiguousarray(parts[0]) if len(parts) == 1 else np.concatenate(parts)
-
-
-def _widened(dof: np.ndarray, width: int) -> np.ndarray:
-    if dof.shape[1] == width:
-        return dof
-    return np.pad(dof, ((0, 0), (0, width - dof.shape[1])), constant_values=-1)
 
 
 def imposed_on(meshes: Sequence[tuple[int, BeamMesh]], imposing: Sequence[tuple[int, ImposedStrain]]) -> Imposed | None:
@@ -114,9 +98,6 @@ def imposed_on(meshes: Sequence[tuple[int, BeamMesh]], imposing: Sequence[tuple[
     return Imposed(tuple(terms), (end, *shape)) if terms else None
 
 
-_THICKNESS = 3  # column of the thickness stretch
-
-
 def free_strains(grid: Grid, loads: Sequence[ImposedStrain]) -> tuple[np.ndarray, np.ndarray]:
     """Return first (m, ne, nq, ns) and second (m, m, ne, nq, ns) order parts of the measures imposed by m loads.
 
@@ -128,7 +109,7 @@ def free_strains(grid: Grid, loads: Sequence[ImposedStrain]) -> tuple[np.ndarray
     reference = reference_axis(grid, element, xi)
     free = np.array([free_strain_of(load, grid.arc_length_inside(element, xi, jumps_along(load))) for load in loads])
     if not isinstance(element_type.coordinates, Gradients):
-        free[:, :, _THICKNESS] = 0.0
+        free[:, :, THICKNESS] = 0.0
     first, second = element_type.forces.imposed(free, reference)
     shape = grid.elements, -1, first.shape[-1]
     return first.reshape(len(free), *shape), second.reshape(len(free), len(free), *shape)

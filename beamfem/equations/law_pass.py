@@ -12,7 +12,7 @@ from beamfem.kernels.point import POINT_ROWS, RESULTANT, STIFFNESS, STRAIN
 from beamfem.kernels.record import ROW, Group, System
 from beamfem.kernels.records import memory_at
 from beamfem.kernels.user_law import MOST_HISTORY, user_resultants
-from beamfem.section.law import THICKNESS, ConstitutiveLaw, ThicknessLaw
+from beamfem.section.law import THICKNESS, ConstitutiveLaw
 
 _MEASURES = 4  # stretch, shear, curvature and thickness stretch; a law has only the first three
 _PAIRS = np.array([(i, j) for i in range(_MEASURES) for j in range(i, _MEASURES)]).T
@@ -54,9 +54,8 @@ class LawPass:
         shape, flat = acting.shape, acting.reshape(-1, 3)
         resultants, slope = self._law.linearised(flat, history.reshape(len(flat), -1))
         result, slopes = np.zeros(strain.shape), np.zeros(stiffness.shape)
-        thickness = ThicknessLaw(stiffness[..., THICKNESS, THICKNESS])
-        slopes[..., THICKNESS, THICKNESS] = thickness.stiffness
-        result[..., THICKNESS] = thickness.resultants(strain[..., THICKNESS])
+        slopes[..., THICKNESS, THICKNESS] = stiffness[..., THICKNESS, THICKNESS]
+        result[..., THICKNESS] = slopes[..., THICKNESS, THICKNESS] * strain[..., THICKNESS]
         result[:, : self._points, :3] = resultants.reshape(shape)
         slopes[:, : self._points, :3, :3] = slope.reshape(*shape, 3)
         return result, slopes
@@ -77,10 +76,10 @@ class LawPass:
                 if stiff:
                     own[STIFFNESS : STIFFNESS + _ENTRIES] = 0.0
                 if self._thickness:
-                    thickness = ThicknessLaw(weights * _rows(c, _ENTRIES)[_ENTRIES - 1, :count])
-                    own[RESULTANT + THICKNESS] = thickness.resultants(own[STRAIN + THICKNESS] - natural[THICKNESS])
+                    thickness = weights * _rows(c, _ENTRIES)[_ENTRIES - 1, :count]
+                    own[RESULTANT + THICKNESS] = thickness * (own[STRAIN + THICKNESS] - natural[THICKNESS])
                     if stiff:
-                        own[STIFFNESS + _ENTRIES - 1] = thickness.stiffness
+                        own[STIFFNESS + _ENTRIES - 1] = thickness
                 if point < self._points:
                     past = _NOTHING
                     if self._law.remembers:

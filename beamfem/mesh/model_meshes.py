@@ -298,25 +298,14 @@ def _joined(model: "Model", grids: Sequence[Grid]) -> tuple[np.ndarray, np.ndarr
     corners = [(i, a, i, a + 1) for i, node in cornered for a in node[:-1, -1][node[:-1, -1] != node[1:, 0]].tolist()]
     if not corners and not model.shared_joints:
         return _NO_PAIRS, _NO_PAIRS
-    rigid, hinged = (_pairs(model, grids, keeps_angle) for keeps_angle in (True, False))
-    turning = np.concatenate([np.array(corners, dtype=np.int64).reshape(-1, 4), rigid])
-    return turning, np.concatenate([turning, hinged])
 
+    def at(point: Point) -> tuple[int, int]:
+        number = model.number_of(point.beam)
+        return number, grids[number].node_at(point.fraction)
 
-def _pairs(model: "Model", grids: Sequence[Grid], keeps_angle: bool) -> np.ndarray:
-    """Return grid and node of both points (n, 4) of the joints that keep the angle, or of those that do not."""
-    joints = [joint for joint in model.shared_joints if joint.keeps_angle == keeps_angle]
-    a, b = [joint.a for joint in joints], [joint.b for joint in joints]
-    return np.hstack([_places(model, grids, a), _places(model, grids, b)])
-
-
-def _places(model: "Model", grids: Sequence[Grid], points: Sequence[Point]) -> np.ndarray:
-    """Return grid and node (n, 2) of points at nodes."""
-    if not points:
-        return np.empty((0, 2), dtype=np.int64)
-    numbers = [model.number_of(point.beam) for point in points]
-    pairs = [(i, grids[i].node_at(point.fraction)) for i, point in zip(numbers, points, strict=True)]
-    return np.array(pairs, dtype=np.int64)
+    joints = sorted(model.shared_joints, key=lambda joint: not joint.keeps_angle)
+    moving = np.array([*corners, *((*at(joint.a), *at(joint.b)) for joint in joints)], dtype=np.int64)
+    return moving[: len(corners) + sum(joint.keeps_angle for joint in joints)], moving
 
 
 def _history(grid: Grid, first: int) -> np.ndarray:

@@ -9,7 +9,6 @@ from beamfem.element.coordinates import across
 from beamfem.element.element import Element
 from beamfem.element.fields import Axis, cross, d_slots, dot, length_rule, r_slots, section_frame, slots
 from beamfem.errors import InputError
-from beamfem.material import Material
 from beamfem.mesh.beam_grid import Grid
 from beamfem.model.beam import Beam, sections_along
 from beamfem.section.protocol import CrossSection
@@ -207,14 +206,15 @@ def inertia_at(grid: Grid, where: np.ndarray, at: np.ndarray, weight: np.ndarray
         along, _ = section_frame(reference.d)
         size = np.linalg.norm(reference.d, axis=-1)
         alpha, beta = dot(reference.r_s, along) * size, dot(reference.d_s, along) * size
-        raised = np.array([_raised(section, beam.material) for section in sections])
+        # first, second and third mass moment per length over y
+        raised = np.array(
+            [
+                sum(part.density * moments[1:4] for part, moments in section.moments(beam.material))
+                for section in sections
+            ]
+        )
         inertia = alpha[:, None] * inertia + beta[:, None] * raised
     return inertia * weight[:, None]
-
-
-def _raised(section: CrossSection, material: Material | None) -> np.ndarray:
-    """Return first, second and third mass moment per length over y (3,) [kg, kg m, kg m^2] of the section of a body."""
-    return np.asarray(sum(part.density * moments[1:4] for part, moments in section.moments(material)))
 
 
 def reference_angle(grid: Grid) -> np.ndarray:

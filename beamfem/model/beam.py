@@ -19,7 +19,7 @@ from beamfem.element.forces import Structural
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.model.jumps import find_jumps
-from beamfem.section.law import ConstitutiveLaw, SectionLaw
+from beamfem.section.law import ConstitutiveLaw, SectionLaw, law_of
 from beamfem.section.moments import expansion
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import (
@@ -220,10 +220,7 @@ class Beam:
     @cached_property
     def law(self) -> ConstitutiveLaw | None:
         """Nonlinear law of the section, None for linear sections and for sections that vary along the beam."""
-        section = self.section
-        if not self.prismatic or not fulfils(section, SectionLaw):
-            return None
-        return ConstitutiveLaw(cast(SectionLaw, section), self.material)
+        return law_of(self.section, self.material) if self.prismatic else None
 
     def at(self, fraction: float) -> "Point":
         """Return the point at a fraction of the arc length, from 0 to 1.

@@ -10,14 +10,9 @@ from beamfem.public_names import public_dataclasses
 _BASES = {"supports": Support, "loads": Load, "joints": Joint}
 
 
-def listed_parts() -> list[Any]:
-    """Return the public classes of parts, without the base classes of users' parts."""
-    return public_dataclasses("parts")
-
-
 def parts_in(name: str) -> list[Any]:
     """Return the classes whose objects a list of a `Model` takes: conditions and forces at points are connectors."""
-    return [kind for kind in listed_parts() if _role(kind) == name]
+    return [kind for kind in public_dataclasses("parts") if _role(kind) == name]
 
 
 def _role(kind: Any) -> str:

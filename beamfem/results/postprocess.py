@@ -17,7 +17,7 @@ from beamfem.mesh.reference import (
 )
 from beamfem.reprs import brief
 from beamfem.results.axis_points import AxisPoints, axis_at, has_angles, nodal_angles, nodal_vectors, rate_at
-from beamfem.section.law import THICKNESS, ConstitutiveLaw, ThicknessLaw
+from beamfem.section.law import THICKNESS, ConstitutiveLaw
 
 
 @dataclass(frozen=True)
@@ -184,8 +184,7 @@ def strain_energies(mesh: BeamMesh, p: np.ndarray, imposed: np.ndarray | float =
     strains = mesh.beam.element.forces.strains(now) - reference - imposed
     if mesh.beam.law is not None:
         result = _energies_of_law(mesh, mesh.beam.law, p, strains, weight)
-        thickness = ThicknessLaw(stiffness[:, THICKNESS, THICKNESS] * weight)
-        result[:, 0] += thickness.energy(strains[..., THICKNESS])
+        result[:, 0] += 0.5 * strains[..., THICKNESS] ** 2 @ (stiffness[:, THICKNESS, THICKNESS] * weight)
         return result
     stored = 0.5 * np.einsum("sqi,qij,sqj->sq", strains, stiffness, strains) @ weight
     return np.stack([stored, np.zeros(len(p))], axis=-1)

@@ -6,7 +6,7 @@ Laws of one stress, such as plasticity, are in `fibre_laws`.
 from collections.abc import Sequence
 from ctypes import CFUNCTYPE, c_double, c_void_p
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol, cast, runtime_checkable
+from typing import Any, Protocol, cast, runtime_checkable
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.validation import called, finite, fulfils, items
 
+THICKNESS = 3  # number of the thickness stretch among the strain measures
 COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted
 
 
@@ -193,23 +194,3 @@ class ConstitutiveLaw:
 def law_of(section: object, material: Material | None) -> ConstitutiveLaw | None:
     """Return the law of a section, None if it has none."""
     return ConstitutiveLaw(cast(SectionLaw, section), material) if fulfils(section, SectionLaw) else None
-
-
-THICKNESS = 3  # number of the thickness stretch among the strain measures
-
-
-class ThicknessLaw(NamedTuple):
-    """Stiffness (...) [N] against thickness stretches from the stress-free state (...), the derivative of resultants.
-
-    For a stiffness times the weights of points [N m], resultants are so too.
-    """
-
-    stiffness: np.ndarray
-
-    def resultants(self, stretch: np.ndarray) -> np.ndarray:
-        """Return the resultants (...) [N]."""
-        return np.asarray(self.stiffness * stretch)
-
-    def energy(self, stretch: np.ndarray) -> np.ndarray:
-        """Return the energy [J] of stretches (..., n), summed over points with a stiffness (n,) times their weights."""
-        return np.asarray(0.5 * stretch**2 @ self.stiffness)

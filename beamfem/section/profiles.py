@@ -62,7 +62,8 @@ def Profile(name: str, weak: bool = False, millimetre: float = 1e-3) -> Section:
         if family != "CHS" or sizes[1] is None:
             own = " ".join([family, *spelt.lower().split()[1:]])
             return _hollow(own, [float(size or sizes[0]) for size in sizes], match[5] is not None, weak, unit)
-    table = {row["name"].upper(): row for row in _table()}
+    with (files("beamfem.section") / "profiles.csv").open(encoding="utf-8") as file:
+        table = {row["name"].upper(): row for row in csv.DictReader(file)}
     if spelt not in table:
         family = [row["name"] for row in table.values() if row["name"].split()[0] == spelt.partition(" ")[0]]
         others = "there are IPE, HEA, HEB, UPN, L, SHS, RHS and CHS"
@@ -78,11 +79,6 @@ def Profile(name: str, weak: bool = False, millimetre: float = 1e-3) -> Section:
 
 def _numbers(name: str) -> list[float]:
     return [float(size) for size in re.findall(r"\d+(?:\.\d+)?", name)]
-
-
-def _table() -> list[dict[str, str]]:
-    with (files("beamfem.section") / "profiles.csv").open(encoding="utf-8") as file:
-        return list(csv.DictReader(file))
 
 
 def _placed(loops: list[list[Corner]], name: str, weak: bool, unit: float) -> ShapedSection:

@@ -12,7 +12,8 @@ import pytest
 
 import beamfem as bf
 from beamfem.cli.part_kinds import ACTING, CURVES, ELEMENTS, FORCES, LAWS, SECTIONS
-from beamfem.model.parts_by_role import listed_parts, parts_in
+from beamfem.model.parts_by_role import parts_in
+from beamfem.public_names import public_dataclasses
 
 FILE = str(Path(__file__).parents[1] / "trial_parts.py")
 PARTS = ("SnowLoad", "Slide", "Weld", "Buffer")
@@ -203,11 +204,11 @@ def test_kinds_are_those_of_model_files():
     assert set(LAWS) == {"elastic-plastic", "maxwell", "ramberg-osgood"}
     assert set(ELEMENTS) == {"ANCF", "ANCFCRBF", "CRBF", "BilinearANCF", "BilinearCRBF", "ShearRigid"}
     assert set(FORCES) == {"continuum", "elastic-line", "split-continuum", "structural"}
-    assert len(listed_parts()) == sum(map(len, ACTING.values()))  # no two have one kind
+    assert len(public_dataclasses("parts")) == sum(map(len, ACTING.values()))  # no two have one kind
 
 
 def test_listed_parts_are_public():
-    assert {kind.__name__ for kind in listed_parts()} <= set(bf.__all__)
+    assert {kind.__name__ for kind in public_dataclasses("parts")} <= set(bf.__all__)
 
 
 @pytest.mark.parametrize("name", ["supports", "loads", "joints", "masses"])

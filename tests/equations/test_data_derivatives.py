@@ -11,7 +11,7 @@ import beamfem as bf
 from beamfem.equations.data_derivatives import residual_derivative
 from beamfem.equations.equations import STATICS, linearise, residual
 from beamfem.equations.system import system_of
-from beamfem.model.parts_by_role import listed_parts
+from beamfem.public_names import public_dataclasses
 from beamfem.section.moments import StiffnessSection
 
 DATA = {
@@ -180,7 +180,7 @@ def test_the_derivative_by_each_field_is_that_of_models_built_anew(key, name):
 def test_all_parts_with_numbers_are_tried():
     tried = {kind for kind, _ in DATA.values()}
     numbers = ("float", "tuple", "Value", "Along")
-    for kind in listed_parts():
+    for kind in public_dataclasses("parts"):
         has = [each.name for each in fields(kind) if str(each.type).startswith(numbers)]
         assert kind in tried or not has or kind is bf.Roller, kind  # see the test of solutions
 

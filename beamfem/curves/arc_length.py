@@ -5,10 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamfem.curves.curve import piece_at
 from beamfem.errors import InputError
 from beamfem.quadrature import gauss
 
-Speed = Callable[[np.ndarray], np.ndarray]
+Function = Callable[[np.ndarray], np.ndarray]
 
 _NODES, _WEIGHTS = gauss(16)
 # A panel is fine enough if halving it changes its length by less than this fraction of the total: the halves, which are
@@ -26,11 +27,11 @@ _ZERO = 1e-7
 class ArcLength:
     """Arc length s(u) = integral of speed(u) du, panel by panel.
 
-    speed: |dr/du| at u (n,), where it jumps the value after the break; ends: parameters of the panels' ends (m + 1,);
-    sums: arc lengths there (m + 1,) [m].
+    rate: dr/du (n, 2) at u (n,), where it jumps the value after the break, and the speed its size; ends: parameters of
+    the panels' ends (m + 1,); sums: arc lengths there (m + 1,) [m].
     """
 
-    speed: Speed
+    rate: Function
     ends: np.ndarray
     sums: np.ndarray
 
@@ -40,8 +41,8 @@ class ArcLength:
 
     def at(self, u: np.ndarray) -> np.ndarray:
         """Return the arc lengths at parameters (n,) [m]."""
-        panel = _panel(self.ends, u)
-        return self.sums[panel] + _integral(self.speed, self.ends[panel], u)
+        panel = piece_at(self.ends, u)
+        return self.sums[panel] + _integral(self.rate, self.ends[panel], u)
 
     def parameter(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the parameters at arc lengths (n,) [m] to round-off; beyond the ends of the curve, those of the ends.
@@ -49,7 +50,7 @@ class ArcLength:
         Newton's method from a linear guess, with bisection where it would leave the bracket.
         """
         s = np.clip(np.asarray(arc_length, dtype=float), 0.0, self.length)
-        panel = _panel(self.sums, s)
+        panel = piece_at(self.sums, s)
         low, high = self.ends[panel], self.ends[panel + 1]
         u = low + (high - low) * (s - self.sums[panel]) / (self.sums[panel + 1] - self.sums[panel])
         # points before a break must be evaluated before it, whatever the round-off
@@ -57,9 +58,9 @@ class ArcLength:
         u = np.minimum(u, last)
         left, right = low, last
         for _ in range(_NEWTON):
-            miss = self.sums[panel] + _integral(self.speed, low, u) - s
+            miss = self.sums[panel] + _integral(self.rate, low, u) - s
             left, right = np.where(miss < 0.0, u, left), np.where(miss > 0.0, u, right)
-            new = u - miss / self.speed(u)
+            new = u - miss / _speed(self.rate, u)
             new = np.where((left <= new) & (new <= right), new, (left + right) / 2)
             eps = np.finfo(float).eps
             done = (np.abs(miss) <= 2 * eps * self.length) | (np.abs(new - u) <= eps * np.abs(u))
@@ -69,20 +70,21 @@ class ArcLength:
         return u
 
 
-def measure(speed: Speed, breaks: np.ndarray, size: float, where: Callable[[float], str]) -> ArcLength:
+def measure(rate: Function, breaks: np.ndarray, size: float, where: Callable[[float], str]) -> ArcLength:
     """Return the arc length over spans between increasing breaks (m + 1,); within a span the speed is smooth.
 
-    size: largest coordinate [m]; where: name of a parameter for messages. Raises InputError if the speed vanishes.
+    rate: dr/du (n, 2) at u (n,); size: largest coordinate [m]; where: name of a parameter for messages. Raises
+    InputError if the speed vanishes.
     """
     low, high = breaks[:-1], breaks[1:]
-    whole = _integral(speed, low, high)
+    whole = _integral(rate, low, high)
     total = whole.sum()
     if not total > _POINT * size:
         raise InputError("all points of the curve coincide: it has no length")
     starts, ends, lengths = [], [], []
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
-        first, second = _integral(speed, low, middle), _integral(speed, middle, high)
+        first, second = _integral(rate, low, middle), _integral(rate, middle, high)
         fine = np.abs(first + second - whole) <= _CHANGE * total
         for a, b, length in ((low, middle, first), (middle, high, second)):
             starts.append(a[fine])
@@ -96,27 +98,27 @@ def measure(speed: Speed, breaks: np.ndarray, size: float, where: Callable[[floa
         raise InputError(f"the curve is not smooth near {where(float(low[0]))}: its arc length cannot be found there")
     order = np.argsort(np.concatenate(starts))
     panels = np.append(np.concatenate(starts)[order], breaks[-1])
-    _refuse_standstill(speed, breaks, panels, where)
-    return ArcLength(speed, panels, np.append(0.0, np.cumsum(np.concatenate(lengths)[order])))
+    _refuse_standstill(rate, breaks, panels, where)
+    return ArcLength(rate, panels, np.append(0.0, np.cumsum(np.concatenate(lengths)[order])))
 
 
-def _panel(ends: np.ndarray, values: np.ndarray) -> np.ndarray:
-    return np.clip(np.searchsorted(ends, values, side="right") - 1, 0, len(ends) - 2)
+def _speed(rate: Function, u: np.ndarray) -> np.ndarray:
+    return np.hypot(*rate(u).T)
 
 
-def _integral(speed: Speed, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+def _integral(rate: Function, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     u = low[:, None] + (high - low)[:, None] * _NODES
-    return (high - low) * (speed(u.ravel()).reshape(u.shape) @ _WEIGHTS)
+    return (high - low) * (_speed(rate, u.ravel()).reshape(u.shape) @ _WEIGHTS)
 
 
-def _refuse_standstill(speed: Speed, breaks: np.ndarray, panels: np.ndarray, where: Callable[[float], str]) -> None:
+def _refuse_standstill(rate: Function, breaks: np.ndarray, panels: np.ndarray, where: Callable[[float], str]) -> None:
     """Raise InputError if the speed vanishes, where a curve may reverse and its tangent is undefined."""
     from scipy.optimize import minimize_scalar  # slow to import, and seldom needed
 
     low, high = panels[:-1, None], panels[1:, None]
     u = np.hstack([low, low + (high - low) * _NODES, np.nextafter(high, low)]).ravel()
-    values = speed(u)
-    span = _panel(breaks, u)
+    values = _speed(rate, u)
+    span = piece_at(breaks, u)
     largest = np.zeros(len(breaks) - 1)
     np.maximum.at(largest, span, values)
     around = np.concatenate([[np.inf], values, [np.inf]])
@@ -127,7 +129,7 @@ def _refuse_standstill(speed: Speed, breaks: np.ndarray, panels: np.ndarray, whe
         if least > _ZERO * largest[span[i]]:
             # relative to `begin`, so that the minimum is found to a fraction of the bracket
             minimum = minimize_scalar(
-                lambda step, begin=begin: float(speed(np.array([begin + step]))[0]) ** 2,
+                lambda step, begin=begin: float(_speed(rate, np.array([begin + step]))[0]) ** 2,
                 bounds=(0.0, end - begin),
                 method="bounded",
                 options={"xatol": 1e-12 * (end - begin)},

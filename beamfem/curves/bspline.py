@@ -141,11 +141,7 @@ class BSpline(Curve):
     @cached_property
     def _arc_length(self) -> ArcLength:
         size = float(np.abs(np.array(self.control_points)).max())
-        return measure(self._speed, self.breaks, size, "u = {:g}".format)
-
-    def _speed(self, u: np.ndarray) -> np.ndarray:
-        rate = self.derivative(u)
-        return np.hypot(rate[:, 0], rate[:, 1])
+        return measure(self.derivative, self.breaks, size, "u = {:g}".format)
 
     @cached_property
     def _spline(self) -> Any:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.cached_properties import cached_property
-from beamfem.curves.curve import GAP, Curve, along, turned
+from beamfem.curves.curve import GAP, Curve, along, piece_at, turned
 from beamfem.errors import InputError
 from beamfem.reprs import brief
 from beamfem.validation import fulfils, items, shown
@@ -83,7 +83,7 @@ class Chain(Curve):
 
     def _each(self, arc_length: np.ndarray, ask: Callable[[int, np.ndarray], np.ndarray]) -> np.ndarray:
         arc_length = np.asarray(arc_length, dtype=float)
-        piece = np.clip(np.searchsorted(self._ends, arc_length, side="right") - 1, 0, len(self.curves) - 1)
+        piece = piece_at(self._ends, arc_length)
         values = np.empty((len(arc_length), 2))
         for i in np.unique(piece):
             mask = piece == i

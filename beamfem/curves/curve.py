@@ -78,6 +78,11 @@ def unit(vectors: np.ndarray) -> np.ndarray:
     return vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
 
 
+def piece_at(ends: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return the number (n,) of the piece between ascending ends (m + 1,) that holds each value (n,), or is nearest."""
+    return np.clip(np.searchsorted(ends, values, side="right") - 1, 0, len(ends) - 2)
+
+
 def turned(before: np.ndarray, after: np.ndarray, limit: float = CORNER) -> np.ndarray:
     """Return the mask (n,) of points where unit tangents before and after (n, 2) differ by more than a limit [rad]."""
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]

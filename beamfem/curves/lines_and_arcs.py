@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.cached_properties import cached_property
-from beamfem.curves.curve import Curve, along, points, turned, unit, warn_of_turns
+from beamfem.curves.curve import Curve, along, piece_at, points, turned, unit, warn_of_turns
 from beamfem.errors import InputError
 from beamfem.reprs import brief
 from beamfem.validation import convert, finite, positive, vector
@@ -152,14 +152,14 @@ class Polyline(Curve):
 
     @along
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        piece = self._piece(arc_length)
+        piece = piece_at(self._ends, arc_length)
         fraction = ((arc_length - self._ends[piece]) / np.diff(self._ends)[piece])[:, None]
         table = np.array(self.points)
         return (1.0 - fraction) * table[piece] + fraction * table[piece + 1]
 
     @along
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        return self._directions[self._piece(arc_length)]
+        return self._directions[piece_at(self._ends, arc_length)]
 
     @cached_property
     def _ends(self) -> np.ndarray:
@@ -171,6 +171,3 @@ class Polyline(Curve):
     def _directions(self) -> np.ndarray:
         """Unit tangents (n - 1, 2) of the segments."""
         return unit(np.diff(np.array(self.points), axis=0))
-
-    def _piece(self, arc_length: np.ndarray) -> np.ndarray:
-        return np.clip(np.searchsorted(self._ends, arc_length, side="right") - 1, 0, len(self._ends) - 2)

@@ -10,7 +10,7 @@ from numpy.polynomial import chebyshev
 from beamfem.cached_properties import cached_property
 from beamfem.curves.arc_length import ArcLength, measure
 from beamfem.curves.bspline import BSpline
-from beamfem.curves.curve import Curve, along, points, turned, unit
+from beamfem.curves.curve import Curve, along, piece_at, points, turned, unit
 from beamfem.errors import InputError
 from beamfem.validation import called, convert, finite, shown, vector
 
@@ -35,7 +35,7 @@ class Panels:
 
     def __call__(self, v: np.ndarray) -> np.ndarray:
         """Return the values (n, columns) at v (n,)."""
-        panel = np.clip(np.searchsorted(self.ends, v, side="right") - 1, 0, len(self.ends) - 2)
+        panel = piece_at(self.ends, v)
         x = 2.0 * (v - self.ends[panel]) / (self.ends[panel + 1] - self.ends[panel]) - 1.0
         return chebyshev.chebval(x[:, None], self.coefficients[:, panel, :], tensor=False)
 
@@ -200,11 +200,7 @@ class Parametric(Curve):
     def _arc_length(self) -> ArcLength:
         ends = self._panels.ends
         size = float(np.abs(self._panels(ends)[:, :2]).max())
-        return measure(self._speed, ends, size, self._name)
-
-    def _speed(self, v: np.ndarray) -> np.ndarray:
-        rate = self._rate(v)
-        return np.hypot(rate[:, 0], rate[:, 1])
+        return measure(self._rate, ends, size, self._name)
 
     def _parameter(self, v: np.ndarray) -> np.ndarray:
         return (1.0 - v) * self.start + v * self.end

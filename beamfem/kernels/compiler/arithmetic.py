@@ -89,16 +89,16 @@ def chosen(build: Build, condition: Value, a: Value, b: Value) -> Value:
     return Value(kind, build.builder.select(condition.llvm, *both))
 
 
-def _least(build: Build, first: Value, *others: Value) -> Value:
-    for other in others:
-        first = chosen(build, compared(build, ast.Lt(), other, first), other, first)
-    return first
+def _extreme(operation: ast.cmpop) -> Callable[..., Value]:
+    def call(build: Build, first: Value, *others: Value) -> Value:
+        for other in others:
+            first = chosen(build, compared(build, operation, other, first), other, first)
+        return first
+
+    return call
 
 
-def _largest(build: Build, first: Value, *others: Value) -> Value:
-    for other in others:
-        first = chosen(build, compared(build, ast.Gt(), other, first), other, first)
-    return first
+_largest = _extreme(ast.Gt())
 
 
 def _absolute(build: Build, value: Value) -> Value:
@@ -135,7 +135,7 @@ def _arctangent(build: Build, y: Value, x: Value) -> Value:
 
 # by function of Python
 FUNCTIONS: dict[Any, Callable[..., Value]] = {
-    min: _least,
+    min: _extreme(ast.Lt()),
     max: _largest,
     abs: _absolute,
     int: _whole,

@@ -137,11 +137,8 @@ class Build:
         module = self.builder.module
         with self.builder.if_then(self.builder.not_(holds), likely=False):
             kept = ir.GlobalVariable(module, ir.ArrayType(ir.IntType(8), len(content)), module.get_unique_name("text"))
-            kept.global_constant, kept.linkage, kept.initializer = (
-                True,
-                "private",
-                ir.Constant(kept.value_type, content),
-            )
+            kept.global_constant, kept.linkage = True, "private"
+            kept.initializer = ir.Constant(kept.value_type, content)
             address = self.builder.bitcast(kept, ir.IntType(8).as_pointer())
             self._checking("violate", address, *(numbers or [WHOLE.llvm(0)] * 5))
             self._end()

@@ -98,15 +98,12 @@ def values(scope: Scope, node: ast.expr) -> Value | list[Value]:
     raise TypeError(f"{ast.unparse(node)} is not known to compiled code")
 
 
-def _is_outside(scope: Scope, node: ast.expr) -> bool:
-    """Return whether an expression is a name from outside the function, or an attribute of one."""
-    while isinstance(node, ast.Attribute):
-        node = node.value
-    return isinstance(node, ast.Name) and node.id in scope.outside
-
-
 def _is_field(scope: Scope, node: ast.expr) -> bool:
-    return isinstance(node, ast.Attribute) and not _is_outside(scope, node)
+    """Return whether an expression is an attribute, but not one of a name from outside the function."""
+    owner = node
+    while isinstance(owner, ast.Attribute):
+        owner = owner.value
+    return owner is not node and not (isinstance(owner, ast.Name) and owner.id in scope.outside)
 
 
 def _constant(found: Any) -> Value:

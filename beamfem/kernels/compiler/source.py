@@ -3,7 +3,7 @@
 import ast
 import builtins
 import linecache
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import cache
 from types import CodeType
 from typing import Any
@@ -50,13 +50,9 @@ def definition(function: Callable[..., Any]) -> ast.FunctionDef:
 
 def outside(function: Callable[..., Any]) -> dict[str, Any]:
     """Return by name what a function finds outside: built-ins, globals and the variables of enclosing functions."""
-    code = function.__code__
-    objects = vars(builtins) | function.__globals__ | dict(_enclosed(function))
+    code, cells = function.__code__, function.__closure__ or ()
+    enclosed = {name: cell.cell_contents for name, cell in zip(code.co_freevars, cells, strict=True)}
+    objects = vars(builtins) | function.__globals__ | enclosed
     for name in (*code.co_varnames, *code.co_cellvars):
         objects.pop(name, None)
     return objects
-
-
-def _enclosed(function: Callable[..., Any]) -> Iterator[tuple[str, Any]]:
-    for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
-        yield name, cell.cell_contents

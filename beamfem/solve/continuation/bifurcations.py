@@ -325,7 +325,10 @@ def _require_no_corner(segment: Segment, fractions: list[float]) -> None:
 
 
 def _search(segment: Segment, start: float, end: float, distance: float) -> Iterator[Crossing]:
-    _require_one_path(segment, start, end)
+    line = segment.line
+    ratio = line.length(segment.at(end).y - segment.at(start).y) / line.length(segment.chord)
+    if ratio > 2.0 * (end - start) + _JUMP:  # further apart than a path between the two allows
+        raise SegmentLostError("the step leads to another path")
     change = segment.change(start, end)
     if change == 0:
         return
@@ -342,14 +345,6 @@ def _search(segment: Segment, start: float, end: float, distance: float) -> Iter
     else:
         yield from _search(segment, start, found, distance)
         yield from _search(segment, found, end, distance)
-
-
-def _require_one_path(segment: Segment, start: float, end: float) -> None:
-    """Raise SegmentLostError if two points are further apart than a path between them allows."""
-    line = segment.line
-    ratio = line.length(segment.at(end).y - segment.at(start).y) / line.length(segment.chord)
-    if ratio > 2.0 * (end - start) + _JUMP:
-        raise SegmentLostError("the step leads to another path")
 
 
 def _together(segment: Segment, start: float, end: float, change: int, distance: float) -> list[Crossing] | float:
@@ -376,10 +371,8 @@ def _together(segment: Segment, start: float, end: float, change: int, distance:
         if trial >= _SETTLED and moved > 0.5 * last:
             return middle
         if moved < 0.1 * distance:
-            left, right = (
-                max(fractions[fractions < roots[0]], default=start),
-                min(fractions[fractions > roots[-1]], default=end),
-            )
+            left = max(fractions[fractions < roots[0]], default=start)
+            right = min(fractions[fractions > roots[-1]], default=end)
             if segment.change(start, left) or segment.change(right, end):
                 return middle
             samples = Samples(segment, fractions, [known[x] for x in fractions.tolist()], left, change, distance)

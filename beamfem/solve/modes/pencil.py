@@ -163,17 +163,10 @@ class Pencil:
 _CLUSTER = 1e-9  # eigenvalues with a smaller relative distance cannot be counted separately
 
 
-@dataclass(frozen=True)
-class Complete:
-    """The first `found` eigenvalues are the lowest if none is `missing` below the value of a cut."""
-
-    found: int
-    missing: int
-    cut: float
-
-
-def complete(pencil: Pencil, squares: np.ndarray, count: int, rigid: int) -> Complete:
+def complete(pencil: Pencil, squares: np.ndarray, count: int, rigid: int) -> tuple[int, int, float]:
     """Return whether at least the first `count` of ascending eigenvalues (m,), m > count, are the lowest ones.
+
+    The result (found, missing, cut) says that the first `found` are, if none is `missing` below the value of the cut.
 
     rigid: number of zero eigenvalues besides. The eigenvalues below the largest gap after the last one are counted, or
     below the first gap if some of those between were missed. If there is no gap, or some are missing, the last one may
@@ -185,13 +178,13 @@ def complete(pencil: Pencil, squares: np.ndarray, count: int, rigid: int) -> Com
         if not joined[above - 1]:
             cut = 0.5 * (squares[above - 1] + squares[above])
             if _below(pencil, squares, cut, rigid) == above:
-                return Complete(above, 0, cut)
+                return above, 0, cut
     gaps = np.flatnonzero(~joined) + 1
     first, end = gaps[gaps < count].max(initial=0), gaps[gaps >= count].min(initial=len(squares))
     cut = squares[first] - _CLUSTER * abs(squares[first])
     if first > 0:
         cut = max(cut, 0.5 * (squares[first - 1] + squares[first]))
-    return Complete(int(end), _below(pencil, squares, cut, rigid) - int(first), cut)
+    return int(end), _below(pencil, squares, cut, rigid) - int(first), cut
 
 
 def _below(pencil: Pencil, squares: np.ndarray, cut: float, rigid: int) -> int:
@@ -232,12 +225,12 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:
         squares, vectors = _refined(pencil, *_sharpened(pencil, *pairs, start if lost > WRONG else None), correction)
         if len(squares) == available:
             return squares, vectors
-        checked = complete(pencil, squares, count, rigid.shape[1])
-        if checked.missing == 0:
-            return squares[: checked.found], vectors[:, : checked.found]
-        missing = max(checked.missing, _SPARE)
+        found, missing, cut = complete(pencil, squares, count, rigid.shape[1])
+        if missing == 0:
+            return squares[:found], vectors[:, :found]
+        missing = max(missing, _SPARE)
         known = np.column_stack([known, more[1]])
-    below_cut = f"{np.sqrt(max(checked.cut, 0.0)) / (2.0 * np.pi):.6g} {pencil.system.model.unit('Hz')}"
+    below_cut = f"{np.sqrt(max(cut, 0.0)) / (2.0 * np.pi):.6g} {pencil.system.model.unit('Hz')}"
     raise ConvergenceError(f"modes below {below_cut} were missed")
 
 

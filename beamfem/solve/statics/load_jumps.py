@@ -1,7 +1,7 @@
 """Jumps of loads and prescribed motions in a static solve, crossed by load steps at the same load factor."""
 
+from collections.abc import Callable
 from copy import copy
-from dataclasses import dataclass
 
 from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, LimitPointError
@@ -17,15 +17,9 @@ from beamfem.solve.statics.static_record import StaticRecord
 from beamfem.validation import function_value
 
 
-@dataclass(frozen=True)
-class _Line:
-    """A function that is linear in the load factor, with its values at 0 and 1."""
-
-    first: float
-    last: float
-
-    def __call__(self, load_factor: float) -> float:
-        return (1.0 - load_factor) * self.first + load_factor * self.last
+def _between(first: float, last: float) -> Callable[[float], float]:
+    """Return a function that is linear in the load factor, with its values at 0 and 1."""
+    return lambda load_factor: (1.0 - load_factor) * first + load_factor * last
 
 
 def changing(model: Model, before: float | None, after: float) -> Model:
@@ -55,12 +49,11 @@ def _moved(support: PointSupport, before: float | None, after: float) -> tuple[P
     return supports
 
 
-def _line(value: Value, before: float | None, after: float) -> _Line:
-    return _Line(0.0 if before is None else _prescribed(value, before), _prescribed(value, after))
+def _line(value: Value, before: float | None, after: float) -> Callable[[float], float]:
+    def at(load_factor: float) -> float:
+        return function_value("motion prescribed", value, load_factor) if callable(value) else value * load_factor
 
-
-def _prescribed(value: Value, load_factor: float) -> float:
-    return function_value("motion prescribed", value, load_factor) if callable(value) else value * load_factor
+    return _between(0.0 if before is None else at(before), at(after))
 
 
 def _changing_load(load: Load, before: float | None, after: float) -> Load:
@@ -70,7 +63,7 @@ def _changing_load(load: Load, before: float | None, after: float) -> Load:
     result: Load = copy(load)
     if isinstance(load, MovingLoad):
         result = load.moved(_line(load.place_at, before, after))
-    line = _Line(0.0 if before is None else factor(load, before, True), factor(load, after, True))
+    line = _between(0.0 if before is None else factor(load, before, True), factor(load, after, True))
     # whether or not it is a field of its class
     object.__setattr__(result, "amplitude", line)
     return result

@@ -9,7 +9,6 @@ from scipy.linalg import LinAlgError
 from beamfem.equations.equations import linearise_at_rest, load_slope, predicted_stresses
 from beamfem.equations.system import Proven, System
 from beamfem.errors import ConvergenceError, LimitPointError
-from beamfem.model.load_base import Load
 from beamfem.parts.pretension import Pretension
 from beamfem.physics.stations import FOLLOWING, STRETCHING
 from beamfem.precision.roundoff import ENOUGH, digits_of, largest_force
@@ -356,10 +355,6 @@ def _merges(follower: PathFollower, done: StaticRecord, point: np.ndarray, beyon
     return result.ended.good
 
 
-def _grows(load: Load) -> bool:
-    return load.scale and load.amplitude is None
-
-
 def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap: Snap) -> None:
     """Add the state of rest after a limit point. Raises LimitPointError unless jumps are allowed."""
     load_factor = float(turn.limit[-1])
@@ -377,7 +372,9 @@ def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap
             remedy += (
                 f"comes to rest{'; or prescribe a displacement (Prescribed) instead of the load' if loaded else ''}"
             )
-        if any(isinstance(load, Pretension) and not load.scale for load in loads) and any(map(_grows, loads)):
+        if any(isinstance(load, Pretension) and not load.scale for load in loads) and any(
+            load.scale and load.amplitude is None for load in loads
+        ):
             remedy = (
                 f"Pretension acts fully at load factor 0; let weight do so, too: Gravity(scale=False). Or else {remedy}"
             )

@@ -34,11 +34,6 @@ def nodal_vectors(
     return result
 
 
-def nodal_velocities(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Return the rates e' = B p' (steps, nodes, vectors per node, 2) of the nodal vectors."""
-    return nodal_vectors(mesh, p, None, v)
-
-
 def _nodes(mesh: BeamMesh, some: np.ndarray | None) -> tuple[np.ndarray, np.ndarray, Sequence[tuple[int, np.ndarray]]]:
     """Return coordinates (k, npn) and frames (k, 3) of some nodes (k,) or all, and each kind with its nodes."""
     nodes = mesh.kinematics

@@ -115,7 +115,7 @@ def locking(solution: Solution) -> tuple[Finding, ...]:
         return ()
     rows = np.unique(np.linspace(0, len(solution) - 1, _ROWS).astype(int))
     energy = sum(
-        postprocess.strain_energy(mesh, solution.p[rows], imposed_measures(solution, mesh, rows))
+        postprocess.strain_energies(mesh, solution.p[rows], imposed_measures(solution, mesh, rows))[:, 0]
         for mesh in solution.model.meshes
     )
     span = None if solution.static else float(np.ptp(solution.at))

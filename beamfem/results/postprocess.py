@@ -168,11 +168,6 @@ def green_strain(now: Axis, reference: Axis, y: np.ndarray) -> Components:
     return Components(xx, yy, 0.5 * xy)
 
 
-def strain_energy(mesh: BeamMesh, p: np.ndarray, imposed: np.ndarray | float = 0.0) -> np.ndarray:
-    """Return the strain energy of a beam (steps,) [J], see `strain_energies`."""
-    return strain_energies(mesh, p, imposed)[:, 0]
-
-
 def strain_energies(mesh: BeamMesh, p: np.ndarray, imposed: np.ndarray | float = 0.0) -> np.ndarray:
     """Return the strain energy of a beam and what its section with history has dissipated (steps, 2) [J].
 
@@ -213,16 +208,8 @@ def kinetic_energy(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> np.ndarray:
     return 0.5 * (dot(rate.r, rate.r) @ mass + dot(rate.d, rate.d) @ rotary) + dot(rate.r, rate.d) @ first
 
 
-@dataclass(frozen=True)
-class Momenta:
-    """Linear (steps, 2) [kg m/s] and angular momentum about the origin (steps,) [kg m^2/s]."""
-
-    linear: np.ndarray
-    angular: np.ndarray
-
-
-def momenta(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> Momenta:
-    """Return the momenta of a beam, see `Momenta`."""
+def momenta(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return the linear momentum [kg m/s] and that about the origin [kg m^2/s] of a beam (steps, 3)."""
     element, xi, inertia = inertia_points(mesh)
     mass, first, rotary = inertia.T
     now = axis_at(mesh, p, element, xi)
@@ -230,7 +217,7 @@ def momenta(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> Momenta:
     linear = np.einsum("sqc,q->sc", rate.r, mass) + np.einsum("sqc,q->sc", rate.d, first)
     angular = cross(now.r, rate.r) @ mass + cross(now.d, rate.d) @ rotary
     angular = angular + (cross(now.r, rate.d) + cross(now.d, rate.r)) @ first
-    return Momenta(linear, angular)
+    return np.column_stack([linear, angular])
 
 
 def part_of(fields: Fields, index: Any) -> Fields:

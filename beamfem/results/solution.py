@@ -496,8 +496,11 @@ class Solution:
         return safety_factor(self, beam)
 
     @cached_property
-    def _momenta(self) -> tuple[postprocess.Momenta, ...]:
-        return tuple(postprocess.momenta(mesh, self.p, self.v) for mesh in self.model.meshes)
+    def _momenta(self) -> np.ndarray:
+        from beamfem.results.reactions import momenta_of_connectors
+
+        beams = sum(postprocess.momenta(mesh, self.p, self.v) for mesh in self.model.meshes)
+        return beams + momenta_of_connectors(self)
 
     def energy(self) -> "Energy":
         """Return kinetic, strain, potential, total and dissipated energy, and work (steps,) [J], see `Energy`.
@@ -536,15 +539,11 @@ class Solution:
 
     def linear_momentum(self) -> np.ndarray:
         """Return the linear momentum in x and y (steps, 2) [kg m/s]."""
-        from beamfem.results.reactions import momenta_of_connectors
-
-        return np.asarray(sum(m.linear for m in self._momenta) + momenta_of_connectors(self)[:, :2])
+        return self._momenta[:, :2].copy()
 
     def angular_momentum(self) -> np.ndarray:
         """Return the angular momentum about the origin (steps,) [kg m^2/s]."""
-        from beamfem.results.reactions import momenta_of_connectors
-
-        return np.asarray(sum(m.angular for m in self._momenta) + momenta_of_connectors(self)[:, 2])
+        return self._momenta[:, 2].copy()
 
     def spline(self, beam: Beam, row: int = -1) -> BSpline:
         """Return the exact deformed axis of a beam of cubic elements in a row as a cubic B-spline.

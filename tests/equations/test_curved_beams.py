@@ -10,8 +10,8 @@ from beamfem.equations.equations import linearise, residual
 from beamfem.equations.model_coordinates import coordinate_columns
 from beamfem.equations.system import System
 from beamfem.mesh.reference import curvature, energy_points, reference_axis
-from beamfem.results.axis_points import axis, nodal_vectors, nodal_velocities
-from beamfem.results.postprocess import strain_energy
+from beamfem.results.axis_points import axis, nodal_vectors
+from beamfem.results.postprocess import strain_energies
 from beamfem.results.status import Statistics
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
@@ -73,7 +73,7 @@ def test_a_moved_and_turned_beam_has_neither_strain_nor_force(element):
             now, then = axis(mesh, nodal_vectors(mesh, p[None]), where, xi), reference_axis(mesh, where, xi)
             strains = mesh.beam.element.forces.strains(now) - mesh.beam.element.forces.strains(then)
             assert np.abs(strains).max() < 2e-12
-            assert strain_energy(mesh, p[None])[0] < 1e-24 * stiffness
+            assert strain_energies(mesh, p[None])[0, 0] < 1e-24 * stiffness
 
 
 def test_energy_residual_and_tangent_are_derivatives_of_each_other(element, rng):
@@ -83,7 +83,7 @@ def test_energy_residual_and_tangent_are_derivatives_of_each_other(element, rng)
     force, tangent = linearise(system, p, rest, rest, 0.0, (1.0, 0.0, 0.0))
 
     def energy(step):
-        return sum(strain_energy(mesh, (p + step * d)[None])[0] for mesh in system.model.meshes)
+        return sum(strain_energies(mesh, (p + step * d)[None])[0, 0] for mesh in system.model.meshes)
 
     def slope(function, h):  # of fourth order
         return (8 * (function(h) - function(-h)) - function(2 * h) + function(-2 * h)) / (12 * h)
@@ -159,7 +159,7 @@ def test_strain_and_kinetic_energy_of_a_curved_body_by_brute_force(element, curv
     p, v = system.reference + 0.05 * rng.standard_normal(n), rng.standard_normal(n)
     solution = bf.Solution(system.model, False, np.zeros(1), p[None], v[None], 0 * p[None], Statistics(0, 0, 0, ""))
     e0, e = (nodal_vectors(mesh, q[None])[0] for q in (system.reference, p))
-    e_dot = nodal_velocities(mesh, p[None], v[None])[0]
+    e_dot = nodal_vectors(mesh, p[None], v=v[None])[0]
     points = max(element.field.degree, element.field.director_degree) + 1
     strain, kinetic, potential = 0.0, 0.0, 0.0
     momentum = np.zeros(2)

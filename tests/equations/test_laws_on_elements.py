@@ -12,7 +12,7 @@ import beamfem as bf
 from beamfem.equations.equations import STATICS, linearise, residual
 from beamfem.equations.strain_rates import strain_rates
 from beamfem.equations.system import System, system_of
-from beamfem.results.postprocess import strain_energy
+from beamfem.results.postprocess import strain_energies
 from beamfem.section import StiffnessSection
 
 SECTION = {"axial": 1e6, "shear": 4e5, "bending": 100.0, "mass": 1.0, "rotary_inertia": 1e-4}
@@ -154,7 +154,7 @@ def test_forces_are_derivatives_of_the_energy_and_tangents_of_the_forces(element
         return np.array([of(dof) for dof in np.eye(model.size)[system.free_dofs]])
 
     force, tangent = linearise(system, p, zeros, zeros, 1.0, STATICS)
-    expected = slopes(lambda at: strain_energy(mesh, at[None])[0])
+    expected = slopes(lambda at: strain_energies(mesh, at[None])[0, 0])
     assert force[system.free_dofs] == pytest.approx(expected, rel=1e-6, abs=1e-8 * np.abs(force).max())
     expected = slopes(lambda at: residual(system, at, zeros, zeros, 1.0)[system.free_dofs])
     found = tangent.sparse(system.rotated).toarray()

@@ -13,7 +13,7 @@ import beamfem as bf
 from beamfem.equations.equations import STATICS, linearise, residual
 from beamfem.equations.system import System
 from beamfem.forms import axis_basis, nodal_numbers, pressure_load
-from beamfem.results.axis_points import nodal_vectors, nodal_velocities
+from beamfem.results.axis_points import nodal_vectors
 from beamfem.solve.newton.newton import NewtonResult, solve_equilibrium
 from beamfem.solve.statics.load_steps import skips_limit_points
 from beamfem.solve.statics.static_record import StaticRecord
@@ -187,7 +187,7 @@ def test_compiled_pressure_is_the_readable_form(element, rng):
     nodal = pressure_load.assemble(basis, u=basis.interpolate(e[numbers]), pressure=7.0)
     for _ in range(3):
         rate = rng.standard_normal(model.size)
-        moving = nodal_velocities(mesh, p[None], rate[None])[0].ravel()
+        moving = nodal_vectors(mesh, p[None], v=rate[None])[0].ravel()
         assert force @ rate == pytest.approx(nodal @ moving[numbers], rel=1e-9)
 
 

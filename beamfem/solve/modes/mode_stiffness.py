@@ -8,7 +8,7 @@ from beamfem.equations.stress_resultants import free_group, resultants
 from beamfem.equations.system import System
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.model import Model
-from beamfem.results.axis_points import nodal_vectors, nodal_velocities
+from beamfem.results.axis_points import nodal_vectors
 
 
 def nodal_motion(model: Model, p: np.ndarray, shape: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -17,7 +17,7 @@ def nodal_motion(model: Model, p: np.ndarray, shape: np.ndarray) -> list[tuple[n
     for mesh in model.meshes:
         slot = mesh.beam.element.field.vectors.index("r")
         positions = nodal_vectors(mesh, p[None])[0, :, slot]
-        result.append((positions, nodal_velocities(mesh, p[None], shape[None])[0, :, slot]))
+        result.append((positions, nodal_vectors(mesh, p[None], v=shape[None])[0, :, slot]))
     return result
 
 

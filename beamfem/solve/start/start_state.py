@@ -14,7 +14,7 @@ from beamfem.mesh.reference import reference_angle
 from beamfem.model.beam import beam_in_words
 from beamfem.model.model import Model
 from beamfem.results import postprocess
-from beamfem.results.axis_points import nodal_vectors, nodal_velocities
+from beamfem.results.axis_points import nodal_vectors
 from beamfem.results.check_arrays import require_finite
 from beamfem.results.solution import Solution, State
 from beamfem.solve.start.start_checks import left_over
@@ -102,7 +102,7 @@ def _rotations(mesh: BeamMesh, state: State) -> np.ndarray:
 def _by_label(mesh: BeamMesh, state: State) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     """Return every coordinate that a node could have (nodes,), and its rate, by name."""
     p, v = state.p[None], state.v[None]
-    e, rate = nodal_vectors(mesh, p)[0], nodal_velocities(mesh, p, v)[0]
+    e, rate = nodal_vectors(mesh, p)[0], nodal_vectors(mesh, p, v=v)[0]
     values: dict[str, np.ndarray] = {}
     rates: dict[str, np.ndarray] = {}
     for i, vector in enumerate(mesh.vectors):

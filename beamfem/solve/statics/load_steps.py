@@ -93,7 +93,7 @@ _OVERSHOOT = 3.0
 _SHORT = 1e-2  # of the movement so far
 # Iterations. Most models under constant forces start at rest and reach the end in one long step.
 _SLOW, _SLOW_FROM_REST = 7, 12
-_HALF_TURN = np.pi  # of sections in a step, from which on it may have been the other way round
+_TURNED = 2.0  # [rad] of sections in a step, from which on they may have turned the other way round
 
 
 def skips_limit_points(system: System, done: StaticRecord, target: float, result: NewtonResult, newton: Newton) -> bool:
@@ -101,10 +101,10 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
 
     This is so if linearised stability predicts a critical point before its end, or if the tangent at its start leads
     far beyond its end, as near a limit point; this is not tested from the reference, where it also happens to a
-    straight beam that is stiffened by its own tension. If the iteration was slow, it is also so if sections turn over
-    by more than half a turn, as weak ones may stay wound up after a correction that is far too large, if the state
-    half-way has another count of negative pivots, or, in models without history, whose path has no kinks, if the step
-    has another direction than the tangents at its ends.
+    straight beam that is stiffened by its own tension. If the iteration was slow, it is also so if sections turn far,
+    as weak ones may stay wound up by a correction that is far too large, if the state half-way has another count of
+    negative pivots, or, in models without history, whose path has no kinks, if the step has another direction than the
+    tangents at its ends.
     """
     if result.linear is not None:
         done.iterations += 1
@@ -116,7 +116,7 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
             return True
     if result.iterations < _SLOW:
         return False
-    if largest_change(system, result.state - done.state) > _HALF_TURN:
+    if largest_change(system, result.state - done.state) > _TURNED:
         return True
     if result.iterations < _SLOW_FROM_REST and done.reached == 0.0 and _constant_forces(system, target):
         return False

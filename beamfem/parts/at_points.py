@@ -54,8 +54,11 @@ class PartAtPoints:
         return ()
 
     def data(self, reference: np.ndarray) -> tuple[float, ...]:
-        """Return its numbers, in the order of `Connection.data`; reference (m, 3): q of its points in the reference."""
-        raise NotImplementedError
+        """Return its numbers, by default its attributes by the names of `Connection.data`.
+
+        reference (m, 3): q of its points in the reference.
+        """
+        return tuple(getattr(self, name) for name in self.connection.data)
 
     @property
     def rotations(self) -> bool:
@@ -117,13 +120,35 @@ class PartAtPoints:
         q, v = (connection.split(self._coordinates(x)) for x in (at.q, at.v))
         kinetic = connection.kinetic(q, v, data, ANALYTIC) if connection.kinetic else 0.0
         potential = connection.potential(q, data, at.gravity, ANALYTIC) if connection.potential else 0.0
-        return kinetic, potential
+        return kinetic, potential + (connection.stored(q, data, ANALYTIC) if connection.stored else 0.0)
+
+
+class AtPoint(PartAtPoints):
+    """A part at a point of a beam."""
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:
+
+        @property
+        def point(self) -> Point:
+            """Its point."""
+            ...
+
+    def __post_init__(self) -> None:
+        require_point_of(self, "point")
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """The point."""
+        return (self.point,)
 
 
 class BetweenPlaces(PartAtPoints):
-    """A part between the points a and b of beams; with `may_end_on_ground`, b may be a place on the ground."""
+    """A part between the points a and b of beams, which may have to be apart; b may be a place on the ground."""
 
     __slots__ = ()
+    apart: ClassVar[bool] = False
     may_end_on_ground: ClassVar[bool] = False
 
     if TYPE_CHECKING:
@@ -144,6 +169,11 @@ class BetweenPlaces(PartAtPoints):
             require_point_of(self, "b")
         else:
             convert(self, vector, "b")
+        if self.apart and self.distance == 0.0:
+            raise InputError(
+                f"{type(self).__name__} needs two places that are apart, but a and b are both at {self.a}; "
+                "a Hinge or a Rigid joins them"
+            )
 
     @property
     def points(self) -> tuple[Point, ...]:
@@ -160,14 +190,6 @@ class BetweenPlaces(PartAtPoints):
         """Distance of a and b in the reference [m]."""
         x, y = self.a.reference - (self.b.reference if isinstance(self.b, Point) else self.b)
         return math.hypot(x, y)
-
-    def require_apart(self) -> None:
-        """Raise `InputError` unless a and b are apart in the reference."""
-        if self.distance == 0.0:
-            raise InputError(
-                f"{type(self).__name__} needs two places that are apart, but a and b are both at {self.a}; "
-                "a Hinge or a Rigid joins them"
-            )
 
 
 class Station(NamedTuple):

@@ -9,7 +9,7 @@ from beamfem.model.beam import Point
 from beamfem.model.load_shapes import Spiral
 from beamfem.model.part_units import UNIT
 from beamfem.parts.at_points import BetweenPlaces
-from beamfem.physics.connections import BUSHING, Connection
+from beamfem.physics.connections import BUSHING
 from beamfem.validation import items, not_negative, shown
 
 
@@ -41,6 +41,8 @@ class Bushing(BetweenPlaces):
     >>> mounted = bf.Model([beam, wall], [bf.Clamp(wall.end)], [bf.Gravity((0, -9.81))], connectors=[rubber])
     """
 
+    connection = BUSHING
+
     a: Point
     b: Point
     stiffness: tuple[float, float, float] = field(metadata={UNIT: "N/m, N/m, N m/rad"})
@@ -54,11 +56,6 @@ class Bushing(BetweenPlaces):
             if len(numbers) != 3:
                 raise InputError(f"{what} must be three numbers, along x, y and against rotation, got {shown(given)}")
             object.__setattr__(self, name, numbers)
-
-    @property
-    def connection(self) -> Connection:
-        """A bushing."""
-        return BUSHING
 
     def data(self, reference: np.ndarray) -> tuple[float, ...]:
         """Return stiffness, damping and the distance in the reference."""

@@ -40,6 +40,7 @@ class Cable(BetweenPlaces):
     >>> mast = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0, -1e4))], connectors=[stay])
     """
 
+    apart: ClassVar[bool] = True
     may_end_on_ground: ClassVar[bool] = True
 
     a: Point
@@ -51,7 +52,6 @@ class Cable(BetweenPlaces):
         BetweenPlaces.__post_init__(self)
         convert(self, positive, "stiffness")
         convert(self, not_negative, "pretension")
-        self.require_apart()
         most = self.stiffness * self.distance
         if self.pretension >= most:
             raise InputError(

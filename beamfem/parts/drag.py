@@ -7,31 +7,19 @@ import numpy as np
 
 from beamfem.model.beam import Beam, Point, require_beam
 from beamfem.model.part_units import UNIT
-from beamfem.parts.at_points import PartAlongBeam, PartAtPoints
-from beamfem.physics.connections import DRAG, Connection
+from beamfem.parts.at_points import AtPoint, PartAlongBeam, PartAtPoints
+from beamfem.physics.connections import DRAG
 from beamfem.validation import convert, not_negative
 
 
 @dataclass(frozen=True, slots=True)
-class DragAtNode(PartAtPoints):
+class DragAtNode(AtPoint):
     """The drag - coefficient |v| v of a node; coefficient [kg/m], with the length that belongs to the node."""
+
+    connection = DRAG
 
     point: Point
     coefficient: float
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """The node."""
-        return (self.point,)
-
-    @property
-    def connection(self) -> Connection:
-        """Drag."""
-        return DRAG
-
-    def data(self, reference: np.ndarray) -> tuple[float, ...]:
-        """Return the coefficient."""
-        return (self.coefficient,)
 
 
 @dataclass(frozen=True, slots=True)

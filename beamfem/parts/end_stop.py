@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.model.contribution import At
-from beamfem.parts.at_points import BetweenPlaces, PartAtPoints
+from beamfem.parts.at_points import BetweenPlaces
 from beamfem.validation import convert, finite, not_negative, optional, positive
 
 _NEVER = 1e9  # [rad] or [m]
@@ -62,9 +61,5 @@ class EndStop(BetweenPlaces):
         return (-_NEVER if self.low is None else self.low), (_NEVER if self.high is None else self.high)
 
     def data(self, reference: np.ndarray) -> tuple[float, ...]:
-        """Return both limits, stiffness, damping and rebound."""
-        return *self.limits, self.stiffness, self.damping, rebound_of(self)
-
-    def energy(self, at: At) -> tuple[float, float]:
-        """Return no kinetic energy, and the potential energy [J] of the springs."""
-        return PartAtPoints.energy(self, at)
+        """Return stiffness, damping, rebound and both limits."""
+        return self.stiffness, self.damping, rebound_of(self), *self.limits

@@ -2,12 +2,10 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
 from beamfem.parts.at_points import BetweenPlaces
-from beamfem.physics.connections import GEAR, Connection
+from beamfem.physics.connections import GEAR
 from beamfem.validation import convert, finite
 
 
@@ -37,6 +35,8 @@ class Gear(BetweenPlaces):
     >>> geared = bf.Model([beam, shaft], pins, [bf.PointMoment(beam.start, 10.0)], connectors=[gear])
     """
 
+    connection = GEAR
+
     a: Point
     b: Point
     ratio: float
@@ -46,12 +46,3 @@ class Gear(BetweenPlaces):
         convert(self, finite, "ratio")
         if self.ratio == 0.0:
             raise InputError("the ratio of a Gear must not be zero")
-
-    @property
-    def connection(self) -> Connection:
-        """A gear."""
-        return GEAR
-
-    def data(self, reference: np.ndarray) -> tuple[float, ...]:
-        """Return the ratio."""
-        return (self.ratio,)

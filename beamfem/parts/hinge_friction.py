@@ -3,19 +3,16 @@
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-import numpy as np
-
-from beamfem.model.beam import Point, require_point_of
-from beamfem.model.contribution import At
+from beamfem.model.beam import Point
 from beamfem.model.load_shapes import Spiral
 from beamfem.model.part_units import UNIT
-from beamfem.parts.at_points import PartAtPoints
-from beamfem.physics.connections import HINGE_FRICTION, Connection
+from beamfem.parts.at_points import BetweenPlaces
+from beamfem.physics.connections import HINGE_FRICTION
 from beamfem.validation import convert, positive
 
 
 @dataclass(frozen=True, slots=True)
-class HingeFriction(PartAtPoints):
+class HingeFriction(BetweenPlaces):
     """Dry friction between two sections, such as those of a `Hinge`: a torsion spring that slips.
 
     Its moment is k times the change of t_b - t_a since it slipped last, and at most the friction torque (Prandtl 1928),
@@ -43,6 +40,7 @@ class HingeFriction(PartAtPoints):
     >>> corner = bf.Model([beam, post], supports, joints=[hinge], connectors=[rough])
     """
 
+    connection = HINGE_FRICTION
     conservative: ClassVar[bool] = False
 
     a: Point
@@ -51,28 +49,8 @@ class HingeFriction(PartAtPoints):
     stiffness: float = field(metadata={UNIT: "N m/rad"})
 
     def __post_init__(self) -> None:
-        require_point_of(self, "a")
-        require_point_of(self, "b")
+        BetweenPlaces.__post_init__(self)
         convert(self, positive, "torque", "stiffness")
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """Both points."""
-        return self.a, self.b
-
-    @property
-    def connection(self) -> Connection:
-        """Friction between two sections."""
-        return HINGE_FRICTION
-
-    def data(self, reference: np.ndarray) -> tuple[float, ...]:
-        """Return stiffness and torque."""
-        return self.stiffness, self.torque
-
-    def energy(self, at: At) -> tuple[float, float]:
-        """Return no kinetic energy, and the potential energy [J] of the spring."""
-        turn = at.q[1, 2] - at.q[0, 2] - at.memory[0]
-        return 0.0, 0.5 * self.stiffness * turn**2
 
     def shapes(self) -> tuple[Spiral, ...]:
         """Return the shape to draw."""

@@ -1,13 +1,12 @@
 """A rigid link between two points."""
 
 from dataclasses import dataclass
-
-import numpy as np
+from typing import ClassVar
 
 from beamfem.model.beam import Point
 from beamfem.model.load_shapes import Bar
 from beamfem.parts.at_points import BetweenPlaces
-from beamfem.physics.connections import LINK, Connection
+from beamfem.physics.connections import LINK
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,21 +33,11 @@ class Link(BetweenPlaces):
     >>> tension = bf.solve_static(pair).multipliers(link)[-1, 0]
     """
 
+    connection = LINK
+    apart: ClassVar[bool] = True
+
     a: Point
     b: Point
-
-    def __post_init__(self) -> None:
-        BetweenPlaces.__post_init__(self)
-        self.require_apart()
-
-    @property
-    def connection(self) -> Connection:
-        """A link."""
-        return LINK
-
-    def data(self, reference: np.ndarray) -> tuple[float, ...]:
-        """Return the length."""
-        return (self.distance,)
 
     def shapes(self) -> tuple[Bar, ...]:
         """Return the shape to draw."""

@@ -16,40 +16,28 @@ from beamfem.model.part_units import UNIT
 from beamfem.model.state_protocols import Placed
 from beamfem.model.supports import Value
 from beamfem.model.time_functions import Integral
-from beamfem.parts.at_points import PartAtPoints
+from beamfem.parts.at_points import BetweenPlaces
 from beamfem.parts.hinge import Hinge
 from beamfem.parts.point_moment import PointMoment
 from beamfem.parts.prescribed import Prescribed
-from beamfem.physics.connections import MOTOR, Connection, Number
+from beamfem.physics.connections import MOTOR, Number
 from beamfem.validation import called, convert, finite, function_of_one, shown, squared, takes
 
 
 @dataclass(frozen=True, eq=False)
-class Drive(PartAtPoints):
+class Drive(BetweenPlaces):
     """The condition of a motor in a hinge, t_b - t_a = u(t); its multiplier is the moment on a [N m]."""
+
+    connection = MOTOR
 
     a: Point
     b: Point
     angle: Value
 
     @property
-    def points(self) -> tuple[Point, ...]:
-        """Both points."""
-        return self.a, self.b
-
-    @property
-    def connection(self) -> Connection:
-        """A motor."""
-        return MOTOR
-
-    @property
     def prescribed(self) -> tuple[Value, ...]:
         """The angle."""
         return (self.angle,)
-
-    def data(self, reference: Any) -> tuple[float, ...]:
-        """Return no numbers."""
-        return ()
 
 
 @dataclass(frozen=True, eq=False)

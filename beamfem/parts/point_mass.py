@@ -4,16 +4,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from beamfem.model.beam import Point, require_point_of
+from beamfem.model.beam import Point
 from beamfem.model.load_shapes import Disc
 from beamfem.model.part_units import UNIT
-from beamfem.parts.at_points import PartAtPoints
+from beamfem.parts.at_points import AtPoint
 from beamfem.physics.connections import BODY, MASS, Connection
 from beamfem.validation import convert, not_negative, positive
 
 
 @dataclass(frozen=True, slots=True)
-class PointMass(PartAtPoints):
+class PointMass(AtPoint):
     """A mass at a point, with its weight under `Gravity`.
 
     Kinetic energy m |r'|^2 / 2 + J w^2 / 2.
@@ -43,14 +43,9 @@ class PointMass(PartAtPoints):
     inertia: float = field(default=0.0, metadata={UNIT: "kg m^2"})
 
     def __post_init__(self) -> None:
-        require_point_of(self, "point")
+        AtPoint.__post_init__(self)
         convert(self, positive, "mass")
         convert(self, not_negative, "inertia")
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """The point."""
-        return (self.point,)
 
     @property
     def connection(self) -> Connection:

@@ -6,19 +6,19 @@ import numpy as np
 
 from beamfem.curves import Line
 from beamfem.element.element import CRBF
-from beamfem.model.beam import Beam, Point, require_point_of
+from beamfem.model.beam import Beam, Point
 from beamfem.model.load_shapes import Disc
 from beamfem.model.part_units import UNIT
-from beamfem.parts.at_points import PartAtPoints
+from beamfem.parts.at_points import AtPoint
 from beamfem.parts.rigid import Rigid
 from beamfem.parts.weld import Weld
-from beamfem.physics.connections import BODY, Connection
+from beamfem.physics.connections import BODY
 from beamfem.section import StiffnessSection
 from beamfem.validation import convert, not_negative, positive, vector
 
 
 @dataclass(frozen=True, slots=True)
-class RigidBody(PartAtPoints):
+class RigidBody(AtPoint):
     """A rigid body fixed to a section, with its weight under `Gravity`.
 
     Its centre of mass is c = R(theta) offset from the point: kinetic energy m |r' + w x c|^2 / 2 + J w^2 / 2.
@@ -45,26 +45,18 @@ class RigidBody(PartAtPoints):
     >>> arm = bf.Model([beam], [bf.Clamp(beam.start)], masses=[head])
     """
 
+    connection = BODY
+
     point: Point
     mass: float = field(metadata={UNIT: "kg"})
     inertia: float = field(metadata={UNIT: "kg m^2"})
     offset: tuple[float, float] = field(default=(0.0, 0.0), metadata={UNIT: "m"})
 
     def __post_init__(self) -> None:
-        require_point_of(self, "point")
+        AtPoint.__post_init__(self)
         convert(self, positive, "mass")
         convert(self, not_negative, "inertia")
         convert(self, vector, "offset")
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """The point."""
-        return (self.point,)
-
-    @property
-    def connection(self) -> Connection:
-        """A body."""
-        return BODY
 
     def at(self, x: float, y: float) -> Point:
         """Return a point of the body, at (x, y) [m] from its `point` in the reference, for any other part.

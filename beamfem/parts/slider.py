@@ -6,7 +6,6 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
-from beamfem.model.contribution import At
 from beamfem.model.part_units import UNIT
 from beamfem.parts.at_points import BetweenPlaces
 from beamfem.physics.connections import ROUGH_SLIDER, SLIDER, Connection
@@ -83,12 +82,3 @@ class Slider(BetweenPlaces):
         # in the reference, where N is zero, round-off of the distance must not make it slip
         least = 1e-15 * stiffness * float(np.hypot(*apart))
         return (*smooth, self.friction, stiffness, float(apart @ (x, y)), least)
-
-    def energy(self, at: At) -> tuple[float, float]:
-        """Return no kinetic energy, and the potential energy [J] of the spring that sticks."""
-        if not self.friction:
-            return 0.0, 0.0
-        nx, ny, _, _, stiffness, start, _ = self.data(at.reference)
-        c, s = np.cos(at.q[0, 2]), np.sin(at.q[0, 2])
-        along = (at.q[1, :2] - at.q[0, :2]) @ (c * ny + s * nx, s * ny - c * nx)
-        return 0.0, 0.5 * stiffness * (along - start - at.memory[0]) ** 2

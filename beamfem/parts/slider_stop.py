@@ -68,8 +68,8 @@ class SliderStop(EndStop):
         return SLIDER_STOP if self.restitution is None else BOUNCING_SLIDER_STOP
 
     def data(self, reference: np.ndarray) -> tuple[float, ...]:
-        """Return both limits, from a on, stiffness, damping, rebound, and the axis."""
+        """Return stiffness, damping, rebound, both limits from a on, and the axis."""
         x, y = (np.array(self.axis) / np.hypot(*self.axis)).tolist()
         start = float((reference[1, :2] - reference[0, :2]) @ (x, y))
-        low, high, *others = EndStop.data(self, reference)
-        return low + start, high + start, *others, x, y
+        *others, low, high = EndStop.data(self, reference)
+        return *others, low + start, high + start, x, y

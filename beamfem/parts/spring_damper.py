@@ -67,6 +67,7 @@ class SpringDamper(BetweenPlaces):
     >>> rope = bf.SpringDamper(beam.end, (2.0, 1.0), lambda e, f: 10.0 + 1e5 * f.positive(e) ** 2)
     """
 
+    apart: ClassVar[bool] = True
     may_end_on_ground: ClassVar[bool] = True
 
     a: Point
@@ -83,7 +84,6 @@ class SpringDamper(BetweenPlaces):
             raise InputError("a law of a SpringDamper is a function of the elongation and f: lambda e, f: 1e3 * e**3")
         convert(self, not_negative, "damping")
         convert(self, optional(not_negative), "length")
-        self.require_apart()
 
     @property
     def _law(self) -> Callable[[Any, Any], Any] | None:

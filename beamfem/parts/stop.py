@@ -5,18 +5,17 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.model.beam import Point, require_point_of
-from beamfem.model.contribution import At
+from beamfem.model.beam import Point
 from beamfem.model.load_shapes import Wall
 from beamfem.model.part_units import UNIT
-from beamfem.parts.at_points import PartAtPoints
+from beamfem.parts.at_points import AtPoint
 from beamfem.parts.end_stop import rebound_of, require_rebound
 from beamfem.physics.connections import BOUNCING_STOP, ROUGH_STOP, STOP, Connection
 from beamfem.validation import convert, not_negative, squared, vector
 
 
 @dataclass(frozen=True, slots=True)
-class Stop(PartAtPoints):
+class Stop(AtPoint):
     """A straight, rigid wall that keeps a point on the side of its normal, by a stiff one-sided spring with friction.
 
     At the penetration d = max(-gap, 0) its pressure is k d (1 + c dd/dt) (Hunt and Crossley 1975). Friction sticks with
@@ -62,7 +61,7 @@ class Stop(PartAtPoints):
     restitution: float | None = None
 
     def __post_init__(self) -> None:
-        require_point_of(self, "point")
+        AtPoint.__post_init__(self)
         convert(self, vector, "place")
         convert(self, squared(vector), "normal")
         require_rebound(self)
@@ -78,31 +77,15 @@ class Stop(PartAtPoints):
         return self.friction == 0.0 and self.restitution is None
 
     @property
-    def points(self) -> tuple[Point, ...]:
-        """The point."""
-        return (self.point,)
-
-    @property
     def connection(self) -> Connection:
         """A wall, with history only where there is friction or a coefficient of restitution."""
         return ROUGH_STOP if self.friction else STOP if self.restitution is None else BOUNCING_STOP
 
     def data(self, reference: np.ndarray) -> tuple[float, ...]:
-        """Return stiffness, damping, friction, place, unit normal, and the point in the reference."""
+        """Return stiffness, damping, rebound, friction, place, unit normal, and the point in the reference."""
         nx, ny = (np.array(self.normal) / np.hypot(*self.normal)).tolist()
         x, y, _ = reference[0].tolist()
-        place = float(self.place[0]), float(self.place[1])
-        rebound = () if self.restitution is None else (rebound_of(self),)
-        return self.stiffness, self.damping, self.friction, *place, nx, ny, x, y, *rebound
-
-    def energy(self, at: At) -> tuple[float, float]:
-        """Return the kinetic and the potential energy [J], with that of the friction that sticks."""
-        kinetic, potential = PartAtPoints.energy(self, at)
-        if self.friction == 0.0:
-            return kinetic, potential
-        (x, y, _), data = at.q[0], self.data(at.reference)
-        along = (y - data[8]) * data[5] - (x - data[7]) * data[6] - at.memory[0]
-        return kinetic, potential + 0.5 * self.stiffness * along**2
+        return self.stiffness, self.damping, rebound_of(self), self.friction, *self.place, nx, ny, x, y
 
     def shapes(self) -> tuple[Wall, ...]:
         """Return the shape to draw."""

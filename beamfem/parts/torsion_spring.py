@@ -2,13 +2,11 @@
 
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from beamfem.model.beam import Point
 from beamfem.model.load_shapes import Spiral
 from beamfem.model.part_units import UNIT
 from beamfem.parts.at_points import BetweenPlaces
-from beamfem.physics.connections import TORSION_SPRING, Connection
+from beamfem.physics.connections import TORSION_SPRING
 from beamfem.validation import convert, not_negative
 
 
@@ -40,6 +38,8 @@ class TorsionSpring(BetweenPlaces):
     >>> corner = bf.Model([beam, post], supports, joints=[hinge], connectors=[stiff])
     """
 
+    connection = TORSION_SPRING
+
     a: Point
     b: Point
     stiffness: float = field(metadata={UNIT: "N m/rad"})
@@ -48,15 +48,6 @@ class TorsionSpring(BetweenPlaces):
     def __post_init__(self) -> None:
         BetweenPlaces.__post_init__(self)
         convert(self, not_negative, "stiffness", "damping")
-
-    @property
-    def connection(self) -> Connection:
-        """A torsion spring."""
-        return TORSION_SPRING
-
-    def data(self, reference: np.ndarray) -> tuple[float, ...]:
-        """Return stiffness and damping."""
-        return self.stiffness, self.damping
 
     def shapes(self) -> tuple[Spiral, ...]:
         """Return the shape to draw."""

@@ -1,13 +1,14 @@
 """A rigid connection of two sections that are apart."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from beamfem.model.beam import Point
 from beamfem.model.load_shapes import Bar
 from beamfem.parts.at_points import BetweenPlaces
-from beamfem.physics.connections import WELD, Connection
+from beamfem.physics.connections import WELD
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,17 +35,11 @@ class Weld(BetweenPlaces):
     >>> welded = bf.Model([beam, shelf], [bf.Clamp(beam.start)], connectors=[weld], masses=[block])
     """
 
+    connection = WELD
+    apart: ClassVar[bool] = True
+
     a: Point
     b: Point
-
-    def __post_init__(self) -> None:
-        BetweenPlaces.__post_init__(self)
-        self.require_apart()
-
-    @property
-    def connection(self) -> Connection:
-        """A weld."""
-        return WELD
 
     def data(self, reference: np.ndarray) -> tuple[float, ...]:
         """Return the vector from a to b in the reference."""

@@ -50,7 +50,10 @@ def connection_source(connection: Connection, what: str) -> str:
             c, s = c * other_c - s * other_s, s * other_c + c * other_s
         return c, s
 
-    f = Functions(sqrt, lambda x: cosine_sine(x)[0], lambda x: cosine_sine(x)[1], lambda x: where_positive(x, x))
+    def rate(of: Number) -> Number:
+        return changed([of], dict(zip(q, v, strict=True)))[0]
+
+    f = Functions(sqrt, lambda x: cosine_sine(x)[0], lambda x: cosine_sine(x)[1], lambda x: where_positive(x, x), rate)
     at, rates = connection.split(q), connection.split(v)
     if what == "remember":
         assert connection.remember is not None
@@ -63,6 +66,9 @@ def connection_source(connection: Connection, what: str) -> str:
     potential = connection.potential(at, data, gravity, f) if connection.potential else 0.0
     lost = connection.dissipation(at, rates, data, f) if connection.dissipation else 0.0
     given = connection.force(at, rates, (*data, *own[:k]), f) if connection.force else [0.0] * len(q)
+    if connection.along is not None:
+        measure = connection.along(at, data, f)
+        given = [given * changed([measure], {x: 1.0})[0] for x in q]
     conditions = list[Any](connection.conditions(at, data, f) if connection.conditions else ())
     momentum = [changed([kinetic], {rate: 1.0})[0] for rate in v]
     force = changed(momentum, dict(zip([*q, *v], [*v, *a], strict=True)))

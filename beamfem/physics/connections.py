@@ -8,7 +8,7 @@ as a function of time are g(q) = u, with u as a further coordinate, which a supp
 """
 
 from collections.abc import Callable
-from functools import cache, partial
+from functools import cache
 from typing import Any, NamedTuple
 
 Number = Any  # a float, a complex number or a symbol
@@ -17,12 +17,13 @@ Function = Callable[..., Number]
 
 
 class Functions(NamedTuple):
-    """Square root, cosine, sine, and max(x, 0), for numbers or symbols."""
+    """Square root, cosine, sine, and max(x, 0), for numbers or symbols; of symbols also the rate, dx/dt for q' = v."""
 
     sqrt: Function
     cos: Function
     sin: Function
     positive: Function
+    rate: Any = None
 
 
 class Connection(NamedTuple):
@@ -44,7 +45,8 @@ class Connection(NamedTuple):
     potential : callable, optional
         Potential V(q, data, gravity, f) [J].
     dissipation : callable, optional
-        Dissipation function R(q, v, data, f) [W], half the power that is dissipated where it is quadratic in v.
+        Dissipation function R(q, v, data, f) [W], half the power that is dissipated where it is quadratic in v;
+        f.rate(x) is the rate of a function x of q.
     conditions : callable, optional
         Conditions g(q, data, f), a tuple of k numbers that are zero.
     multipliers : int, default 0
@@ -54,6 +56,10 @@ class Connection(NamedTuple):
     force : callable, optional
         Resisting forces f(q, v, data, f) without an energy, such as friction: a tuple with one for each coordinate.
         Multipliers follow the history variables in data, here and in `remember`.
+    along : callable, optional
+        Length or angle u(q, data, f) along which `force` acts; it then returns one number F, and resists with F du/dq.
+    stored : callable, optional
+        Energy E(q, data, f) [J] that `force` stores, such as that of the spring with which friction sticks.
     remember : callable, optional
         History variables after an accepted step, h(q, v, data, f), a tuple in the order of `memory`.
     compiled : (int, int) or (int, int, int), optional
@@ -82,12 +88,14 @@ class Connection(NamedTuple):
     conditions: Callable[..., tuple[Number, ...]] | None = None
     multipliers: int = 0
     memory: tuple[str, ...] = ()
-    force: Callable[..., tuple[Number, ...]] | None = None
+    force: Function | None = None
     remember: Callable[..., tuple[Number, ...]] | None = None
     compiled: tuple[int, ...] | None = None
     prescribed: int = 0
     one_sided: bool = False
     amplitudes: int = 0
+    along: Function | None = None
+    stored: Function | None = None
 
     @property
     def size(self) -> int:
@@ -131,34 +139,23 @@ def _body_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions
     return -mass * (gravity[0] * (q[0][0] - x + cx - along) + gravity[1] * (q[0][1] - y + cy - across))
 
 
-def _length(q: list[Vector], f: Functions) -> Number:
-    x, y = q[1][0] - q[0][0], q[1][1] - q[0][1]
+def _length(q: list[Vector], data: Vector, f: Functions) -> Number:
+    """Return the distance of two points, or of one point from the place on the ground at the end of data."""
+    end = q[1] if len(q) == 2 else data[-2:]
+    x, y = end[0] - q[0][0], end[1] - q[0][1]
     return f.sqrt(x * x + y * y)
 
 
 def _spring_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
     """Return k (l - l0)^2 / 2."""
-    elongation = _length(q, f) - data[2]
+    elongation = _length(q, data, f) - data[2]
     return data[0] * elongation * elongation / 2
 
 
 def _spring_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
     """Return c (dl/dt)^2 / 2."""
-    x, y = q[1][0] - q[0][0], q[1][1] - q[0][1]
-    rate = (x * (v[1][0] - v[0][0]) + y * (v[1][1] - v[0][1])) / _length(q, f)
+    rate = f.rate(_length(q, data, f))
     return data[1] * rate * rate / 2
-
-
-def _to_ground(q: list[Vector], data: Vector) -> list[Vector]:
-    return [q[0], data[3:5]]
-
-
-def _grounded_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
-    return _spring_potential(_to_ground(q, data), data, gravity, f)
-
-
-def _grounded_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
-    return _spring_dissipation(_to_ground(q, data), [v[0], (0, 0)], data, f)
 
 
 def _coordinate_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
@@ -167,14 +164,19 @@ def _coordinate_potential(q: list[Vector], data: Vector, gravity: Vector, f: Fun
     return data[0] * change * change / 2
 
 
+def _turn(q: list[Vector], data: Vector, f: Functions) -> Number:
+    """Return tb - ta."""
+    return q[1][2] - q[0][2]
+
+
 def _torsion_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
     """Return k (tb - ta)^2 / 2."""
-    turn = q[1][2] - q[0][2]
+    turn = _turn(q, data, f)
     return data[0] * turn * turn / 2
 
 
 def _torsion_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
-    rate = v[1][2] - v[0][2]
+    rate = f.rate(_turn(q, data, f))
     return data[1] * rate * rate / 2
 
 
@@ -186,12 +188,8 @@ def _link_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Numbe
 
 def _cable_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
     """Return k max(l - l0, 0)^2 / 2."""
-    elongation = f.positive(_length(q, f) - data[1])
+    elongation = f.positive(_length(q, data, f) - data[1])
     return data[0] * elongation * elongation / 2
-
-
-def _grounded_cable_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
-    return _cable_potential([q[0], data[2:4]], data, gravity, f)
 
 
 def _in_frame(q: list[Vector], f: Functions) -> Vector:
@@ -201,131 +199,40 @@ def _in_frame(q: list[Vector], f: Functions) -> Vector:
     return c * x + s * y, c * y - s * x
 
 
+def _bushed(q: list[Vector], data: Vector, f: Functions) -> Vector:
+    """Return the displacement in axes that turn with a, and tb - ta."""
+    along, across = _in_frame(q, f)
+    return along - data[6], across - data[7], _turn(q, data, f)
+
+
 def _bushing_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
     """Return (kx u^2 + ky v^2 + kt (tb - ta)^2) / 2, with the displacement (u, v) in axes that turn with a."""
-    (u, v), turn = _in_frame(q, f), q[1][2] - q[0][2]
-    u, v = u - data[6], v - data[7]
-    return (data[0] * u * u + data[1] * v * v + data[2] * turn * turn) / 2
-
-
-def _rates_in_frame(q: list[Vector], v: list[Vector], f: Functions) -> Vector:
-    """Return the rates of `_in_frame`."""
-    c, s = f.cos(q[0][2]), f.sin(q[0][2])
-    (along, across), turning = _in_frame(q, f), v[0][2]
-    x, y = v[1][0] - v[0][0], v[1][1] - v[0][1]
-    return c * x + s * y + turning * across, c * y - s * x - turning * along
+    return sum(k * u * u for k, u in zip(data[:3], _bushed(q, data, f), strict=True)) / 2
 
 
 def _bushing_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
-    (u, w), rate = _rates_in_frame(q, v, f), v[1][2] - v[0][2]
-    return (data[3] * u * u + data[4] * w * w + data[5] * rate * rate) / 2
+    rates = map(f.rate, _bushed(q, data, f))
+    return sum(c * rate * rate for c, rate in zip(data[3:6], rates, strict=True)) / 2
 
 
 def _slider_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
     """Return the displacement of b across an axis that turns with a, and its rotation relative to a."""
     along, across = _in_frame(q, f)
-    return data[0] * along + data[1] * across - data[2], q[1][2] - q[0][2]
-
-
-def _slider_slip(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, Number]:
-    """Return the friction along the axis, which is at most `friction` |N|, and the change of the slip."""
-    along, across = _in_frame(q, f)
-    trial = data[4] * (data[1] * along - data[0] * across - data[5] - data[7])
-    over = _clipped(trial, data[3] * (f.positive(data[9]) + f.positive(-data[9])) + data[6], f)
-    return trial - over, over / data[4]
-
-
-def _slider_friction(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
-    """Return the friction on a and b along the axis, and its moment about a."""
-    x, y = _arm(q[0][2], (data[1], -data[0]), f)
-    friction = _slider_slip(q, data, f)[0]
-    moment = x * (q[1][1] - q[0][1]) - y * (q[1][0] - q[0][0])
-    return -friction * x, -friction * y, friction * moment, friction * x, friction * y, 0
-
-
-def _slider_remember(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
-    friction, slipped = _slider_slip(q, data, f)
-    return data[7] + slipped, data[8] + friction * slipped
+    return data[0] * along + data[1] * across - data[2], _turn(q, data, f)
 
 
 def _weld_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
     """Return the displacement of b in axes that turn with a, and its rotation relative to a."""
     along, across = _in_frame(q, f)
-    return along - data[0], across - data[1], q[1][2] - q[0][2]
+    return along - data[0], across - data[1], _turn(q, data, f)
 
 
 def _gear_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
     return (q[1][2] - data[0] * q[0][2],)
 
 
-def _penetration(q: list[Vector], data: Vector, f: Functions) -> Number:
-    """Return max(-gap, 0), with the gap to a wall through the place data[3:5] with the normal data[5:7]."""
-    return f.positive((data[3] - q[0][0]) * data[5] + (data[4] - q[0][1]) * data[6])
-
-
-def _stop_potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
-    """Return k max(-gap, 0)^2 / 2."""
-    depth = _penetration(q, data, f)
-    return data[0] * depth * depth / 2
-
-
-def _stop_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
-    """Return k c max(-gap, 0) (dgap/dt)^2 / 2 (Hunt and Crossley 1975)."""
-    rate = v[0][0] * data[5] + v[0][1] * data[6]
-    return data[0] * data[1] * _penetration(q, data, f) * rate * rate / 2
-
-
-def _stop_slip(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, Number]:
-    """Return the friction along the wall, which is at most `friction` k max(-gap, 0), and the change of the slip."""
-    stiffness, limit = data[0], data[2] * data[0] * _penetration(q, data, f)
-    along = (q[0][1] - data[8]) * data[5] - (q[0][0] - data[7]) * data[6]
-    trial = stiffness * (along - data[9])
-    over = _clipped(trial, limit, f)
-    return trial - over, over / stiffness
-
-
-def _stop_force(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
-    friction = _stop_slip(q, data, f)[0]
-    return -data[6] * friction, data[5] * friction
-
-
-def _stop_remember(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
-    friction, slipped = _stop_slip(q, data, f)
-    return data[9] + slipped, data[10] + friction * slipped
-
-
 def _motor_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
-    return (q[1][2] - q[0][2],)
-
-
-def _clipped(trial: Number, limit: Number, f: Functions) -> Number:
-    """Return what of a trial force is beyond a limit."""
-    return f.positive(trial - limit) - f.positive(-trial - limit)
-
-
-def _friction_slip(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, Number]:
-    """Return the moment on b, which is at most data[1], and the change of the slip."""
-    trial = data[0] * (q[1][2] - q[0][2] - data[2])
-    over = _clipped(trial, data[1], f)
-    return trial - over, over / data[0]
-
-
-def _friction_force(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
-    moment = _friction_slip(q, data, f)[0]
-    return 0, 0, -moment, 0, 0, moment
-
-
-def _friction_remember(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
-    moment, slipped = _friction_slip(q, data, f)
-    return data[2] + slipped, data[3] + moment * slipped
-
-
-def _turn(q: list[Vector], data: Vector, f: Functions) -> Number:
-    return q[1][2] - q[0][2]
-
-
-def _turning(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
-    return v[1][2] - v[0][2]
+    return (_turn(q, data, f),)
 
 
 def _slide(q: list[Vector], data: Vector, f: Functions) -> Number:
@@ -334,29 +241,28 @@ def _slide(q: list[Vector], data: Vector, f: Functions) -> Number:
     return data[5] * along + data[6] * across
 
 
-def _sliding(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
-    along, across = _rates_in_frame(q, v, f)
-    return data[5] * along + data[6] * across
+def _slid(q: list[Vector], data: Vector, f: Functions) -> Number:
+    """Return the displacement of b along the axis of a slider from the reference."""
+    along, across = _in_frame(q, f)
+    return data[1] * along - data[0] * across - data[5]
 
 
-def _excess(measure: Function, q: list[Vector], data: Vector, f: Functions) -> tuple[Number, Number]:
-    """Return by how much a measure is below its lower and above its upper limit."""
-    at = measure(q, data, f)
-    return f.positive(data[0] - at), f.positive(at - data[1])
+def _slider_limit(q: list[Vector], data: Vector, f: Functions) -> Number:
+    """Return friction |N|; the multiplier N follows the history variables."""
+    return data[3] * (f.positive(data[9]) + f.positive(-data[9])) + data[6]
 
 
-def _limits_potential(measure: Function, q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
-    """Return k d^2 / 2 on both sides."""
-    low, high = _excess(measure, q, data, f)
-    return data[2] * (low * low + high * high) / 2
+def _penetration(q: list[Vector], data: Vector, f: Functions) -> Number:
+    """Return -gap, with the gap to a wall through the place data[4:6] with the normal data[6:8]."""
+    return (data[4] - q[0][0]) * data[6] + (data[5] - q[0][1]) * data[7]
 
 
-def _limits_dissipation(
-    measure: Function, rate_of: Function, q: list[Vector], v: list[Vector], data: Vector, f: Functions
-) -> Number:
-    """Return k c d (dd/dt)^2 / 2 (Hunt and Crossley 1975)."""
-    rate, (low, high) = rate_of(q, v, data, f), _excess(measure, q, data, f)
-    return data[2] * data[3] * (low + high) * rate * rate / 2
+def _along_wall(q: list[Vector], data: Vector, f: Functions) -> Number:
+    return (q[0][1] - data[9]) * data[6] - (q[0][0] - data[8]) * data[7]
+
+
+def _stop_limit(q: list[Vector], data: Vector, f: Functions) -> Number:
+    return data[3] * data[0] * f.positive(_penetration(q, data, f))
 
 
 def _rebound(stiffness: Number, square: Number, depth: Number, deepest: Number, f: Functions) -> Number:
@@ -375,30 +281,6 @@ def _deepest(stiffness: Number, square: Number, depth: Number, deepest: Number, 
     return (deepest + beyond) * depth / (depth + _LEAST), lost
 
 
-def _limits_rebound(
-    measure: Function, first: int, q: list[Vector], data: Vector, gravity: Vector, f: Functions
-) -> Number:
-    depths = zip(_excess(measure, q, data, f), data[first : first + 2], strict=True)
-    return sum(_rebound(data[2], data[4], depth, deepest, f) for depth, deepest in depths)
-
-
-def _limits_remember(
-    measure: Function, first: int, q: list[Vector], v: list[Vector], data: Vector, f: Functions
-) -> tuple[Number, ...]:
-    depths = zip(_excess(measure, q, data, f), data[first : first + 2], strict=True)
-    (low, lost), (high, other) = (_deepest(data[2], data[4], depth, deepest, f) for depth, deepest in depths)
-    return low, high, data[first + 2] + lost + other
-
-
-def _stop_rebound(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
-    return _rebound(data[0], data[9], _penetration(q, data, f), data[10], f)
-
-
-def _stop_deepest(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
-    deepest, lost = _deepest(data[0], data[9], _penetration(q, data, f), data[10], f)
-    return deepest, data[11] + lost
-
-
 _LEAST = 1e-300  # [m^2/s^2], so that the derivative of |v| v is zero at rest; also a depth that is none
 
 
@@ -409,92 +291,119 @@ def _drag_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functio
     return data[0] * square * f.sqrt(square) / 3
 
 
+def _grounded(definition: Connection) -> Connection:
+    """Return the definition of a part whose second point is a place on the ground; see `_length`."""
+    name, data = f"grounded_{definition.name}", (*definition.data, "x", "y")
+    return definition._replace(name=name, points=1, data=data)
+
+
+def _with_friction(part: Connection, further: tuple[str, ...], measure: Function, limit: Function) -> Connection:
+    """Return the definition of a part with friction along a measure, at most a limit, that sticks with a stiffness."""
+    names = *part.data, *further
+    stiffness, slip = names.index("stiffness"), len(names)
+
+    def slipping(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, Number]:
+        """Return the friction, and the change of the slip."""
+        trial, most = data[stiffness] * (measure(q, data, f) - data[slip]), limit(q, data, f)
+        over = f.positive(trial - most) - f.positive(-trial - most)
+        return trial - over, over / data[stiffness]
+
+    def remember(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
+        friction, slipped = slipping(q, data, f)
+        return data[slip] + slipped, data[slip + 1] + friction * slipped
+
+    def stored(q: list[Vector], data: Vector, f: Functions) -> Number:
+        stretch = measure(q, data, f) - data[slip]
+        return data[stiffness] * stretch * stretch / 2
+
+    return part._replace(
+        name=part.name if "friction" in part.name else f"rough_{part.name}",
+        data=names,
+        memory=("slip", "dissipated"),
+        force=lambda q, v, data, f: slipping(q, data, f)[0],
+        remember=remember,
+        along=measure,
+        stored=stored,
+    )
+
+
+def _barrier(
+    name: str, points: int, coordinates: int, further: tuple[str, ...], measure: Function, deepest: tuple[str, ...]
+) -> tuple[Connection, Connection]:
+    """Return stiff one-sided springs with damping (Hunt and Crossley 1975), and with a coefficient of restitution.
+
+    They act at the depth of a measure below and above its limits, or above zero if there is one history variable.
+    """
+    names = "stiffness", "damping", "rebound", *further
+
+    def depths(q: list[Vector], data: Vector, f: Functions) -> Vector:
+        at = measure(q, data, f)
+        return (f.positive(at),) if len(deepest) == 1 else (f.positive(data[3] - at), f.positive(at - data[4]))
+
+    def potential(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
+        return data[0] * sum(depth * depth for depth in depths(q, data, f)) / 2
+
+    def dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
+        rate = f.rate(measure(q, data, f))
+        return data[0] * data[1] * sum(depths(q, data, f)) * rate * rate / 2
+
+    def rebound(q: list[Vector], data: Vector, gravity: Vector, f: Functions) -> Number:
+        sides = zip(depths(q, data, f), data[len(names) :], strict=False)
+        return sum(_rebound(data[0], data[2], *side, f) for side in sides)
+
+    def remember(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Vector:
+        *before, dissipated = data[len(names) : len(names) + len(deepest) + 1]
+        sides = [_deepest(data[0], data[2], *side, f) for side in zip(depths(q, data, f), before, strict=True)]
+        return *(depth for depth, _ in sides), dissipated + sum(lost for _, lost in sides)
+
+    damped = Connection(name, points, coordinates, names, None, potential, dissipation)
+    memory = *deepest, "dissipated"
+    bouncing = Connection(
+        f"bouncing_{name}", points, coordinates, names, None, rebound, memory=memory, remember=remember
+    )
+    return damped, bouncing
+
+
 MASS = Connection("mass", 1, 2, ("mass", "x", "y"), _mass_kinetic, _mass_potential)
 BODY = Connection("body", 1, 3, ("mass", "inertia", "along", "across", "x", "y"), _body_kinetic, _body_potential)
 _SPRING = ("stiffness", "damping", "length")
 SPRING = Connection("spring", 2, 2, _SPRING, None, _spring_potential, _spring_dissipation)
-GROUNDED_SPRING = Connection(
-    "grounded_spring", 1, 2, (*_SPRING, "x", "y"), None, _grounded_potential, _grounded_dissipation
-)
+GROUNDED_SPRING = _grounded(SPRING)
 COORDINATE_SPRING = Connection("coordinate_spring", 1, 1, ("stiffness", "rest"), None, _coordinate_potential)
 TORSION_SPRING = Connection(
     "torsion_spring", 2, 3, ("stiffness", "damping"), None, _torsion_potential, _torsion_dissipation
 )
-LINK = Connection("link", 2, 2, ("length",), None, None, None, _link_conditions, 1)
+LINK = Connection("link", 2, 2, ("distance",), None, None, None, _link_conditions, 1)
 DRAG = Connection("drag", 1, 2, ("coefficient",), None, None, _drag_dissipation)
 CABLE = Connection("cable", 2, 2, ("stiffness", "length"), None, _cable_potential)
-GROUNDED_CABLE = Connection("grounded_cable", 1, 2, ("stiffness", "length", "x", "y"), None, _grounded_cable_potential)
+GROUNDED_CABLE = _grounded(CABLE)
 _BUSHING = ("kx", "ky", "kt", "cx", "cy", "ct", "x", "y")
 BUSHING = Connection("bushing", 2, 3, _BUSHING, None, _bushing_potential, _bushing_dissipation)
 SLIDER = Connection("slider", 2, 3, ("nx", "ny", "offset"), None, None, None, _slider_conditions, 2)
-ROUGH_SLIDER = SLIDER._replace(
-    name="rough_slider",
-    data=(*SLIDER.data, "friction", "stiffness", "along", "least"),
-    memory=("slip", "dissipated"),
-    force=_slider_friction,
-    remember=_slider_remember,
-)
+ROUGH_SLIDER = _with_friction(SLIDER, ("friction", "stiffness", "start", "least"), _slid, _slider_limit)
 WELD = Connection("weld", 2, 3, ("x", "y"), None, None, None, _weld_conditions, 3)
 GEAR = Connection("gear", 2, 3, ("ratio",), None, None, None, _gear_conditions, 1)
 MOTOR = Connection("motor", 2, 3, (), None, None, None, _motor_conditions, 1, prescribed=1)
-_SLIP = "slip", "dissipated"
-_STOP = ("stiffness", "damping", "friction", "x", "y", "nx", "ny", "x0", "y0")
-STOP = Connection("stop", 1, 2, _STOP, None, _stop_potential, _stop_dissipation)
-ROUGH_STOP = STOP._replace(name="rough_stop", memory=_SLIP, force=_stop_force, remember=_stop_remember)
-HINGE_FRICTION = Connection(
-    "hinge_friction", 2, 3, ("stiffness", "torque"), memory=_SLIP, force=_friction_force, remember=_friction_remember
+_STOP = ("friction", "x", "y", "nx", "ny", "x0", "y0")
+STOP, BOUNCING_STOP = _barrier("stop", 1, 2, _STOP, _penetration, ("deepest",))
+ROUGH_STOP = _with_friction(STOP, (), _along_wall, _stop_limit)
+HINGE_FRICTION = _with_friction(
+    Connection("hinge_friction", 2, 3, ("stiffness", "torque")), (), _turn, lambda q, data, f: data[1]
 )
-BOUNCING_STOP = Connection(
-    "bouncing_stop",
-    1,
-    2,
-    (*_STOP, "rebound"),
-    None,
-    _stop_rebound,
-    memory=("deepest", "dissipated"),
-    remember=_stop_deepest,
-)
-
-
-def _limits(name: str, measure: Function, rate_of: Function, further: tuple[str, ...]) -> tuple[Connection, Connection]:
-    """Return the definitions of end stops of a measure, with damping and with a coefficient of restitution."""
-    data = ("low", "high", "stiffness", "damping", "rebound", *further)
-    potential, dissipation = partial(_limits_potential, measure), partial(_limits_dissipation, measure, rate_of)
-    bouncing = Connection(
-        f"bouncing_{name}",
-        2,
-        3,
-        data,
-        None,
-        partial(_limits_rebound, measure, len(data)),
-        memory=("low_deepest", "high_deepest", "dissipated"),
-        remember=partial(_limits_remember, measure, len(data)),
-    )
-    return Connection(name, 2, 3, data, None, potential, dissipation), bouncing
-
-
-HINGE_STOP, BOUNCING_HINGE_STOP = _limits("hinge_stop", _turn, _turning, ())
-SLIDER_STOP, BOUNCING_SLIDER_STOP = _limits("slider_stop", _slide, _sliding, ("ax", "ay"))
+_SIDES = ("low_deepest", "high_deepest")
+HINGE_STOP, BOUNCING_HINGE_STOP = _barrier("hinge_stop", 2, 3, ("low", "high"), _turn, _SIDES)
+SLIDER_STOP, BOUNCING_SLIDER_STOP = _barrier("slider_stop", 2, 3, ("low", "high", "ax", "ay"), _slide, _SIDES)
 
 
 @cache
 def spring_with_law(law: Function, grounded: bool) -> Connection:
     """Return the definition of a spring whose force is law(elongation, f), with the data of the linear one."""
-    force = partial(_law_force, law, grounded)
-    return (GROUNDED_SPRING if grounded else SPRING)._replace(name="spring_with_law", potential=None, force=force)
+
+    def force(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
+        return law(_length(q, data, f) - data[2], f)
+
+    spring = GROUNDED_SPRING if grounded else SPRING
+    return spring._replace(name="spring_with_law", potential=None, force=force, along=_length)
 
 
-def _law_force(
-    law: Function, grounded: bool, q: list[Vector], v: list[Vector], data: Vector, f: Functions
-) -> tuple[Number, ...]:
-    ends = _to_ground(q, data) if grounded else q
-    length = _length(ends, f)
-    pull = law(length - data[2], f) / length
-    x, y = pull * (ends[1][0] - ends[0][0]), pull * (ends[1][1] - ends[0][1])
-    return (-x, -y) if grounded else (-x, -y, x, y)
-
-
-_SPRINGS = SPRING, GROUNDED_SPRING, COORDINATE_SPRING, TORSION_SPRING, CABLE, GROUNDED_CABLE, BUSHING
-_JOINTS = LINK, SLIDER, ROUGH_SLIDER, WELD, GEAR, MOTOR
-_STOPS = STOP, ROUGH_STOP, BOUNCING_STOP, HINGE_STOP, BOUNCING_HINGE_STOP, SLIDER_STOP, BOUNCING_SLIDER_STOP
-CONNECTIONS = MASS, BODY, *_SPRINGS, *_JOINTS, DRAG, *_STOPS, HINGE_FRICTION
+CONNECTIONS = tuple(value for value in globals().values() if isinstance(value, Connection))

@@ -121,6 +121,20 @@ def test_lengths_of_parts_in_the_package_are_those_of_their_code():
     assert {name: int(lines) for name, lines in rows} == lengths
 
 
+def test_lengths_of_the_bushing_are_those_of_its_code():
+    """Lines of its class, and of its definition without docstrings."""
+    page = (ROOT / "docs" / "extending.md").read_text()
+    lengths = re.search(r"`beamfem/parts/bushing.py`, (\d+) lines.*?: (\d+) in", page, re.S).groups()
+    for file, start, length in zip(
+        ("parts/bushing", "physics/connections"), ("class ", "def _bush|_?BUSHING"), lengths, strict=True
+    ):
+        code = ast.parse((ROOT / "beamfem" / f"{file}.py").read_text()).body
+        found = [part for part in code if re.search(rf"^({start})", ast.unparse(part), re.M)]
+        lines = sum(part.end_lineno - part.lineno + 1 for part in found)
+        documented = [part for part in found if isinstance(part, ast.FunctionDef) and ast.get_docstring(part)]
+        assert lines - len(documented) == int(length), file
+
+
 def test_reference_lists_every_public_name():
     listed = "".join(path.read_text() for path in (ROOT / "docs" / "reference").glob("*.md"))
     missing = [name for name in bf.__all__ if not re.search(rf":: {name}\b", listed)]

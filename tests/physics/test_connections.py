@@ -1,5 +1,7 @@
 """Masses, springs, dampers and links of the package: compiled, consistent, and right by closed forms."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from connectors import PointMass, RigidLink, SpringDamper
@@ -464,3 +466,23 @@ def test_conditions_may_stand_among_the_joints(part, tmp_path):
         assert np.array_equal(bf.solve_static(bf.load(tmp_path / "joined.h5").model).p, solution.p)
         found.append(solution.displacement(two.end)[-1])
     np.testing.assert_allclose(found[0], found[1], rtol=1e-12)
+
+
+@pytest.mark.parametrize("joint", [bf.Link, bf.Weld])
+def test_an_initial_velocity_that_a_joint_prevents_is_lost_by_its_impulses(joint):
+    """Impulses of a joint between free beams keep all momenta, and take the energy of what they stop (Carnot)."""
+    one, other = (bf.Beam(bf.Line((0, y), (1, y)), 2, bf.CRBF(3), SQUARE, STEEL) for y in (0.0, 1.0))
+    apart, joined = (bf.Model([one, other], connectors=parts) for parts in ([], [joint(one.end, other.end)]))
+    options = {"duration": 1e-6, "step": 1e-6, "velocity": lambda x: (0.3 + 0.5 * x[1], x[0] * x[1])}
+    before = bf.simulate(apart, **options)
+    with pytest.warns(bf.EnergyWarning, match=r"does not satisfy .* (Link|Weld): impulses .* change it by up to"):
+        after = bf.simulate(joined, **options)
+    for own, others in zip(before.linear_momentum()[0], after.linear_momentum()[0], strict=True):
+        assert own == pytest.approx(others, rel=1e-12)
+    assert before.angular_momentum()[0] == pytest.approx(after.angular_momentum()[0], rel=1e-12)
+    ends = np.diff([after.position(beam.end)[0] for beam in (one, other)], axis=0)[0]
+    assert abs(ends @ np.diff([after.velocity(beam.end)[0] for beam in (one, other)], axis=0)[0]) < 1e-12
+    stopped = replace(before[0], v=before[0].v - after[0].v[: len(before[0].v)])
+    lost = bf.simulate(apart, 1e-6, 1e-6, start=stopped)
+    energies = [motion.energy().kinetic[0] for motion in (before, after, lost)]
+    assert energies[0] - energies[1] == pytest.approx(energies[2], rel=1e-10)

@@ -17,8 +17,8 @@ _SHORT = 1e-3  # of the model: step of a difference along the motion
 CENTRAL = (3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0)  # of sixth order
 
 
-def require_met(system: System, p: np.ndarray, v: np.ndarray, time: float, duration: float) -> None:
-    """Raise InputError if the start p, p' (n,) of a motion at a time does not satisfy the conditions of connectors."""
+def require_met(system: System, p: np.ndarray, time: float) -> None:
+    """Raise InputError if the start p (n,) of a motion at a time does not satisfy the conditions of connectors."""
     for item in system.connectors.items:
         if is_one_sided(item.item):
             raise InputError(
@@ -26,21 +26,29 @@ def require_met(system: System, p: np.ndarray, v: np.ndarray, time: float, durat
                 "contact stiffness instead"
             )
     require_independent(system, p)
-    gaps, rates = system.connectors.conditions(p, v, time)
-    fastest = float(np.max(np.abs(v) * np.where(system.positions, 1.0, system.extent), initial=0.0))
-    fastest += system.extent / duration
+    gaps = system.connectors.conditions(p, np.zeros(len(p)), time)[0]
     for item in system.connectors.items:
         rows = item.multipliers - system.model.coordinates
         if np.any(np.abs(gaps[rows]) > _MET * system.extent):
             raise InputError(
                 f"the start of the motion does not satisfy the conditions of {item.name}, which are off by {gaps[rows]}"
             )
-        if np.any(np.abs(rates[rows]) > _MET * fastest):
-            raise InputError(
-                f"the initial velocity does not satisfy the conditions of {item.name}, which change by {rates[rows]} "
-                f"per {system.model.unit('s')}. Give all that it connects compatible velocities, such as one "
-                "RigidVelocity"
-            )
+
+
+def change_of_velocity(system: System, p: np.ndarray, given: np.ndarray, v: np.ndarray) -> str:
+    """Return a sentence on how conditions change a given velocity p' (n,), nothing if by round-off only."""
+    change = v - given
+    size, fastest = (np.max(np.abs(each) * np.where(system.positions, 1.0, system.extent)) for each in (change, given))
+    if size <= _MET * fastest:
+        return ""
+    lost, before = (_momentum(system, p, each) @ each for each in (change, given))
+    items, second = system.connectors.items, system.model.unit("s")
+    names = sorted({item.name for item in items if len(item.multipliers)})
+    return (
+        f"the initial velocity does not satisfy the conditions of {', '.join(names)}: impulses there change it by "
+        f"up to {size:.3g} {system.model.unit('m')}/{second} and take {lost / before:.2%} of the kinetic energy. A "
+        "RigidVelocity moves all that is connected alike"
+    )
 
 
 def constrained_acceleration(

@@ -23,7 +23,7 @@ from beamfem.solve.accuracy.carried_start import carried
 from beamfem.solve.accuracy.coarse_mesh import warned_of_coarse_motion
 from beamfem.solve.accuracy.quantity_change import Quantity
 from beamfem.solve.motion.consistent_rows import finished_rows
-from beamfem.solve.motion.constraints import impact, require_met, stopped_by_conditions
+from beamfem.solve.motion.constraints import change_of_velocity, impact, require_met, stopped_by_conditions
 from beamfem.solve.motion.error_control import march_to_tolerance
 from beamfem.solve.motion.events import Event
 from beamfem.solve.motion.initial_velocity import put_onto_supports, require_on_supports, start_velocity
@@ -82,6 +82,7 @@ def simulate(
     velocity : RigidVelocity or callable, optional
         Initial velocity: of a rigid motion, or a function of the reference position (2,) [m] of the axis, which returns
         (vx, vy) [m/s]. With a function, sections do not rotate at first, unless their element ties them to the axis.
+        What joints and supports prevent is lost at once, too.
     save_every : int, default 1
         Keep every n-th state and the last one.
     tolerance : float, [-], optional
@@ -191,9 +192,12 @@ def simulate(
     if stopped.any():
         state[1] += impact(system, state[0], stopped)
     if len(system.connectors.multipliers):
-        if velocity is None and (start is not None or system.connectors.conditions_follow_time):
-            state[1] += stopped_by_conditions(system, state[0], state[1], parts[0].loads_from)
-        require_met(system, state[0], state[1], parts[0].loads_from, settings.duration)
+        require_met(system, state[0], parts[0].loads_from)
+        if velocity is not None or start is not None or system.connectors.conditions_follow_time:
+            given = state[1].copy()
+            state[1] += stopped_by_conditions(system, state[0], given, parts[0].loads_from)
+            if velocity is not None and (lost := change_of_velocity(system, state[0], given, state[1])):
+                warn(lost, EnergyWarning)
     state[2] = initial_acceleration(system, state, parts[0].loads_from)
     state[3] = state[2]
     turned = first_turns(model, state[0], transferred_turns(start, model, "start"))

@@ -30,7 +30,7 @@ Contents; see help(bf.Beam), for example, for details.
     Supports          Clamp Pin Roller Spring Foundation Prescribed
     Joints            Rigid Hinge
     Masses, springs   PointMass RigidBody SpringDamper TorsionSpring Bushing Cable
-                      Link Slider SliderOnBeam Weld Gear Drag Stop HingeFriction HingeStop SliderStop
+                      Link Slider SliderOnBeam Weld Gear Drag Stop HingeFriction HingeStop SliderStop StateForce
     Loads             PointForce PointMoment DistributedLoad Pressure Gravity Actuation Temperature
                       Pretension Motor MovingForce
     Time functions    Interpolated Piecewise

@@ -112,6 +112,7 @@ from .parts.slider_on_beam import SliderOnBeam as SliderOnBeam
 from .parts.slider_stop import SliderStop as SliderStop
 from .parts.spring import Spring as Spring
 from .parts.spring_damper import SpringDamper as SpringDamper
+from .parts.state_force import StateForce as StateForce
 from .parts.stop import Stop as Stop
 from .parts.temperature import Temperature as Temperature
 from .parts.torsion_spring import TorsionSpring as TorsionSpring

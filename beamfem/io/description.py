@@ -243,12 +243,10 @@ def _read(value: Any, beams: list[Beam], functions: list[Sampled]) -> Any:
         return tuple(_read(item, beams, functions) for item in value)
     if not isinstance(value, dict):
         return value
-    if "beam" in value and "class" not in value:
-        return beams[value["beam"]]
-    if "function" in value:
-        return functions[value["function"]]
-    if "array" in value:
-        return np.array(value["array"])
+    if "class" not in value:
+        if "array" in value:
+            return np.array(value["array"])
+        return beams[value["beam"]] if "beam" in value else functions[value["function"]]
     name = value["class"]
     if name not in _CLASSES and ":" not in name:
         raise InputError(f"this version of beamfem knows no {name}; a newer one may")

@@ -20,7 +20,8 @@ from beamfem.parts.at_points import BetweenPlaces
 from beamfem.parts.hinge import Hinge
 from beamfem.parts.point_moment import PointMoment
 from beamfem.parts.prescribed import Prescribed
-from beamfem.physics.connections import MOTOR, Number
+from beamfem.parts.state_force import differentiated
+from beamfem.physics.connections import MOTOR
 from beamfem.validation import called, convert, finite, function_of_one, shown, squared, takes
 
 
@@ -54,30 +55,16 @@ class Controller:
         """Return the moments that resist."""
         signs = np.array([-1.0, 1.0])[-len(self.points) :]
         forces = np.zeros_like(at.q)
-        forces[:, 2] = -signs * self._torque(at.time, np.array([signs @ at.q[:, 2], signs @ at.v[:, 2]]))
+        state = np.array([signs @ at.q[:, 2], signs @ at.v[:, 2]])
+        forces[:, 2] = -signs * differentiated(lambda state: self._torque(at.time, *state.tolist()), state)
         return forces.ravel()
 
     def energy(self, at: At) -> tuple[float, float]:
         """Return no energies."""
         return 0.0, 0.0
 
-    def _torque(self, time: float, state: np.ndarray) -> Number:
-        """Return the torque; its derivatives are differences, so that the function may be any of real numbers."""
-        real, moved = state.real, state.imag
-
-        def torque(*at: float) -> float:
-            return finite("torque of Motor", called("torque of Motor", self.torque, time, *at))
-
-        result: Number = torque(*real.tolist())
-        for number in np.flatnonzero(moved):
-            step = np.zeros(2)
-            step[number] = _WIDTH * max(1.0, abs(real[number]))
-            slope = (torque(*(real + step).tolist()) - torque(*(real - step).tolist())) / (2.0 * step[number])
-            result += 1j * slope * moved[number]
-        return result
-
-
-_WIDTH = 1e-6  # of the differences, rad and rad/s
+    def _torque(self, *at: float) -> float:
+        return finite("torque of Motor", called("torque of Motor", self.torque, *at))
 
 
 @dataclass(frozen=True)

@@ -105,7 +105,11 @@ class Deferred:
             self._pending.append(number)
 
     def _keep(self, unraisable: "sys.UnraisableHookArgs") -> None:
-        if current_thread() is main_thread() and self.inside and _is_of_package(unraisable):
+        # that of a function of the package that compiled code calls, ignored at its entry
+        function = unraisable.object  # from Python 3.13 on it stands in the message only
+        text = f"{unraisable.err_msg} {function!r} {getattr(function, '__module__', '')}"
+        of_package = "ctypes callback" in text and ("beamfem." in text or "CoupledStages." in text)
+        if of_package and current_thread() is main_thread() and self.inside:
             self.lost = unraisable.exc_value
         else:
             self._hook(unraisable)
@@ -131,10 +135,3 @@ def _without_leftovers(number: int, handler: Any) -> Any:
     while isinstance(owner := getattr(handler, "__self__", None), Deferred) and not owner.inside:
         handler = owner._handlers[number]
     return handler
-
-
-def _is_of_package(unraisable: "sys.UnraisableHookArgs") -> bool:
-    """Return whether an exception was ignored at the entry of a function of the package that compiled code calls."""
-    function = unraisable.object  # from Python 3.13 on it stands in the message only
-    text = f"{unraisable.err_msg} {function!r} {getattr(function, '__module__', '')}"
-    return "ctypes callback" in text and ("beamfem." in text or "CoupledStages." in text)

@@ -282,7 +282,9 @@ def _banded(
     bordering = np.concatenate([edge, np.arange(rows, len(dofs))])
     behind = len(dofs) * (2 * half_width + 1)
     places = (
-        _places(own, half_width) if fit else _places_in_border(own, bordering, behind)
+        _places(own, half_width, 2 * half_width)
+        if fit
+        else _places(np.where(own >= 0, np.searchsorted(bordering, own), -1), behind, len(bordering))
         for own, fit in zip(coupled, fits, strict=True)
     )
     layouts = tuple(Layout(free, half_width, none) for _ in blocks)
@@ -334,18 +336,10 @@ def _fits(numbers: np.ndarray, half_width: int, rows: int) -> bool:
     return not len(unknown) or (int(np.ptp(unknown)) <= half_width and int(unknown.max()) < rows)
 
 
-def _places(numbers: np.ndarray, half_width: int) -> np.ndarray:
-    """Return the positions (k, k) of the entries of a coupling in a band, -1 where it has none."""
+def _places(numbers: np.ndarray, first: int, width: int) -> np.ndarray:
+    """Return the positions (k, k) of the entries of a coupling, the first one and a row apart, -1 where it has none."""
     row, column = numbers[:, None], numbers[None, :]
-    places = row * (2 * half_width + 1) + half_width + column - row
-    return np.where((row >= 0) & (column >= 0), places, -1)
-
-
-def _places_in_border(numbers: np.ndarray, border: np.ndarray, first: int) -> np.ndarray:
-    """Return the positions (k, k) of the entries of a coupling in a border (m, m) that begins at position `first`."""
-    place = np.where(numbers >= 0, np.searchsorted(border, numbers), -1)
-    row, column = place[:, None], place[None, :]
-    return np.where((row >= 0) & (column >= 0), first + row * len(border) + column, -1)
+    return np.where((row >= 0) & (column >= 0), first + row * width + column, -1)
 
 
 def reaches(blocks: Sequence[Mesh], free: np.ndarray, unknown: int, coupled: Sequence[np.ndarray] = ()) -> np.ndarray:

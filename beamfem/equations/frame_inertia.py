@@ -9,7 +9,6 @@ where J turns nodal vectors by a right angle, N = -J^2 selects their components,
 place of each position, and t is one for each angle. All equations are therefore those of a frame at rest.
 """
 
-from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -71,20 +70,14 @@ def right_angle(system: System) -> csr_array:
 def _right_angle(system: System) -> csr_array:
     for item in system.connectors.items:
         _require_frame_indifferent(item, system)
-    pairs = np.unique(np.concatenate([np.empty((0, 2), dtype=np.int64), *_pairs(system)]), axis=0)
-    x, y = pairs.T
+    pairs = [np.empty((0, 2), dtype=np.int64)]  # numbers of x and y of nodal vectors
+    for block, element in zip(system.blocks, system.model.groups, strict=True):
+        columns = columns_of(block.node_kind, block.dof, element.field.vectors)
+        pairs += [np.column_stack([x, y]) for (label, _, x), (_, _, y) in pairwise(columns) if label.endswith("^x")]
+    x, y = np.unique(np.concatenate(pairs), axis=0).T
     entries = np.concatenate([np.full(len(x), -1.0), np.ones(len(x))])
     places = np.append(x, y), np.append(y, x)
     return csr_array(coo_array((entries, places), shape=(system.model.size, system.model.size)))
-
-
-def _pairs(system: System) -> Iterator[np.ndarray]:
-    """Yield the numbers (m, 2) of x and y of nodal vectors."""
-    for block, element in zip(system.blocks, system.model.groups, strict=True):
-        columns = columns_of(block.node_kind, block.dof, element.field.vectors)
-        for (label, _, x), (_, _, y) in pairwise(columns):
-            if label.endswith("^x"):
-                yield np.column_stack([x, y])
 
 
 def _require_frame_indifferent(item: Connector, system: System) -> None:

@@ -83,7 +83,8 @@ class LawPass:
                 if point < self._points:
                     past = _NOTHING
                     if self._law.remembers:
-                        past = _past(group, system, slice(first, first + count), point)
+                        state, history = System.at(system), Group.at(group).history
+                        past = state.p[history[first : first + count, point]], state.since_committed
                     self._fill_rows(own, weights, natural[:3], past, stiff != 0)
             except BaseException:
                 own[RESULTANT : RESULTANT + _MEASURES] = np.nan
@@ -99,12 +100,6 @@ class LawPass:
         resultants, slope = self._law.linearised(strain, *past)
         own[RESULTANT : RESULTANT + 3] = weight * resultants.T
         own[STIFFNESS + _KNOWN] = weight * slope[:, _PAIRS[0, _KNOWN], _PAIRS[1, _KNOWN]].T
-
-
-def _past(group: int, system: int, elements: slice, number: int) -> _Past:
-    """Return the committed history at a point of some elements where the law acts, and the time step since then."""
-    state = System.at(system)
-    return state.p[Group.at(group).history[elements, number]], state.since_committed
 
 
 def _rows(address: int, count: int) -> np.ndarray:

@@ -38,7 +38,6 @@ def columns_of(node_kinds: np.ndarray, dof: np.ndarray, vectors: tuple[str, ...]
     return result
 
 
-Places = tuple[np.ndarray, np.ndarray, np.ndarray]
 _SOURCES = ("r^x", "r^y", "r_x^x", "r_x^y", "r_y^x", "r_y^y", "s")
 
 
@@ -52,20 +51,10 @@ def stress_free(model: Model, blocks: Sequence[Block]) -> np.ndarray:
         )
         speed = speed[:, None]
         table = np.concatenate((position, tangent * speed, across(tangent), speed), axis=1)
-        dofs, nodes, sources = _places(block, element.field.vectors)
-        p[dofs] = table[nodes, sources]
+        for label, nodes, dofs in columns_of(block.node_kind, block.dof, element.field.vectors):
+            if label != "theta":
+                p[dofs] = table[nodes, _SOURCES.index(label)]
     return p
-
-
-def _places(block: Block, vectors: tuple[str, ...]) -> Places:
-    """Return the coordinates (k,) that are not angles, with the node and the number in `_SOURCES` of each."""
-    columns = [column for column in columns_of(block.node_kind, block.dof, vectors) if column[0] != "theta"]
-    sources = [np.full(len(nodes), _SOURCES.index(label)) for label, nodes, _ in columns]
-    return (
-        np.concatenate([column[2] for column in columns]),
-        np.concatenate([column[1] for column in columns]),
-        np.concatenate(sources),
-    )
 
 
 COORDINATES = {"ux": "r^x", "uy": "r^y", "rotation": "theta"}  # nodal coordinate by direction of a support

@@ -95,9 +95,8 @@ def build_frame(
     members: Members,
     hinges: str | Sequence[str],
     damping: Any = None,
-    name: str | None = None,
 ) -> Frame:
-    """Return the frame of a mesh; see `LineMesh.frame`. name: of its beams, with their numbers from 1."""
+    """Return the frame of a mesh; see `LineMesh.frame`."""
     one_of("members", members, ("cells", "chains"))
     hinged = np.zeros(len(mesh.nodes), dtype=bool)
     for hinge in (hinges,) if isinstance(hinges, str) else items("hinges", hinges):
@@ -115,9 +114,8 @@ def build_frame(
         arguments = {what: values[first] for what, values in by_cell.items()}
         curve, ends = _axis([_curve(points, cells, piece) for piece in line])
         parts = count("elements", arguments.pop("elements"))
-        beam_name = None if name is None else f"{name}[{number + 1}]"
         inner = np.linspace(ends[:-1], ends[1:], parts, endpoint=False, axis=1) if len(line) > 1 else None
-        beam = Beam(curve, parts if inner is None else (*inner.ravel().tolist(), 1.0), **arguments, name=beam_name)
+        beam = Beam(curve, parts if inner is None else (*inner.ravel().tolist(), 1.0), **arguments)
         beams.append(beam)
         owner[[cell for cell, _ in line]] = number
         for (cell, backwards), fraction in zip(line, ends.tolist(), strict=False):
@@ -201,7 +199,7 @@ def _axis(curves: list[Curve]) -> tuple[Curve, np.ndarray]:
 
 
 def _chains(mesh: LineMesh, hinged: np.ndarray) -> list[list[Piece]]:
-    """Return the cells of each member, in order.
+    """Return the cells of each member, in order and in the direction of most of them.
 
     A member continues through a node if exactly two cells meet there, both in the same sets, at an angle below 30
     degrees, and the node is not hinged (n,).
@@ -220,15 +218,10 @@ def _chains(mesh: LineMesh, hinged: np.ndarray) -> list[list[Piece]]:
                     while (following := follower.get(line[-1])) is not None and not seen[following[0]]:
                         line.append(following)
                         seen[following[0]] = True
-                    result.append(_forwards(line))
+                    if sum(backwards for _, backwards in line) > len(line) / 2:
+                        line = [(cell, not backwards) for cell, backwards in reversed(line)]
+                    result.append(line)
     return sorted(result, key=lambda line: min(cell for cell, _ in line))
-
-
-def _forwards(line: list[Piece]) -> list[Piece]:
-    """Return a member in the direction of most of its cells."""
-    if sum(backwards for _, backwards in line) <= len(line) / 2:
-        return line
-    return [(cell, not backwards) for cell, backwards in reversed(line)]
 
 
 def _followers(mesh: LineMesh, hinged: np.ndarray) -> dict[Piece, Piece]:

@@ -1,7 +1,7 @@
 """Parts of a model in words, for the legends of files and for the command line."""
 
 from collections.abc import Callable
-from dataclasses import Field, fields
+from dataclasses import fields
 from typing import Any
 
 from beamfem.damping import Damping, KelvinVoigt
@@ -81,16 +81,11 @@ def part_in_words(part: Any, model: Model) -> str:
     """Return a support, joint, connector or load in a line, with the fields that are not their defaults."""
     units = field_units(part)
     words = [
-        f"{field.name} {_value_in_words(getattr(part, field.name), model)} {model.unit(units.get(field.name, ''))}"
-        for field in fields(part)
-        if _is_given(part, field)
+        f"{field.name} {_value_in_words(value, model)} {model.unit(units.get(field.name, ''))}"
+        for field, value in ((field, getattr(part, field.name)) for field in fields(part))
+        if hasattr(value, "shape") or (value is not None and value != field.default)
     ]
     return f"{type(part).__name__}: {', '.join(word.strip() for word in words)}"
-
-
-def _is_given(part: Any, field: Field[Any]) -> bool:
-    value = getattr(part, field.name)
-    return hasattr(value, "shape") or (value is not None and value != field.default)
 
 
 def _value_in_words(value: Any, model: Model) -> str:

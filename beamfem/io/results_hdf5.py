@@ -142,7 +142,10 @@ def load_path(file: Any, rows: Solution) -> Solution:
     model, zeros = rows.model, np.zeros(rows.model.size)
 
     def states(name: str, kind: type[PathState], parts: tuple[str, ...]) -> tuple[Any, ...]:
-        rows = _rows(file[name], parts)
+        group = file[name]
+        # None if no beam needs them, or in older files
+        turns = read_checked(group, "turned") if "turned" in group else [None] * len(group["at"])
+        rows = zip(*(read_checked(group, part) for part in parts), turns, strict=True)
         return tuple(
             kind(p, zeros, zeros, float(at), model, *more, stability=False, turned=turned)
             for at, p, *more, turned in rows
@@ -151,12 +154,6 @@ def load_path(file: Any, rows: Solution) -> Solution:
     members = {name: getattr(rows, name) for name in Solution.__dataclass_fields__}
     limits, crossings = states("limit_points", PathState, _STATE), states("bifurcations", Bifurcation, _CROSSING)
     return EquilibriumPath(**members, limit_points=limits, bifurcations=crossings)
-
-
-def _rows(group: Any, parts: tuple[str, ...]) -> Any:
-    """Return the members of each state and its counted rotations, None if no beam needs them or the file is older."""
-    turned = read_checked(group, "turned") if "turned" in group else [None] * len(group["at"])
-    return zip(*(read_checked(group, part) for part in parts), turned, strict=True)
 
 
 _FORMAT = "beamfem solution"

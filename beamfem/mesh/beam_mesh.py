@@ -10,7 +10,6 @@ import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.element.coordinates import Gradients, labels
-from beamfem.element.element import Element
 from beamfem.kernels.block import ELASTIC_LINE
 from beamfem.mesh.beam_grid import Grid
 from beamfem.mesh.reference import energy_points, energy_stiffness_at, inertia_at, jacobians, length_points, scales
@@ -61,26 +60,14 @@ def element_classes(grid: Grid) -> Classes:
         return values.reshape(count, size, *values.shape[1:])
 
     jacobian, jacobian_xi = map(by_class, jacobians(grid, element, xi))
-    slope, second = _derivatives(grid.beam.element, scale, jacobian, jacobian_xi)
+    tables, scaled, inverse = grid.beam.element.tables, scale[:, None, :], 1.0 / jacobian[:, :, None]
+    slope, second = np.ascontiguousarray(tables.slope * scaled * inverse), np.empty((count, 0, 0))
+    if grid.beam.element.forces.code == ELASTIC_LINE:
+        curve = tables.curve - jacobian_xi[:, :, None] * inverse * tables.slope
+        second = np.ascontiguousarray(curve * scaled * inverse**2)
     weight, stiffness, reference = map(by_class, (weight, stiffness, reference))
     shapes = kind, slope, second, scale, jacobian
     return Classes(*shapes, weight, stiffness, reference, mass, gravity, length, damping)
-
-
-def _derivatives(
-    element: Element, scale: np.ndarray, jacobian: np.ndarray, jacobian_xi: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return dN/ds (nc, nq, nv) at the points of the energy, and d2N/ds2, empty except for the elastic line.
-
-    scale (nc, nv): scale of the nodal vectors, included in N; jacobian, jacobian_xi (nc, nq): ds/dxi [m] and its
-    derivative.
-    """
-    table, curved = element.tables.slope, element.tables.curve
-    scaled, inverse = scale[:, None, :], 1.0 / jacobian[:, :, None]
-    second = np.empty((len(scale), 0, 0))
-    if element.forces.code == ELASTIC_LINE:
-        second = np.ascontiguousarray((curved - jacobian_xi[:, :, None] * inverse * table) * scaled * inverse**2)
-    return np.ascontiguousarray(table * scaled * inverse), second
 
 
 def _equal_elements(grid: Grid) -> tuple[np.ndarray, np.ndarray]:

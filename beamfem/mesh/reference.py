@@ -186,12 +186,12 @@ def curvature(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
     return (0.5 * (before + after) + (arc - middle) / near * (after - before)) / near
 
 
-def inertia_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def inertia_points(grid: Grid) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return element, xi and inertia (n, 3) of the points that integrate mass.
 
     inertia: mass [kg], its first moment [kg m] and its second [kg m^2] over y, quadrature weight included.
     """
-    where, at, weight = length_points(grid, element)
+    where, at, weight = length_points(grid)
     return where, at, inertia_at(grid, where, at, weight)
 
 

@@ -119,10 +119,14 @@ def energy_drift(solution: "Solution") -> EnergyDrift | None:
 
     Work is done by loads with an amplitude, follower loads and pressures, moving supports and damping.
     """
-    if solution.static or solution.loaded is not None or not _conservative(solution):
+    if solution.static or solution.loaded is not None or driven(solution):
+        return None
+    system = system_of(solution.model, static=False)
+    if system.damped or system.history.laws:
         return None
     energy = _energy_of_rows(solution)
-    return EnergyDrift(float(energy.total[-1] - energy.total[0]), _exchanged(energy), solution.model.unit("J"))
+    exchanged = max(energy.kinetic.max(), np.ptp(energy.strain), np.ptp(energy.potential))
+    return EnergyDrift(float(energy.total[-1] - energy.total[0]), float(exchanged), solution.model.unit("J"))
 
 
 def _energy_of_rows(solution: "Solution") -> "Energy":
@@ -137,15 +141,6 @@ def with_rows(solution: "Solution", rows: Any) -> "Solution":
     """Return the rows of a motion that an index of arrays selects."""
     at, p, v, a = (values[rows] for values in (solution.at, solution.p, solution.v, solution.a))
     return replace(solution, at=at, p=p, v=v, a=a, stability=None, turned=start_rotations(solution)[rows])
-
-
-def _exchanged(energy: "Energy") -> float:
-    return float(max(energy.kinetic.max(), np.ptp(energy.strain), np.ptp(energy.potential)))
-
-
-def _conservative(solution: "Solution") -> bool:
-    system = system_of(solution.model, static=False)
-    return not driven(solution) and not system.damped and not system.history.laws
 
 
 def driven(solution: "Solution") -> bool:

@@ -53,7 +53,8 @@ class LiveView:
         if self._axes is None:
             self._begin(shapes)
             begin = clock.perf_counter()  # a window opens once
-        self._box = _around(np.concatenate([self._box, shapes.box]))
+        boxes = np.concatenate([self._box, shapes.box])
+        self._box = np.stack([boxes.min(axis=0), boxes.max(axis=0)])
         for artist in self._artists:
             artist.remove()
         self._artists = shapes.draw(self._axes, 0)
@@ -73,10 +74,6 @@ class LiveView:
             label(f"{name} [{self._model.unit('m')}]")
         draw_undeformed(self._axes, shapes.points)
         self._present(self._figure)
-
-
-def _around(points: np.ndarray) -> np.ndarray:
-    return np.stack([points.min(axis=0), points.max(axis=0)])
 
 
 def _in_cell() -> Callable[[Any], bool]:

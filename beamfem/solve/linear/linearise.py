@@ -252,18 +252,14 @@ _WIDTH = 2.0**-14  # of the factor of an imposed strain, to which laws of sectio
 def input_forces(system: System, p: np.ndarray, loads: Sequence[Load], time: float) -> np.ndarray:
     """Return the external forces (n, loads) [N, N m] per unit factor of loads of the model in a state p (n,).
 
-    The forces of follower loads have the directions of the state; those of imposed strains are -dr/d(factor).
+    The forces of follower loads have the directions of the state; those of imposed strains are -dr/d(factor). They are
+    central differences, linear but for laws. A load that is listed twice is one input.
     """
-    return np.array([_force(system, p, load, time) for load in loads]).reshape(len(loads), len(p)).T
-
-
-def _force(system: System, p: np.ndarray, load: Load, time: float) -> np.ndarray:
-    """Return the external force (n,) per unit factor of a load, by a central difference; it is linear but for laws.
-
-    A load that is listed twice is one input.
-    """
-    imposed, own = isinstance(load, ImposedStrain), {id(part) for part in load.parts}
-    middle, width = (factor(load, time, system.static), _WIDTH) if imposed else (0.0, _LARGE)
-    alone = np.array([id(part) in own for part in system.model.acting], dtype=float)
-    ends = [equations.residual_under(system, p, time, (middle + side * width) * alone) for side in (-1.0, 1.0)]
-    return (ends[0] - ends[1]) / (2.0 * width * sum(each is load for each in system.model.loads))
+    forces = np.empty((len(loads), len(p)))
+    for force, load in zip(forces, loads, strict=True):
+        imposed, own = isinstance(load, ImposedStrain), {id(part) for part in load.parts}
+        middle, width = (factor(load, time, system.static), _WIDTH) if imposed else (0.0, _LARGE)
+        alone = np.array([id(part) in own for part in system.model.acting], dtype=float)
+        ends = [equations.residual_under(system, p, time, (middle + side * width) * alone) for side in (-1.0, 1.0)]
+        force[:] = (ends[0] - ends[1]) / (2.0 * width * sum(each is load for each in system.model.loads))
+    return forces.T

@@ -8,7 +8,7 @@ from beamfem.cached_properties import cached_property
 from beamfem.equations.applied_loads import Loads
 from beamfem.equations.connectors import Connectors, Motion
 from beamfem.equations.element_group import ElementGroup
-from beamfem.equations.stress_resultants import free_group, resultants
+from beamfem.equations.stress_resultants import resultants, strain_group
 from beamfem.kernels.block import Block
 from beamfem.physics.compiled_connections import remembering
 from beamfem.section.law import ConstitutiveLaw
@@ -79,6 +79,4 @@ class History:
     @cached_property
     def strains(self) -> tuple[ElementGroup, ...]:
         """Elements of each law with unit stiffness: their resultants are the strains from the stress-free state."""
-        unit = [np.broadcast_to(np.eye(block.reference.shape[-1]), block.stiffness.shape) for _, block in self.laws]
-        blocks = [block.resisting(stiffness) for (_, block), stiffness in zip(self.laws, unit, strict=True)]
-        return tuple(free_group(block, self.connectors.model.size) for block in blocks)
+        return tuple(strain_group(block, self.connectors.model.size) for _, block in self.laws)

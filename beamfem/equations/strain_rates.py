@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beamfem.equations.element_group import ElementGroup
-from beamfem.equations.stress_resultants import free_group, resultants
+from beamfem.equations.stress_resultants import resultants, strain_group
 from beamfem.kernels.block import Block
 
 
@@ -77,7 +77,7 @@ class StrainRates:
 def strain_rates(block: Block, free: np.ndarray) -> StrainRates:
     """Return the strain rates of a block; free (n,): equation numbers, negative for prescribed coordinates."""
     (elements, nodes), width = block.node.shape, block.dof.shape[1]
-    points, strains = block.reference.shape[1:]
+    points = block.reference.shape[1]
     node = block.node.ravel()
     dof = block.dof[node]
     free_elements = block._replace(
@@ -87,7 +87,6 @@ def strain_rates(block: Block, free: np.ndarray) -> StrainRates:
         frame=block.frame[node],
         home=np.indices((elements, nodes)).reshape(2, -1).T,
     )
-    part = free_elements.resisting(np.broadcast_to(np.eye(strains), block.stiffness.shape))
     resists = resisting(block)
     count = points * len(resists)
     column = np.where(dof >= 0, free[dof], -1).reshape(elements, -1).T
@@ -100,7 +99,7 @@ def strain_rates(block: Block, free: np.ndarray) -> StrainRates:
     number = np.arange(elements * count).reshape(elements, points, len(resists))
     shape = elements, points, len(resists), len(resists)
     return StrainRates(
-        group=free_group(part, dof.size),
+        group=strain_group(free_elements, dof.size),
         dof=dof.ravel(),
         coordinates=nodes * width,
         resists=resists,

@@ -13,13 +13,15 @@ from beamfem.kernels.record import CONSTANTS
 def free_group(block: Block, size: int) -> ElementGroup:
     """Return the group of a block without loads or matrix, in a model with `size` coordinates."""
     none = np.empty((0, 0, 0), dtype=np.int32)
-    return make_group(block, Layout(np.arange(size), 0, none), no_loads(block))
+    table, empty = np.empty((0, block.scale.shape[1])), np.empty(0, dtype=np.int64)
+    no_loads = Stations(empty, table, table, empty, np.empty((0, CONSTANTS)))
+    return make_group(block, Layout(np.arange(size), 0, none), no_loads)
 
 
-def no_loads(block: Block) -> Stations:
-    """Return the stations of a block without loads."""
-    table, none = np.empty((0, block.scale.shape[1])), np.empty(0, dtype=np.int64)
-    return Stations(none, table, table, none, np.empty((0, CONSTANTS)))
+def strain_group(block: Block, size: int) -> ElementGroup:
+    """Return the group of a block with unit stiffness: its resultants are strains from the stress-free state."""
+    unit = np.broadcast_to(np.eye(block.stiffness.shape[-1]), block.stiffness.shape)
+    return free_group(block.resisting(unit), size)
 
 
 def resultants(

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from beamfem.equations.equations import linearise_at_rest, predicted_stresses
-from beamfem.equations.stress_resultants import free_group, resultants
+from beamfem.equations.stress_resultants import resultants, strain_group
 from beamfem.equations.system import System
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.model import Model
@@ -49,10 +49,7 @@ def stiffness_of_modes(
     result = np.zeros((count, count))
     imposing = system.loads.imposing(load_factor)
     for block in system.blocks:
-        classes, points, measures, _ = block.stiffness.shape
-        unit = np.broadcast_to(np.eye(measures), (classes, points, measures, measures))
-        plain = free_group(block.resisting(unit), len(p))
-        before, *after = resultants(plain, p, [zeros, *modes], imposing)
+        before, *after = resultants(strain_group(block, len(p)), p, [zeros, *modes], imposing)
         strains = (np.array(after) - before).reshape(count, *before.shape)
         stressed = np.einsum("eq,eqij,meqj->meqi", block.weight[block.kind], block.linearised(before, p), strains)
         result += stressed.reshape(count, -1) @ strains.reshape(count, -1).T

@@ -8,7 +8,7 @@ from scipy.sparse import coo_array, csr_array, eye_array
 from beamfem.equations.connectors import Connector
 from beamfem.equations.differences import differentiated
 from beamfem.equations.equations import STATICS, linearise_at_rest, load_change, predicted_stresses, residual_at_rest
-from beamfem.equations.stress_resultants import free_group, resultants
+from beamfem.equations.stress_resultants import resultants, strain_group
 from beamfem.equations.system import System
 from beamfem.errors import InputError
 from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS
@@ -124,9 +124,7 @@ def _largest_strain(
     """Return the largest root mean square strain of a section, sqrt(eps . C eps / E A), for displacements (n,)."""
     largest = 0.0
     for block in system.blocks:
-        classes, points, measures, _ = block.stiffness.shape
-        unit = np.broadcast_to(np.eye(measures), (classes, points, measures, measures))
-        plain, stiffness = free_group(block.resisting(unit), len(p)), block.stiffness[block.kind]
+        plain, stiffness = strain_group(block, len(p)), block.stiffness[block.kind]
         steps = [(0.0, load_factor, -sum(weight for _, weight in differences))]
         steps += [(at - load_factor, at, weight) for at, weight in differences]
         strains = [

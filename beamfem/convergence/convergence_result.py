@@ -239,8 +239,7 @@ class Convergence:
                 triangles[round(curve.fit.order)] = curve, colour
         for curve, colour in triangles.values():
             _triangle(axes, curve, colour)
-        axes.set_xlabel(against or self.refine)
-        axes.set_ylabel(f"{self.error_name} of {self.quantity}")
+        axes.set(xlabel=against or self.refine, ylabel=f"{self.error_name} of {self.quantity}")
         ticks = sorted({value for curve in self.curves for value in curve.refinement})
         if against is None and len(ticks) <= 12:
             axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])

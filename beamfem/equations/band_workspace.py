@@ -4,7 +4,6 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from beamfem.equations.applied_loads import LoadsAt
 from beamfem.equations.assembler import Scratch, lend_scratch, take_back_scratch
 from beamfem.equations.equations import STATICS
 from beamfem.equations.system import System
@@ -44,17 +43,9 @@ class BandWorkspace:
         own.fill(**room)
         self.assembler.place(self.p, own.step, own.step, self.residual, own.rows)
         if unknowns.border_size:
-            own.bordered, own.border = (
-                1,
-                condensed_record(
-                    unknowns.banded, own.half, unknowns.reach, unknowns.border, len(system.connectors.multipliers)
-                ),
-            )
+            edge = unknowns.border, len(system.connectors.multipliers)
+            own.bordered, own.border = 1, condensed_record(unknowns.banded, own.half, unknowns.reach, *edge)
             own.border.rows, own.border.entries = own.rows, own.rows[unknowns.entries - unknowns.border_size**2 :]
-
-    def begin(self, loads: LoadsAt, load_factor: float) -> None:
-        """Set the loads of an iteration."""
-        self.assembler.take(loads, load_factor)
 
     def call(self, driver: Callable[..., Any]) -> Any:
         """Call a compiled driver and return its result. Raises the first error in what it has called in Python."""

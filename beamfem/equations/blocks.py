@@ -48,6 +48,9 @@ def build_block(
             first_kind += len(mesh.classes.scale)
         kinds.append(known[like])
     joined = {name: _joined(values) for name, values in parts.items()}
+    home = np.empty((grid.nodes, 2), dtype=np.int64)
+    for local_number, numbers in enumerate(grid.node.T):
+        home[numbers, 0], home[numbers, 1] = np.arange(grid.elements), local_number
     law = beam_meshes[0].beam.law
     return Block(
         node=grid.node,
@@ -55,7 +58,7 @@ def build_block(
         node_kind=grid.kinematics.node_kind,
         frame=np.ascontiguousarray(grid.kinematics.frame),
         dof=np.ascontiguousarray(grid.kinematics.dof),
-        home=homes(grid.node, grid.nodes),
+        home=home,
         kind=_joined(kinds),
         measures=element.forces.code,
         director=element.tables.director,
@@ -65,14 +68,6 @@ def build_block(
         history=_joined([mesh.history for mesh in beam_meshes]) if beam_meshes[0].history.size else NO_HISTORY,
         **joined,
     )
-
-
-def homes(node: np.ndarray, nodes: int) -> np.ndarray:
-    """Return for each node an element that contains it, and its local number there (nodes, 2)."""
-    home = np.empty((nodes, 2), dtype=np.int64)
-    for local_number, numbers in enumerate(node.T):
-        home[numbers, 0], home[numbers, 1] = np.arange(len(node)), local_number
-    return home
 
 
 def _joined(parts: Sequence[np.ndarray]) -> np.ndarray:

@@ -201,7 +201,7 @@ class _Asked(NamedTuple):
 
 def _linearise(system: System, motion: Motion, asked: _Asked) -> tuple[np.ndarray, Tangent]:
     """Return residual and tangent of a motion at rest, see `linearise`."""
-    matrix, result = _entries(system), np.empty(len(motion[0]))
+    matrix, result = np.empty(system.unknowns.entries), np.empty(len(motion[0]))
     assembler = _acquired(system) if asked.equations is None else Assembler(asked.equations)
     own = assembler.stresses
     if asked.stresses is not None:
@@ -268,18 +268,13 @@ def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float
     one_sided = len(system.connectors.one_sided) > 0
     if Proven.LOSES_DIGITS in system.proven or system.model.frame is not None or one_sided:
         return linearise_at_rest(system, p, time, predicted_stresses(system, p, step, time))[1]
-    matrix, assembler = _entries(system), _acquired(system)
+    matrix, assembler = np.empty(system.unknowns.entries), _acquired(system)
     assembler.take(system.loads.at(time), time)
     assembler.weigh(STATICS)
     assembler.predict(p, step)
     assembler.balance(p, zeros, zeros, np.empty(len(p)), matrix, True)
     _return_assembler(system, assembler)
     return tangent_of(system, matrix)
-
-
-def _entries(system: System) -> np.ndarray:
-    """Return an empty array for the entries of a tangent."""
-    return np.empty(system.unknowns.entries)
 
 
 def tangent_of(system: System, matrix: np.ndarray) -> Tangent:
@@ -358,14 +353,6 @@ def predicted_stresses(
     stresses = tuple(stress.copy() for stress in assembler.stresses)
     _return_assembler(system, assembler)
     return stresses
-
-
-def load_slope(system: System, p: np.ndarray, load_factor: float, width: float = 1e-6) -> np.ndarray:
-    """Return the derivative of the residual (n,) [N, N m] with respect to the load factor, with prescribed motions.
-
-    It is a central difference of the given width, exact to round-off if loads are proportional to the load factor.
-    """
-    return load_change(system, p, load_factor - width, load_factor + width) / (2.0 * width)
 
 
 def load_change(system: System, p: np.ndarray, before: float, after: float) -> np.ndarray:

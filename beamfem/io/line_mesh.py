@@ -15,6 +15,7 @@ from beamfem.atomic_write import readable
 from beamfem.curves.curve import GAP
 from beamfem.damping import Damping
 from beamfem.element.element import Element
+from beamfem.element.fields import cross
 from beamfem.errors import InputError, NotJoinedWarning, warn
 from beamfem.io.mesh_files import MeshFile, read_abaqus, read_through_meshio
 from beamfem.material import Material
@@ -387,7 +388,7 @@ def _touches(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndar
     length = np.linalg.norm(chord, axis=1)
     # a parabola is nowhere further from its chord than its middle node
     middle = np.where(cells[:, 2] >= 0, cells[:, 2], cells[:, 0])
-    rise = np.abs(_cross(chord, nodes[middle] - start)) / length
+    rise = np.abs(cross(chord, nodes[middle] - start)) / length
     within = cKDTree(nodes[ends]).query_ball_point(0.5 * (start + end), 0.5 * length + rise + near)
     cell = np.repeat(np.arange(len(cells)), [len(hits) for hits in within])
     node = ends[np.concatenate(within).astype(np.int64)]
@@ -395,11 +396,7 @@ def _touches(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndar
     cell, node = cell[~at_end], node[~at_end]
     away = nodes[node] - start[cell]
     fraction = np.einsum("ni,ni->n", away, chord[cell]) / length[cell] ** 2
-    off = _cross(chord[cell], away) / length[cell]
-    bow = _cross(chord, nodes[middle] - start)[cell] / length[cell] * 4.0 * fraction * (1.0 - fraction)
+    off = cross(chord[cell], away) / length[cell]
+    bow = cross(chord, nodes[middle] - start)[cell] / length[cell] * 4.0 * fraction * (1.0 - fraction)
     on = (np.abs(off - bow) <= near) & (fraction > 0.0) & (fraction < 1.0)
     return cell[on], node[on], fraction[on]
-
-
-def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])

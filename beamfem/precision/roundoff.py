@@ -37,11 +37,6 @@ def row_floors(system: System, p: np.ndarray) -> np.ndarray:
     return np.asarray(ROUND_OFF * reach * positions + ROUND_OFF * turn * directions)
 
 
-def round_off_floor(system: System, p: np.ndarray) -> float:
-    """Return the largest residual [N, N m] that rounded coordinates cause in any row."""
-    return float(row_floors(system, p).max(initial=0.0))
-
-
 @dataclass(frozen=True)
 class Remainder:
     """Correction that brings a state into equilibrium beyond its last digit.

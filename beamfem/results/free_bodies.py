@@ -241,16 +241,16 @@ class FreeBodies:
         They balance the part before a cut and the part after it. If the two differ by round-off of the equilibrium of
         inner nodes, they are weighted by the distance from the ends.
         """
-        element = np.searchsorted(self.elements, cuts.element)
+        element, origin = np.searchsorted(self.elements, cuts.element), self.vectors[:, :, 0]
         now = interpolate(self.mesh, self.vectors[:, element], cuts.element, cuts.xi)
         if not len(self.acting.rule):
             force, moment = (_between(ends, cuts.xi, element) for ends in (self.force, self.moment))
         else:
             fraction = self._before(cuts, element)
-            turn = self.acting.moments(self.vectors, self._origin)
+            turn = self.acting.moments(self.vectors, origin)
             force = self._carried(self.force, self.acting.force, fraction, cuts.xi, element)
             moment = self._carried(self.moment, turn, fraction, cuts.xi, element)
-        moment = moment - cross(now.r - self._origin[:, element], force)
+        moment = moment - cross(now.r - origin[:, element], force)
         along = direction(self.mesh, now)
         return np.stack([dot(along, force), cross(along, force), moment], axis=1)
 
@@ -264,10 +264,6 @@ class FreeBodies:
         flat = np.moveaxis(acts, 1, 0).reshape(acts.shape[1], -1)
         before = (fraction @ flat).reshape(len(xi), len(acts), *acts.shape[2:])
         return np.asarray(_between(balanced, xi, element) - np.moveaxis(before, 0, 1))
-
-    @property
-    def _origin(self) -> np.ndarray:
-        return self.vectors[:, :, 0]
 
     def _before(self, cuts: AxisPoints, element: np.ndarray) -> csr_array:
         """Return the fraction (points, m) of each force that acts between the start of its element and a cut."""

@@ -245,9 +245,7 @@ class Sweep:
             colour, marker = COLOURS[number % len(COLOURS)], MARKERS[number % len(MARKERS)]
             label = label if len(label) <= _CUT else f"{label[: _CUT - 2]} …"
             axes.plot(x, y, color=colour, marker=marker, markersize=4, linewidth=1.4, label=label)
-        axes.set_xlabel(over)
-        axes.set_ylabel(value)
-        axes.margins(0.04)
+        axes.set(xlabel=over, ylabel=value, xmargin=0.04, ymargin=0.04)
         if legend_beside:
             axes.legend(frameon=False, fontsize=9, loc="upper left", bbox_to_anchor=(1.0, 1.0))
         elif named:

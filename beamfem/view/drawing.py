@@ -184,12 +184,10 @@ def frame(axes: Any, middle: np.ndarray, size: np.ndarray, inches: np.ndarray, u
     """Set limits of equal scale around a middle (2,) [unit] and label the axes; size (2,) [unit] takes inches (2,)."""
     quiet(axes)
     axes.set_aspect("equal", adjustable="box")
-    axes.set_xlim(middle[0] - 0.5 * size[0], middle[0] + 0.5 * size[0])
-    axes.set_ylim(middle[1] - 0.5 * size[1], middle[1] + 0.5 * size[1])
+    (left, bottom), (right, top) = middle - 0.5 * size, middle + 0.5 * size
+    axes.set(xlim=(left, right), ylim=(bottom, top), xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
     for name, length, spacing in (("x", inches[0], 0.8), ("y", inches[1], 0.6)):
         axes.locator_params(axis=name, nbins=int(np.clip(length / spacing, 2, 9)))
-    axes.set_xlabel(f"x [{unit}]")
-    axes.set_ylabel(f"y [{unit}]")
 
 
 def bar(axes: Any, shapes: Shapes, own: bool = True) -> None:

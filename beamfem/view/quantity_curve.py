@@ -94,9 +94,7 @@ def plot_history(
             marker = "o" if len(solution) <= 30 else None
             axes.plot(solution.at, curve, style, color=colour, marker=marker, markersize=4, linewidth=1.5, label=name)
     name, axis_unit = axis_of_rows(solution)
-    axes.set_xlabel(f"{name} [{axis_unit}]")
-    axes.set_ylabel(f"{label} [{solution.model.unit(unit)}]")
-    axes.margins(x=0.02)
+    axes.set(xlabel=f"{name} [{axis_unit}]", ylabel=f"{label} [{solution.model.unit(unit)}]", xmargin=0.02)
     if several:
         legend_over(axes, 4 if len(parts) == 1 else 2)
     return save_figure(figure, path)
@@ -129,9 +127,7 @@ def plot_load_displacement(
             colours += len(states) * [colour]
         if solution.limit_points or solution.bifurcations:
             legend_over(axes, 2)
-    axes.set_xlabel(label)
-    axes.set_ylabel("load factor [-]")
-    axes.margins(0.06, 0.1)
+    axes.set(xlabel=label, ylabel="load factor [-]", xmargin=0.06, ymargin=0.1)
     if marked:
         write_labels(axes, marked, [f"{at:.5g}" for _, at in marked], colours, np.column_stack([curve, load]))
     return save_figure(figure, path)
@@ -152,9 +148,7 @@ def plot_envelope(
             axes.plot(
                 curve.arc_length, scale * values, color=COLOURS[number % len(COLOURS)], linewidth=1.4, label=label
             )
-    axes.set_xlabel(f"arc length [{model.unit('m')}]")
-    axes.set_ylabel(f"{drawn.label} [{unit}]")
-    axes.margins(x=0.02)
+    axes.set(xlabel=f"arc length [{model.unit('m')}]", ylabel=f"{drawn.label} [{unit}]", xmargin=0.02)
     legend_over(axes, 4)
     return save_figure(figure, path)
 
@@ -181,10 +175,8 @@ def plot_along(
     arc_length = mesh.arc_length(points.element, points.xi)
     axes.plot(arc_length, scale * values, color=COLOURS[0], linewidth=1.6)
     axes.fill_between(arc_length, scale * values, color=COLOURS[0], alpha=0.12, linewidth=0.0)
-    axes.set_xlabel(f"arc length [{model.unit('m')}]")
-    axes.set_ylabel(f"{drawn.label} [{unit}]")
+    axes.set(xlabel=f"arc length [{model.unit('m')}]", ylabel=f"{drawn.label} [{unit}]", xmargin=0.02)
     axes.set_title(f"{beam_in_words(model.beams, model.number_of(beam))}, {moment_of(solution, number)}", fontsize=10)
-    axes.margins(x=0.02)
     return save_figure(figure, path)
 
 
@@ -212,9 +204,7 @@ def plot_curve(solution: Solution, x: Drawn, y: Drawn, path: str | PathLike[str]
     figure, axes = new_figure(ax=ax, pyplot=path is None)
     marker = "." if len(solution) <= _MARKED else None
     axes.plot(horizontal, vertical, color=COLOURS[0], linewidth=1.6, marker=marker, markersize=4)
-    axes.set_xlabel(across)
-    axes.set_ylabel(up)
-    axes.margins(0.04)
+    axes.set(xlabel=across, ylabel=up, xmargin=0.04, ymargin=0.04)
     return save_figure(figure, path)
 
 
@@ -302,8 +292,6 @@ def plot_response(response: "FrequencyResponse", path: str | PathLike[str] | Non
     if response.amplitude.any():
         amplitude.set_yscale("log")
     amplitude.set_ylabel(f"{label} at {place(model, point.reference)} [{model.unit(unit)}]")
-    phase.set_ylabel("phase [deg]")
-    phase.set_yticks([-180, -90, 0, 90, 180])
-    phase.set_xlabel(f"frequency [{model.unit('Hz')}]")
+    phase.set(xlabel=f"frequency [{model.unit('Hz')}]", ylabel="phase [deg]", yticks=[-180, -90, 0, 90, 180])
     phase.margins(x=0.02)
     return save_figure(phase.figure.figure, path)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.equations.equations import STATICS, linearise, load_slope
+from beamfem.equations.equations import STATICS, linearise, load_change
 from beamfem.equations.system import system_of
 
 
@@ -29,7 +29,7 @@ def test_the_slope_of_a_prescribed_motion_is_that_of_the_tangent(element, slende
     tangent = linearise(free, p, zeros, zeros, 0.0, STATICS)[1].sparse(none)
     expected = np.zeros(len(p))
     expected[free.free_dofs] = tangent @ rate[free.free_dofs]
-    found = load_slope(held, p, 0.0, width)[held.free_dofs]
+    found = load_change(held, p, -width, width)[held.free_dofs] / (2.0 * width)
     assert found == pytest.approx(expected[held.free_dofs], abs=1e-8 * np.abs(expected).max())
 
 

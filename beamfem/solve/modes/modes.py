@@ -115,12 +115,8 @@ class Modes:
 
         `solve_modes` has issued those of errors of 1 % and more as Python warnings too.
         """
-        found = stiffness_locking(self.state, self._elastic_shapes, 0.5, "a frequency")
+        found = stiffness_locking(self.state, self.modes[len(self.rigid) :], 0.5, "a frequency")
         return tuple(finding.sentence for finding in found)
-
-    @property
-    def _elastic_shapes(self) -> np.ndarray:
-        return self.modes[len(self.rigid) :]
 
     @property
     def ratios(self) -> np.ndarray:
@@ -417,7 +413,7 @@ def _modes(model: Model, count: int, about: State | Solution | None) -> tuple[Mo
     frequencies = rates.imag / (2.0 * np.pi)
     modes = Modes(model, rest_state, frequencies, rates.real, upright(shapes), words[:count])
     locks = may_lock(system, rest_state.p)
-    return modes, stiffness_locking(rest_state, modes._elastic_shapes, 0.5, "a frequency") if locks else ()
+    return modes, stiffness_locking(rest_state, modes.modes[len(modes.rigid) :], 0.5, "a frequency") if locks else ()
 
 
 def _general(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:

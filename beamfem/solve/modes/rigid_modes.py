@@ -6,7 +6,7 @@ from beamfem.equations.equations import residual_at_rest
 from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.linalg.lapack import cholesky, null_space, solve_triangular, svd
 from beamfem.model.beam import beam_in_words
-from beamfem.precision.roundoff import round_off_floor
+from beamfem.precision.roundoff import row_floors
 from beamfem.solve.modes.mode_stiffness import nodal_motion, stresses_of, weak_stiffness
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.start.mechanisms import Conditions, bodies_of, describe, mechanisms
@@ -44,7 +44,7 @@ def _negligible_force(pencil: Pencil) -> float:
     forces = [*system.loads.at(pencil.load_factor).points, residual_at_rest(system, p, pencil.load_factor)]
     forces += [stresses[..., 0] for stresses in stresses_of(system, p, zeros, pencil.load_factor)]
     largest = max(float(np.abs(values).max(initial=0.0)) for values in forces)
-    return _UNBALANCED * largest + round_off_floor(system, p)
+    return _UNBALANCED * largest + float(row_floors(system, p).max(initial=0.0))
 
 
 def sort_rigid(pencil: Pencil, shapes: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:

@@ -373,7 +373,7 @@ class BandProblem(Equilibrium):
         self.space = space = band_workspace(system)
         loads, self.state = system.loads.at(load_factor), space.p
         self.load = load_size(system, load_factor)
-        space.begin(loads, load_factor)
+        space.assembler.take(loads, load_factor)
         own = space.solver
         space.p[:], own.step[:], own.prescribed_step[:], own.prescribed_force[:] = start, 0.0, step.step, step.force
         own.tolerance, own.stagnant, own.divergent = newton.tolerance, STAGNANT, LARGEST

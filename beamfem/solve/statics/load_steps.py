@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.equations.equations import linearise_at_rest, load_slope, predicted_stresses
+from beamfem.equations.equations import linearise_at_rest, load_change, predicted_stresses
 from beamfem.equations.system import Proven, System
 from beamfem.errors import ConvergenceError, LimitPointError
 from beamfem.parts.pretension import Pretension
@@ -73,7 +73,7 @@ def _tangent(system: System, p: np.ndarray, load_factor: float, middle: float, w
     prescribed = system.prescribed_dofs
     _, stiffness = linearise_at_rest(system, p, load_factor)
     result = np.zeros(len(p))
-    slope = load_slope(system, p, middle, width)[system.free_dofs]
+    slope = load_change(system, p, middle - width, middle + width)[system.free_dofs] / (2.0 * width)
     result[system.free_dofs] = stiffness.factorised(system.rotated).solve(-slope)
     change = system.prescribed_values(middle + width) - system.prescribed_values(middle - width)
     result[prescribed] = change / (2.0 * width)

@@ -260,16 +260,17 @@ class Solution:
 
         The equilibrium next to that of a row is found on an enriched space: elements of order k + 1 instead of k = 1
         or 2, and halves of other ones. Newton's method starts from the state itself, so this is less work than a solve.
-        An element of order k is off by about L (turn of an element / n)^2k at its nodes, so that nearly all of the
-        error disappears there; where the mesh is so coarse that it does not, the estimate is too small. Section laws
-        and connectors with history are led through the rows before, with one load step each.
+        An element of order k is off by about L (turn of an element / n)^2k at its nodes, with the power k + 1 between
+        them, so that nearly all of the error disappears there; where the mesh is so coarse that it does not, the
+        estimate is too small. Section laws and connectors with history are led through the rows before, with one load
+        step each.
 
         Parameters
         ----------
         quantity : callable or Point, optional
             A function of a solution of one row that returns a number, or an array of the same shape on every mesh, and
             may use the points, beams, supports and connectors of this model; or a point, for its displacement [m].
-            By default the largest displacement [m]. For largest values along a beam take `SectionForces.peak` and
+            By default the positions along all beams. For largest values along a beam take `SectionForces.peak` and
             `BeamStress.peak`: the maximum over stations misses values between them, and differs from mesh to mesh.
         row : int, default -1
             Row of the solution.
@@ -278,7 +279,7 @@ class Solution:
         -------
         float or array
             Value on the enriched space less the value of the row, to be added to it; by default the largest change of
-            a node's position [m].
+            a position [m], between nodes as well.
 
         Raises
         ------

@@ -29,7 +29,7 @@ from beamfem.solve.accuracy.error_estimate import (
     enriched_row_kept,
     error_shares,
     keep_enriched_row,
-    largest_displacement_error,
+    largest_position_error,
     of_order,
     position_shares,
     remeshed,
@@ -216,7 +216,7 @@ class StaticAttempts:
         except ConvergenceError:  # too far from the finer mesh to say how far
             return solution, np.inf, None
         state, extent = solution[last], system_of(model, static=True).extent
-        off = largest_displacement_error(state, finer, between_nodes=True) / extent
+        off = largest_position_error(state, finer) / extent
         if off < NEAR:
             self._known = solution, finer
         if self._quantity is None:

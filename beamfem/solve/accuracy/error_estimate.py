@@ -27,7 +27,6 @@ from beamfem.precision.roundoff import FEW_DIGITS
 from beamfem.results import postprocess
 from beamfem.results.axis_points import axis_at
 from beamfem.results.full_turns import first_turns
-from beamfem.results.postprocess import position
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.accuracy.quantity_change import Quantity, evaluated, require_quantity
@@ -248,7 +247,7 @@ def error(solution: Solution, quantity: Quantity, row: int) -> Any:
     require_quantity(quantity)
     number, finer = enriched_row_kept(solution, row)
     if quantity is None:
-        return largest_displacement_error(solution[number], finer)
+        return largest_position_error(solution[number], finer)
     before, after = evaluated(quantity, solution[number : number + 1], finer)
     change = (after - before)[-1] if isinstance(quantity, Point) else after - before
     return float(change) if change.ndim == 0 else change
@@ -396,18 +395,24 @@ def _without_estimate(reason: str) -> ConvergenceError:
     )
 
 
-def largest_displacement_error(state: State, finer: Solution, between_nodes: bool = False) -> float:
-    """Return the largest change [m] of the position of a node of the state's model, or of a node of the finer one."""
+def largest_position_error(state: State, finer: Solution) -> float:
+    """Return the largest change [m] of a position along beams, at the nodes of the finer model and between them."""
     largest = 0.0
     for old, new in zip(state.model.meshes, finer.model.meshes, strict=True):
-        if between_nodes:
-            element, xi = (each.ravel() for each in places(old, new, new.beam.element.field.nodes))
-            before = axis_at(old, state.p[None], element, xi).r[0]
-            after = finer.p[0][new.kinematics.dof[new.node.ravel(), :2]]
-        else:
-            before = state.p[old.kinematics.dof[:, :2]]
-            fractions = np.minimum(old.arc / old.vertices[-1], 1.0).tolist()
-            after = np.array([position(new, finer.p, fraction)[0] for fraction in fractions])
+        element, xi = (each.ravel() for each in places(old, new, new.beam.element.field.nodes))
+        change = finer.p[0][new.kinematics.dof[new.node.ravel(), :2]] - axis_at(old, state.p[None], element, xi).r[0]
+        largest = max(largest, float(np.linalg.norm(change, axis=1).max()))
+    return largest
+
+
+def largest_displacement_error(state: State, finer: Solution) -> float:
+    """Return the largest change [m] of the displacement of a node, without what curved axes are off between nodes."""
+    largest = 0.0
+    for old, new in zip(state.model.meshes, finer.model.meshes, strict=True):
+        element, xi = (each.ravel() for each in places(new, old, old.beam.element.field.nodes))
+        node = old.node.ravel()
+        before = state.p[old.kinematics.dof[node, :2]] - old.position[node]
+        after = axis_at(new, finer.p, element, xi).r[0] - reference_position(new, element, xi)
         largest = max(largest, float(np.linalg.norm(after - before, axis=1).max()))
     return largest
 

@@ -15,7 +15,7 @@ from beamfem.solve.accuracy.adapted_mesh import Shares, require_unlocked
 from beamfem.solve.accuracy.error_estimate import (
     enriched,
     error_shares,
-    largest_displacement_error,
+    largest_position_error,
     position_shares,
     shares_of_rows,
 )
@@ -56,7 +56,7 @@ def motion_attempt(
     require_unlocked(solution.computed(locking))
     rows = np.unique(np.linspace(0, len(solution) - 1, _MOST_ROWS).astype(int)).tolist()
     pairs = [(solution[row], finer[row : row + 1]) for row in rows]
-    moved = np.array([largest_displacement_error(*pair, between_nodes=True) for pair in pairs])
+    moved = np.array([largest_position_error(*pair) for pair in pairs])
     worst = np.argsort(moved)[-_SHARING:]
     of_one = position_shares if quantity is None else error_shares
     shares = shares_of_rows([pairs[number] for number in worst], moved[worst], of_one)

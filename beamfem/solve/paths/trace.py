@@ -26,7 +26,7 @@ from beamfem.solve.accuracy.error_estimate import (
     carried_stresses,
     enriched,
     error_shares,
-    largest_displacement_error,
+    largest_position_error,
     position_shares,
     shares_of_rows,
 )
@@ -152,7 +152,7 @@ def path_attempt(path: Path, quantity: Quantity, trace: Callable[[Model], Path])
         rest = np.zeros((1, model.size))
         summary = Statistics(corrected.iterations, 1, 0, "an equilibrium on the enriched space")
         finer = Solution(model, True, np.array([at]), p[None], rest, rest.copy(), summary)
-        change = largest_displacement_error(state, finer, between_nodes=True) / system.extent
+        change = largest_position_error(state, finer) / system.extent
         moved.append(max(change, abs(at - state.at) / largest))
         if isinstance(quantity, Point):
             off.append(float(np.linalg.norm(finer.displacement(quantity)[-1] - state.displacement(quantity))))

@@ -15,13 +15,14 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, ValidationInfo
 
 from beamfem.cli.analyses import ANALYSES, CRITICAL, Analysis, Found, Output
-from beamfem.cli.part_kinds import ACTING, NAMED, TYPES, in_keys
+from beamfem.cli.part_kinds import ACTING, NAMED, TYPES, Reduced, in_keys
 from beamfem.cli.report import print_table, summary
 from beamfem.cli.schema import Keyed, KeyFault, Kinds, Names, build, fault_at, part, reader, require_table, shown
 from beamfem.equations.system import System
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
+from beamfem.parts.floating_body import FloatingBody
 from beamfem.parts.rigid_body import RigidBody
 from beamfem.results.axis_fields import UNITS
 from beamfem.results.path import Path as EquilibriumPath
@@ -224,12 +225,12 @@ def _located(source: Source, section: str = "") -> Iterator[None]:
         raise source.error(in_keys(str(fault)), *path) from fault
 
 
-def _model(beams: list[Beam], bodies: list[RigidBody], given: dict[str, Any], source: Source) -> Model:
+def _model(beams: list[Beam], bodies: list[RigidBody | FloatingBody], given: dict[str, Any], source: Source) -> Model:
     """Return the model, or raise the error of the first part that it refuses."""
 
     def made(masses: Sequence[Any] = (), **parts: Any) -> Model:
         model = Model(beams, masses=[*masses, *bodies], **parts)
-        system = System(Model(model.beams, model.supports, joints=model.joints), static=True)
+        system = System(Model(model.beams, model.supports, joints=model.joints, masses=bodies), static=True)
         _ = system.prescribed, system.inclined  # raise InputError for what two supports constrain
         return model
 
@@ -259,6 +260,16 @@ def _each_place(kinds: Kinds, table: Any, names: Names) -> list[Any]:
     return [part(kinds, table, names)]
 
 
+def _body_of_beams(reduced: Reduced, names: Names) -> FloatingBody:
+    """Return a floating body, whose interfaces and beams no longer are those of the model."""
+    beams = names.parts["beams"]
+    for name in [name for name, beam in beams.items() if any(beam is own for own in reduced.beams)]:
+        pairs = zip(reduced.interfaces, reduced.body.points, strict=True)
+        names.parts["interfaces"][name] = {own.fraction: at for own, at in pairs if own.beam is beams[name]}
+        del beams[name]
+    return reduced.body
+
+
 def _named(section: str) -> Any:
     """Return the type of the tables [section.NAME], whose parts are known by their names from there on."""
 
@@ -267,7 +278,10 @@ def _named(section: str) -> Any:
         for name, table in tables.items():
             with fault_at(name):
                 beam = section == "beams"
-                made = build(Beam, table, names, name=name) if beam else part(NAMED[section], table, names)
+                default = "rigid-body" if section == "bodies" else None
+                made = build(Beam, table, names, name=name) if beam else part(NAMED[section], table, names, default)
+                if isinstance(made, Reduced):
+                    made = _body_of_beams(made, names)
                 names.parts[section][name] = made
 
     return Annotated[dict[str, Any], AfterValidator(register)]

@@ -1,9 +1,9 @@
 """The kinds of parts in model files, and how the keys of each type are read."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from inspect import isclass
-from typing import Any, get_type_hints
+from typing import Any, NamedTuple, get_type_hints
 
 import numpy as np
 from skfem import MeshLine1
@@ -16,9 +16,12 @@ from beamfem.element.element import Element
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point, graded
+from beamfem.model.model import Model
 from beamfem.model.parts_by_role import parts_in
 from beamfem.model.time_functions import Interpolated, kinks_of, sine, smooth_ramp
+from beamfem.parts.floating_body import FloatingBody
 from beamfem.parts.hinge import Hinge
+from beamfem.parts.rigid import Rigid
 from beamfem.parts.rigid_body import RigidBody
 from beamfem.public_names import public, public_dataclasses
 from beamfem.section.protocol import CrossSection
@@ -103,6 +106,22 @@ def _point_or_hinge(value: Any, names: Names) -> Any:
     return Hinge(*map(names.point, value))
 
 
+class Reduced(NamedTuple):
+    """A floating body, with the beams that it consists of and its interfaces on them."""
+
+    body: FloatingBody
+    beams: list[Beam]
+    interfaces: list[Point]
+
+
+def _reduced(beams: list[Beam], interfaces: list[Point], modes: int, joints: Sequence[list[Point]] = ()) -> Reduced:
+    """Return the floating body of beams, with rigid joints of pairs of points."""
+    from beamfem.solve.linear.craig_bampton import reduce  # takes a while to import
+
+    model = Model(beams, joints=[Rigid(*pair) for pair in joints])
+    return Reduced(reduce(model, interfaces, modes).floating_body(), beams, interfaces)
+
+
 _function = named("functions", FUNCTIONS)
 TYPES: dict[Any, Any] = {
     Point: reader(lambda value, names: names.point(value)),
@@ -122,7 +141,7 @@ TYPES: dict[Any, Any] = {
     "vector": reader(_vector),
 }
 NAMED = {"materials": MATERIALS, "functions": FUNCTIONS, "sections": SECTIONS, "elements": ELEMENTS}
-NAMED |= {"beams": {"beam": Beam}, "bodies": {"rigid-body": RigidBody}}  # read in this order
+NAMED |= {"beams": {"beam": Beam}, "bodies": {"rigid-body": RigidBody, "floating-body": _reduced}}  # read in this order
 
 
 _PYTHON = {

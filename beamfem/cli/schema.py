@@ -72,7 +72,10 @@ class Names:
         return beams[name]
 
     def point(self, text: Any) -> Point:
-        """Return the point NAME.start, NAME.end or NAME.at(fraction), or BODY.at(x, y). Raises InputError."""
+        """Return the point NAME.start, NAME.end or NAME.at(fraction), or BODY.at(x, y). Raises InputError.
+
+        Interfaces of a floating body are points of the body.
+        """
         if isinstance(text, str) and (match := _OF_BODY.fullmatch(text)) and match["body"] in self.parts["bodies"]:
             body, at = self.parts["bodies"][match["body"]], (float(match["x"]), float(match["y"]))
             key = f"{match['body']} {at}"  # two parts at one place are at one point
@@ -84,7 +87,15 @@ class Names:
             raise InputError(
                 f'must be a point such as "{name}.start", "{name}.end" or "{name}.at(0.5)", got {shown(text)}'
             )
-        return Point(self.beam(match["beam"]), float(match["fraction"] or match["end"] == "end"))
+        fraction = float(match["fraction"] or match["end"] == "end")
+        own = self.parts["interfaces"].get(match["beam"])
+        if own is None:
+            return Point(self.beam(match["beam"]), fraction)
+        if fraction not in own:
+            raise InputError(
+                f"the beam {match['beam']!r} is part of a floating body, which has points at interfaces only"
+            )
+        return own[fraction]
 
 
 def part(kinds: Kinds, table: Any, names: Names, default: str | None = None) -> Any:

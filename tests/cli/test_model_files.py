@@ -502,6 +502,35 @@ vector = [10, 0]
     assert bf.solve_static(job.model).p[-1] == pytest.approx(solution.p[-1], abs=1e-14)
 
 
+def test_floating_bodies_of_model_files(tmp_path):
+    """A body of two beams; what acts on its interfaces acts on the body."""
+    head, arm = ARM.partition("[[supports]]")[0], ARM.partition("[[supports]]")[2]
+    tip = head.partition("[beams.arm]")[2].replace("[0, 0], end = [1, 0]", "[1, 0], end = [1.5, 0]")
+    body = """[bodies.wing]
+kind = "floating-body"
+beams = ["arm", "tip"]
+joints = [["arm.end", "tip.start"]]
+interfaces = ["arm.start", "tip.end"]
+modes = 2
+"""
+    output = '[[outputs]]\npoint = "tip.end"\nquantities = ["uy"]\n'
+    file, whole = tmp_path / "a.toml", f"{head}[beams.tip]{tip}{body}[[supports]]{arm.replace('arm.end', 'tip.end')}"
+    file.write_text(f"{whole}{output}")
+    job = read_model_file(file)
+    steel, square = bf.Material(2e11, 0.3, 7800.0), bf.Rectangle(0.01, 0.01)
+    beams = [bf.Beam(bf.Line((x, 0), (y, 0)), 4, bf.CRBF(3), square, steel) for x, y in ((0, 1), (1, 1.5))]
+    frame, ends = bf.Model(beams, joints=[bf.Rigid(beams[0].end, beams[1].start)]), (beams[0].start, beams[1].end)
+    wing = bf.reduce(frame, ends, 2).floating_body()
+    root, end = wing.points
+    assert job.model.masses[0].numbers == pytest.approx(wing.numbers, rel=1e-12)
+    expected = bf.solve_static(bf.Model([], [bf.Clamp(root)], [bf.PointForce(end, (0.0, 100.0))], masses=[wing]))
+    found = job.outputs[0].rows(job.solve().solution)[-1]["uy"]
+    assert found == pytest.approx(expected.displacement(end)[-1, 1], rel=1e-12)
+    file.write_text(whole.replace('"tip.end"\nvector', '"tip.at(0.5)"\nvector'))
+    with pytest.raises(bf.InputError, match=r"a.toml:\d+: loads\[1\].point: the beam 'tip' is part of a floating body"):
+        read_model_file(file)
+
+
 def test_redundant_links_of_a_file_are_solved_on_request(tmp_path):
     other = (
         ARM.partition("[beams.arm]")[2].replace("arm", "leg").replace("[0, 0], end = [1, 0]", "[0, 1], end = [1, 1]")

@@ -242,7 +242,7 @@ class Maxwell(_Elastic):
     """
 
     youngs_modulus: float
-    branches: tuple[tuple[float, float], ...]
+    branches: Sequence[tuple[float, float]]
     poisson_ratio: float
     density: float
 

@@ -4,7 +4,6 @@ import csv
 import re
 from dataclasses import replace
 from importlib.resources import files
-from typing import cast
 
 from beamfem.errors import InputError
 from beamfem.section.moments import Section
@@ -89,11 +88,11 @@ def _placed(loops: list[list[Corner]], name: str, weak: bool, unit: float) -> Sh
     return of_loops([[(y, x, *radius) for x, y, *radius in loop] for loop in scaled], f"{name}, weak axis")
 
 
-def _hollow(name: str, sizes: list[float], cold: bool, weak: bool, unit: float) -> Section:
+def _hollow(name: str, sizes: list[float], cold: bool, weak: bool, unit: float) -> ShapedSection:
     """Return a hollow section of sizes [mm], for which the standards assume these radii of corners."""
     h, b, t = sizes
     if name.startswith("CHS"):
-        return replace(cast(ShapedSection, Tube(unit * h, unit * t)), name=name)
+        return replace(Tube(unit * h, unit * t), name=name)
     outer, inner = (1.5, 1.0) if not cold else (2.0, 1.0) if t <= 6.0 else (2.5, 1.5) if t <= 10.0 else (3.0, 2.0)
     if not 0.0 < 2.0 * outer * t <= min(h, b):
         raise InputError(f"{name}: the wall must be greater than 0, and twice the radius {outer:g} t at most the width")

@@ -36,7 +36,7 @@ class ShapedSection(Section):
         return tuple(Part(required(material).youngs_modulus, outline) for outline in outlines)
 
 
-def Rectangle(width: float, height: float, shear_factor: float = 5 / 6) -> Section:
+def Rectangle(width: float, height: float, shear_factor: float = 5 / 6) -> ShapedSection:
     """Return a rectangular section, with A = width height and I = width height^3 / 12.
 
     Raises InputError for a size that is not positive.
@@ -64,7 +64,7 @@ def Rectangle(width: float, height: float, shear_factor: float = 5 / 6) -> Secti
     return ShapedSection(area, second, shear_factor, height=height, outline=outline)
 
 
-def Circle(diameter: float, shear_factor: float = 0.9) -> Section:
+def Circle(diameter: float, shear_factor: float = 0.9) -> ShapedSection:
     """Return a full circular section.
 
     Its moments are A = pi d^2/4, I = pi d^4/64 and I4 = pi d^6/512. Raises InputError for a diameter that is not
@@ -88,7 +88,7 @@ def Circle(diameter: float, shear_factor: float = 0.9) -> Section:
     return Tube(diameter, 0.5 * diameter, shear_factor)
 
 
-def Tube(diameter: float, thickness: float, shear_factor: float = 0.5) -> Section:
+def Tube(diameter: float, thickness: float, shear_factor: float = 0.5) -> ShapedSection:
     """Return a circular tube.
 
     Raises InputError for a size that is not positive, or a wall thicker than half the diameter.

@@ -83,10 +83,12 @@ def _in_cell() -> Callable[[Any], bool]:
     handles: list[Any] = []
 
     def present(figure: Any) -> bool:
+        # as data: a figure that displays itself would be shown anew below the one before
+        picture = {"image/png": figure._repr_png_(), "text/plain": figure.axes[0].get_title()}
         if handles:
-            handles[0].update(figure)
+            handles[0].update(picture, raw=True)
         else:
-            handles.append(display(figure, display_id=True))
+            handles.append(display(picture, raw=True, display_id=True))
         return True
 
     return present

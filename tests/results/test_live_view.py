@@ -20,9 +20,9 @@ class Handle:
     def __init__(self):
         self.titles, self.pictures = [], []
 
-    def update(self, figure):
-        self.pictures.append(figure._repr_png_())
-        self.titles.append(figure.axes[0].get_title())
+    def update(self, picture, raw):
+        self.pictures.append(picture["image/png"])
+        self.titles.append(picture["text/plain"])
 
 
 @pytest.fixture
@@ -31,7 +31,7 @@ def handle(monkeypatch):
     pytest.importorskip("IPython")
     shown = Handle()
     monkeypatch.setattr(live_view, "in_notebook", lambda: True)
-    monkeypatch.setattr("IPython.display.display", lambda figure, display_id: shown)
+    monkeypatch.setattr("IPython.display.display", lambda picture, raw, display_id: shown)
     return shown
 
 
@@ -51,6 +51,25 @@ def test_a_picture_of_a_notebook_renews_itself_and_changes_no_number(model, hand
     if "file" in how:
         bf.resume("motion.h5", duration=1.2, watch=True)
         assert handle.titles[-1] > handle.titles[len(moments) - 1]
+
+
+def test_a_notebook_renews_one_picture(model, monkeypatch):
+    """Found in a notebook: each picture was displayed below the one before."""
+    shell = pytest.importorskip("IPython.core.interactiveshell").InteractiveShell
+    from IPython.utils.capture import capture_output
+
+    monkeypatch.setattr(live_view, "in_notebook", lambda: True)
+    monkeypatch.setattr(live_view, "_SHARE", np.inf)
+    show, state = live_view.live_view(model), bf.simulate(model, 0.1, 0.1)[-1]
+    shell.instance()
+    try:
+        with capture_output() as shown:
+            for at in (0.0, 0.1):
+                show(at, np.array([state.p, state.v, np.zeros_like(state.p)]))
+    finally:
+        shell.clear_instance()
+    assert [output.update for output in shown.outputs] == [False, True, True]
+    assert len({output.transient["display_id"] for output in shown.outputs}) == 1
 
 
 def test_drawing_takes_a_twentieth_of_the_time(model, monkeypatch):

@@ -15,7 +15,7 @@ from beamfem.element.element import CRBF, Element
 from beamfem.errors import InputError, NotReadWarning, warn
 from beamfem.io.frame import Frame, build_frame
 from beamfem.io.line_mesh import LineMesh, line_mesh
-from beamfem.io.mesh_files import OF_THE_MESH, Keyword, content_of, keywords_of, listed, number
+from beamfem.io.mesh_files import OF_THE_MESH, Keyword, MeshFile, content_of, keywords_of, listed, number
 from beamfem.material import Material
 from beamfem.model.beam import Point
 from beamfem.model.joint_base import Joint
@@ -35,11 +35,11 @@ from beamfem.parts.rigid import Rigid
 from beamfem.reprs import brief
 from beamfem.section import Circle, Polygon, Rectangle, Section, StiffnessSection, Tube
 
-_DIRECTIONS = {1: "ux", 2: "uy", 6: "rotation"}
-_SYMMETRIES = {"ENCASTRE": range(1, 7), "PINNED": (1, 2, 3), "XSYMM": (1, 5, 6), "YSYMM": (2, 4, 6)}
+_PLANES = ((0, 1, 2), (0, 2, 1), (1, 2, 0))  # axes of the file that are x, y and z here
+_SYMMETRIES = {"ENCASTRE": range(1, 7), "PINNED": (1, 2, 3), "XSYMM": (1, 5, 6), "YSYMM": (2, 4, 6), "ZSYMM": (3, 4, 5)}
 _OF_MATERIAL = {"DENSITY": ("density",), "EXPANSION": ("thermal_expansion",), "PLASTIC": ("strength",)}
 _PRINTED = {"OUTPUT", "NODE OUTPUT", "ELEMENT OUTPUT", "ENERGY OUTPUT", "NODE PRINT", "EL PRINT", "NODE FILE"}
-_PRINTED |= {"EL FILE", "END STEP", "RESTART", "FILE FORMAT", "MONITOR", "CONTROLS", "SOLVER CONTROLS"}
+_PRINTED |= {"EL FILE", "RESTART", "FILE FORMAT", "MONITOR", "CONTROLS", "SOLVER CONTROLS", "PHYSICAL CONSTANTS"}
 _TRUSSES = "trusses of the file"
 _JOINED = "ends of trusses of the file"
 # the shear coefficients that Abaqus takes by default
@@ -76,10 +76,11 @@ class AbaqusModel:
 def read_abaqus_model(path: str | PathLike[str], elements: int = 1, element: Element | None = None) -> AbaqusModel:
     """Return the planar model of an Abaqus input file, in its units.
 
-    It reads beams in the plane z = 0 (B21, B22, B23 and the like) and trusses (T2D2, hinged bars that do not buckle);
+    It reads beams in one plane (B21, B22, B31, B32 and the like; the x and y of the model are x and z of a file whose
+    y is constant, y and z where x is) and trusses (T2D2, hinged bars that do not buckle);
     *BEAM SECTION (RECT, CIRC, PIPE, BOX, I) with the shear coefficients of Abaqus, *BEAM GENERAL SECTION and *SOLID
     SECTION; *ELASTIC, *DENSITY, *EXPANSION, and the first yield stress of *PLASTIC as strength; *BOUNDARY, *CLOAD, and
-    *DLOAD of types PX, PY, P2 and GRAV. Loads and displacements are those at the end of the last step. Elements in
+    *DLOAD of types PX, PY, PZ, P2 and GRAV. Loads and displacements are those at the end of the last step. Elements in
     sequence become one beam. Deflections are always large, with or without NLGEOM. CalculiX files can be read too, but
     the size of a CIRC section is taken as the radius, as in Abaqus, not as the diameter.
 
@@ -119,7 +120,9 @@ def read_abaqus_model(path: str | PathLike[str], elements: int = 1, element: Ele
     source = readable(path)
     keywords = list(keywords_of(source))
     content = content_of(source, keywords, _TRUSSES)
-    reading = _Reading()
+    plane = _plane(content, keywords)
+    content = replace(content, points=_in_plane(content, plane))
+    reading = _Reading(plane)
     for keyword in keywords:
         reading.take(keyword)
     try:
@@ -136,6 +139,7 @@ def read_abaqus_model(path: str | PathLike[str], elements: int = 1, element: Ele
 class _Reading:
     """What keywords have said so far; names in capitals."""
 
+    plane: tuple[int, int, int]
     materials: dict[str, dict[str, float]] = field(default_factory=dict)
     sections: dict[str, tuple[Any, str | Material | None]] = field(default_factory=dict)
     held: dict[tuple[str, int], float] = field(default_factory=dict)
@@ -169,9 +173,10 @@ class _Reading:
             case "BEAM SECTION" | "BEAM GENERAL SECTION":
                 shape = given.get("SECTION", "GENERAL").upper().replace("RECTANGULAR", "RECT")
                 if "MATERIAL" in given:  # CalculiX has it for general sections too
-                    self.sections[given["ELSET"].upper()] = _shape(shape, rows), given["MATERIAL"].upper()
+                    self.sections[given["ELSET"].upper()] = self._shape(shape, rows), given["MATERIAL"].upper()
                 else:
-                    self.sections[given["ELSET"].upper()] = _general(shape, rows, number(given.get("DENSITY", "1")))
+                    density = number(given.get("DENSITY", "1"))
+                    self.sections[given["ELSET"].upper()] = self._general(shape, rows, density)
             case "SOLID SECTION":
                 area = _numbers(rows[0])[0] if rows else 1.0
                 self.sections[given["ELSET"].upper()] = area, given["MATERIAL"].upper()
@@ -195,8 +200,10 @@ class _Reading:
         for target, what, *more in rows:
             name, values = target.rpartition(".")[2].upper(), _numbers(more)
             if kind == "DLOAD":
-                if what.upper() in ("PX", "PY", "P2", "GRAV"):
-                    self.along[name, what.upper()] = values
+                x, y, z = self.plane
+                names = {f"P{'XYZ'[x]}": "PX", f"P{'XYZ'[y]}": "PY", "GRAV": "GRAV"} | ({"P2": "P2"} if z == 2 else {})
+                if what.upper() in names:
+                    self.along[name, names[what.upper()]] = values
                 else:
                     self.note(f"*DLOAD {what.upper()}")
             elif kind == "CLOAD":
@@ -243,28 +250,58 @@ class _Reading:
             joints += [(Hinge if free or id(other.beam) in hinged else Rigid)(first, other) for other in others]
         return replace(frame, places=places, joints=tuple(joints), mesh=mesh)
 
-    def _planar(self, direction: int, value: float) -> bool:
-        """Return whether a direction is in the plane; values in others are noted."""
-        if direction not in _DIRECTIONS and value:
+    def _shape(self, shape: str, rows: list[list[str]]) -> Section:
+        """Return a section by its shape and sizes. Raises InputError for another shape."""
+        if shape not in _SHAPES:
+            raise InputError(f"SECTION={shape} cannot be read; {', '.join(_SHAPES)} can")
+        count, make = _SHAPES[shape]
+        sizes = _numbers(rows[0])[:count]
+        if len(sizes) < count:
+            raise InputError(f"SECTION={shape} needs {count} sizes, got {len(sizes)}")
+        if len(rows) > 1 and len(rows[1]) >= 3:
+            x, y, z = (abs(number(rows[1][axis])) for axis in self.plane)
+            if z < max(x, y):  # the first axis of the section is in the plane
+                if shape not in ("RECT", "CIRC", "PIPE"):
+                    raise InputError(f"SECTION={shape}: its first axis must be normal to the plane")
+                sizes = sizes[::-1] if shape == "RECT" else sizes
+        return make(*sizes)
+
+    def _general(self, shape: str, rows: list[list[str]], density: float) -> tuple[Any, Material | None]:
+        """Return a section whose elasticity is on its last line: E and G."""
+        modulus, shear = _numbers(rows[-1])[:2]
+        if shape == "GENERAL":
+            area, second = _numbers(rows[0])[:2]
+            inertia = density * area, density * second
+            return Section.from_stiffness(modulus * area, shear * area, modulus * second, *inertia), None
+        return self._shape(shape, rows[:-1]), Material(modulus, modulus / (2.0 * shear) - 1.0, density)
+
+    def _planar(self, direction: int, value: float) -> str:
+        """Return the name of a direction in the plane, or ""; values in others are noted."""
+        x, y, z = self.plane
+        name = {x + 1: "ux", y + 1: "uy", z + 4: "rotation"}.get(direction, "")
+        if not name and value:
             self.note(f"loads and displacements in direction {direction}, out of the plane")
-        return direction in _DIRECTIONS
+        return name
 
     def model(self, frame: Frame) -> Model:
         """Return the model with supports and loads. Raises InputError for sets and numbers that the file lacks."""
         names = {name.upper(): name for name in frame.mesh.point_sets}
+        turn = -1.0 if self.plane == (0, 2, 1) else 1.0  # from x to z is against y
         held: dict[int, dict[str, float]] = {}
         for (name, direction), value in self.held.items():
-            for node in _nodes(frame, names, name) if self._planar(direction, value) else ():
-                held.setdefault(node, {})[_DIRECTIONS[direction]] = value
+            way = self._planar(direction, value)
+            for node in _nodes(frame, names, name) if way else ():
+                held.setdefault(node, {})[way] = turn * value if way == "rotation" else value
         supports = [_support(frame.places[node][0], values) for node, values in held.items()]
         loads: list[Load] = []
         for (name, direction, follower), value in self.forces.items():
-            for node in _nodes(frame, names, name) if self._planar(direction, value) else ():
+            way = self._planar(direction, value)
+            for node in _nodes(frame, names, name) if way else ():
                 point = frame.places[node][0]
-                if direction == 6:
-                    loads.append(PointMoment(point, value))
+                if way == "rotation":
+                    loads.append(PointMoment(point, turn * value))
                 else:
-                    vector = (value, 0.0) if direction == 1 else (0.0, value)
+                    vector = (value, 0.0) if way == "ux" else (0.0, value)
                     loads.append(PointForce(point, vector, follower=follower))
         return Model(frame.beams, supports, [*loads, *self._along_beams(frame)], joints=frame.joints)
 
@@ -272,7 +309,8 @@ class _Reading:
         names = {name.upper(): name for name in frame.mesh.member_sets}
         for (name, kind), values in self.along.items():
             if kind == "GRAV":
-                yield Gravity((values[0] * values[1], values[0] * values[2]))
+                size, *vector = values
+                yield Gravity((size * vector[self.plane[0]], size * vector[self.plane[1]]))
                 if name and len(frame.members(_known(names, "elset", name))) < len(frame.beams):
                     self.note(f"*DLOAD GRAV of {name} alone (all beams have weight)")
                 continue
@@ -288,6 +326,35 @@ class _Reading:
                     yield Pressure(beam, values[0] if ways == {True} else -values[0])
                 else:
                     yield DistributedLoad(beam, (values[0], 0.0) if kind == "PX" else (0.0, values[0]))
+
+
+def _plane(content: MeshFile, keywords: list[Keyword]) -> tuple[int, int, int]:
+    """Return the plane of the lines: of those which a straight line leaves open, the first that no load leaves."""
+    size = np.ptp(content.points[_on_lines(content)], axis=0)
+    flat = [plane for plane in _PLANES if size[plane[2]] <= 1e-9 * size.max()]
+    acting = [row for keyword in keywords if keyword.keyword in ("CLOAD", "DLOAD") for row in keyword.rows]
+
+    def leaves(plane: tuple[int, int, int]) -> bool:
+        x, y, axis = plane
+        outside = {f"P{'XYZ'[axis]}", str(axis + 1), str(x + 4), str(y + 4)}
+        across = [row[2:3] for row in acting if outside & set(row[1:2])]
+        across += [row[3 + axis : 4 + axis] for row in acting if row[1:2] == ["GRAV"]]
+        return any(set("".join(words)) & set("123456789") for words in across)
+
+    return min(flat, key=leaves, default=_PLANES[0])
+
+
+def _on_lines(content: MeshFile) -> np.ndarray:
+    return np.unique(np.concatenate([np.empty(0, dtype=np.int64), *(nodes.ravel() for _, nodes in content.blocks)]))
+
+
+def _in_plane(content: MeshFile, plane: tuple[int, int, int]) -> np.ndarray:
+    """Return points (n, 3) [m] with the plane as z = 0."""
+    points = content.points[:, plane]
+    height = points[_on_lines(content), 2]
+    if height.size and np.ptp(height) <= 1e-9 * np.ptp(points, axis=0).max():
+        points[:, 2] -= height[0]
+    return points
 
 
 def _numbers(row: list[str]) -> list[float]:
@@ -323,33 +390,6 @@ def _support(point: Point, values: dict[str, float]) -> PointSupport:
         if "rotation" not in values and len(values) == 2:
             return Pin(point)
     return Prescribed(point, **values)
-
-
-def _shape(shape: str, rows: list[list[str]]) -> Section:
-    """Return a section by its shape and sizes. Raises InputError for another shape."""
-    if shape not in _SHAPES:
-        raise InputError(f"SECTION={shape} cannot be read; {', '.join(_SHAPES)} can")
-    count, make = _SHAPES[shape]
-    sizes = _numbers(rows[0])[:count]
-    if len(sizes) < count:
-        raise InputError(f"SECTION={shape} needs {count} sizes, got {len(sizes)}")
-    if len(rows) > 1 and len(rows[1]) >= 3:
-        x, y, z = _numbers(rows[1])[:3]
-        if abs(z) < max(abs(x), abs(y)):  # the first axis of the section is in the plane
-            if shape not in ("RECT", "CIRC", "PIPE"):
-                raise InputError(f"SECTION={shape}: its first axis must be normal to the plane")
-            sizes = sizes[::-1] if shape == "RECT" else sizes
-    return make(*sizes)
-
-
-def _general(shape: str, rows: list[list[str]], density: float) -> tuple[Any, Material | None]:
-    """Return a section whose elasticity is on its last line: E and G."""
-    modulus, shear = _numbers(rows[-1])[:2]
-    if shape == "GENERAL":
-        area, second = _numbers(rows[0])[:2]
-        inertia = density * area, density * second
-        return Section.from_stiffness(modulus * area, shear * area, modulus * second, *inertia), None
-    return _shape(shape, rows[:-1]), Material(modulus, modulus / (2.0 * shear) - 1.0, density)
 
 
 def _bar(area: float, material: Material, length: float) -> StiffnessSection:

@@ -228,12 +228,13 @@ def listed(names: Iterable[str]) -> str:
     return f"{', '.join(every[:_NAMED])}{f' and {len(every) - _NAMED} more' if len(every) > _NAMED else ''}"
 
 
-def content_of(path: Path, keywords: Iterable[Keyword], trusses: str = "") -> MeshFile:
+def content_of(path: Path, keywords: list[Keyword], trusses: str = "") -> MeshFile:
     """Return the mesh of keywords. Raises InputError, with the line, for anything that cannot be read.
 
     trusses: name of an element set of all trusses; with it, nodes and elements that supports and loads number become
     sets that are named by their number.
     """
+    _tell_parts_apart(keywords)
     nodes: dict[int, tuple[float, ...]] = {}
     cells: dict[int, tuple[str, list[int]]] = {}
     node_sets, element_sets = _Sets("nset"), _Sets("elset")
@@ -261,6 +262,24 @@ def content_of(path: Path, keywords: Iterable[Keyword], trusses: str = "") -> Me
                 raise
             raise InputError(f"{section.place}: this line below *{section.keyword} cannot be read: {error}") from error
     return _assembled(path, nodes, cells, node_sets, element_sets)
+
+
+def _tell_parts_apart(keywords: list[Keyword]) -> None:
+    """Put its name before sets of a part which have the name of a set of the assembly, as Abaqus/CAE writes them."""
+    kinds = ("NSET", "ELSET")
+    of_assembly = {
+        (kind, keyword.parameters.get(kind, "").upper())
+        for keyword in keywords
+        for kind in kinds
+        if keyword.keyword == kind and "INSTANCE" in keyword.parameters
+    }
+    part = ""
+    for keyword in keywords:
+        if keyword.keyword in ("PART", "END PART"):
+            part = keyword.parameters.get("NAME", "")
+        for kind in kinds:
+            if part and (kind, keyword.parameters.get(kind, "").upper()) in of_assembly:
+                keyword.parameters[kind] = f"{part}.{keyword.parameters[kind]}"
 
 
 def number(word: str) -> float:

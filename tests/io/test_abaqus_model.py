@@ -190,6 +190,56 @@ def test_a_section_turned_by_its_first_axis_and_one_with_its_own_elasticity(tmp_
     assert same.section == bf.Rectangle(0.01, 0.002, 0.85)
 
 
+@pytest.mark.parametrize(
+    ("axes", "across", "about", "sense"), [("xzy", "0., 1., -0.", 5, -1.0), ("yzx", "1., 0., 0.", 4, 1.0)]
+)
+def test_a_beam_in_another_plane_as_freecad_writes_it(tmp_path, axes, across, about, sense):
+    """8 m of 0.4 by 1.25 m: P L^3 / (3 EI) + P L / (k_s G A), and the angle of a moment about the third axis."""
+    order = ["xyz".index(axis) for axis in axes]
+
+    def point(*along):
+        return ", ".join(f"{along[order.index(axis)]:g}" for axis in range(3))
+
+    nodes = [f"{n}, {point(x, 500.0, 300.0)}" for n, x in ((1, 0.0), (2, 8000.0), (3, 4000.0))]
+    lines = ["*Node, NSET=Nall", *nodes, "*Element, TYPE=B32R, ELSET=Eedges", "1, 1, 3, 2", "*ELSET,ELSET=M0", "1,"]
+    lines += ["*NSET,NSET=Fixed", "1,", "*NSET,NSET=Tip", "2,", "*MATERIAL, NAME=Steel", "*ELASTIC", "210000,0.3"]
+    lines += ["*DENSITY", "7.85e-9", "*BEAM SECTION, ELSET=M0, MATERIAL=Steel, SECTION=RECT", "400,1250", across]
+    lines += ["*STEP, NLGEOM", "*STATIC", "*BOUNDARY", *(f"Fixed,{direction}" for direction in range(1, 7))]
+    force = ["*CLOAD", f"2,{order[1] + 1},-9.0E+04", "*END STEP"]
+    file = read(tmp_path, "\n".join(lines + force), elements=4)
+    assert [type(support) for support in file.model.supports] == [bf.Clamp]
+    bending, shear = 2.1e5 * 400.0 * 1250.0**3 / 12.0, 0.85 * 2.1e5 / 2.6 * 400.0 * 1250.0
+    assert tip(file)[1] == pytest.approx(-9e4 * (8000.0**3 / (3.0 * bending) + 8000.0 / shear), rel=1e-5)
+    file = read(tmp_path, "\n".join([*lines, "*CLOAD", f"2,{about},1e6", "*END STEP"]), elements=4)
+    turned = bf.solve_static(file.model).rotation(file.frame.points("Tip")[0])[-1]
+    assert turned == pytest.approx(sense * 1e6 * 8000.0 / bending, rel=1e-6)
+
+
+def test_a_straight_beam_is_in_the_plane_of_its_loads(tmp_path):
+    text = (NODES + SECTION + STEP).replace("Tip, 2, -7.", "Tip, 3, -7.").replace("type=B21", "type=B31")
+    turned = read(tmp_path, text)  # a width of 2 mm, 10 mm high
+    assert turned.model.beams[0].section == bf.Rectangle(0.002, 0.01, 0.85)
+    assert tip(turned)[1] == pytest.approx(-7.0 / (3.0 * 25.0 * RIGIDITY), rel=1e-2)
+    spread = text.replace("*Cload\nTip, 3, -7.", "*Dload\nArm, PZ, -7.\n, GRAV, 9.81, 0., 0., -1.")
+    weight = 7.0 + 7850.0 * 9.81 * 2e-5
+    assert tip(read(tmp_path, spread))[1] == pytest.approx(-weight / (8.0 * 25.0 * RIGIDITY), rel=1e-2)
+
+
+def test_sets_of_a_part_and_of_the_assembly_may_have_the_same_name(tmp_path):
+    """Abaqus/CAE names both Set-1; the clamp was at all nodes."""
+    sets = "*Nset, nset=Set-1, generate\n1, 5, 1\n*Elset, elset=Set-1, generate\n1, 4, 1\n"
+    section, others = SECTION.replace("ARM", "Set-1").split("*Material")
+    assembly = "*End Part\n*Assembly, name=Assembly\n*Instance, name=Part-1-1, part=Part-1\n*End Instance\n"
+    assembly += "*Nset, nset=Set-1, instance=Part-1-1\n1,\n*Elset, elset=Set-1, instance=Part-1-1\n4,\n*End Assembly\n"
+    mesh = "*Heading\n*Part, name=Part-1\n" + NODES.partition("long\n")[2]
+    loads = STEP.replace("*Cload\nTip, 2, -7.", "*Dload\nSet-1, PY, -0.01")
+    held = others.replace("1, Encastre", "Set-1, ENCASTRE")
+    file = read(tmp_path, f"{mesh}{sets}{section}{assembly}*Material{held}{loads}")
+    assert len(file.model.supports) == 1
+    last = 0.01 * (1.0 / 8.0 - (0.75**3 / 6.0 - 0.75**4 / 24.0)) / RIGIDITY
+    assert tip(file)[1] == pytest.approx(-last, rel=2e-4)
+
+
 def test_supports_in_directions_of_the_plane_only(tmp_path):
     held = SECTION.partition("*Boundary")[0] + "*Boundary\n1, PINNED\n5, 2, 4\n3, XSYMM\n2, 6\n"
     kinds = read(tmp_path, NODES + held).model.supports

@@ -119,9 +119,7 @@ def read_abaqus_model(path: str | PathLike[str], elements: int = 1, element: Ele
     """
     source = readable(path)
     keywords = list(keywords_of(source))
-    content = content_of(source, keywords, _TRUSSES)
-    plane = _plane(content, keywords)
-    content = replace(content, points=_in_plane(content, plane))
+    content, plane = _planar(content_of(source, keywords, _TRUSSES), keywords)
     reading = _Reading(plane)
     for keyword in keywords:
         reading.take(keyword)
@@ -328,9 +326,10 @@ class _Reading:
                     yield DistributedLoad(beam, (values[0], 0.0) if kind == "PX" else (0.0, values[0]))
 
 
-def _plane(content: MeshFile, keywords: list[Keyword]) -> tuple[int, int, int]:
-    """Return the plane of the lines: of those which a straight line leaves open, the first that no load leaves."""
-    size = np.ptp(content.points[_on_lines(content)], axis=0)
+def _planar(content: MeshFile, keywords: list[Keyword]) -> tuple[MeshFile, tuple[int, int, int]]:
+    """Return the mesh with its plane as z = 0, and that plane: of a straight line, the first that no load leaves."""
+    nodes = np.concatenate([np.empty(0, dtype=np.int64), *(nodes.ravel() for _, nodes in content.blocks)])
+    size = np.ptp(content.points[nodes], axis=0) if nodes.size else np.zeros(3)
     flat = [plane for plane in _PLANES if size[plane[2]] <= 1e-9 * size.max()]
     acting = [row for keyword in keywords if keyword.keyword in ("CLOAD", "DLOAD") for row in keyword.rows]
 
@@ -341,20 +340,11 @@ def _plane(content: MeshFile, keywords: list[Keyword]) -> tuple[int, int, int]:
         across += [row[3 + axis : 4 + axis] for row in acting if row[1:2] == ["GRAV"]]
         return any(set("".join(words)) & set("123456789") for words in across)
 
-    return min(flat, key=leaves, default=_PLANES[0])
-
-
-def _on_lines(content: MeshFile) -> np.ndarray:
-    return np.unique(np.concatenate([np.empty(0, dtype=np.int64), *(nodes.ravel() for _, nodes in content.blocks)]))
-
-
-def _in_plane(content: MeshFile, plane: tuple[int, int, int]) -> np.ndarray:
-    """Return points (n, 3) [m] with the plane as z = 0."""
+    plane = min(flat, key=leaves, default=_PLANES[0])
     points = content.points[:, plane]
-    height = points[_on_lines(content), 2]
-    if height.size and np.ptp(height) <= 1e-9 * np.ptp(points, axis=0).max():
-        points[:, 2] -= height[0]
-    return points
+    if flat and nodes.size:
+        points[:, 2] -= points[nodes[0], 2]
+    return replace(content, points=points), plane
 
 
 def _numbers(row: list[str]) -> list[float]:

@@ -6,7 +6,6 @@ unit vector or an angle has an error eps, whatever the size of the model.
 
 from collections.abc import Sequence
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 
@@ -34,37 +33,16 @@ def residual_errors(
         for i in np.flatnonzero(own.kind == GROUNDED):
             held = block.node[own.element[i]]
             nodes[0][held] += own.constants[i, :2].max() * np.abs(own.position[i]).reshape(len(held), -1)
-        for entries in _entries(block, names):
-            values = nodes[:, entries.nodes, entries.slots]
-            if len(entries.turning):  # the angle turns r_x as well
-                values[:, entries.turning] += nodes[:, entries.nodes[entries.turning], 1]
+        for kind in np.unique(block.node_kind).tolist():
+            number, columns = np.flatnonzero(block.node_kind == kind), labels(kind, names)
+            values = nodes[:, number][:, :, [_slot(label, names) for label in columns]]
+            if kind in (STRETCH, SHEAR_RIGID):  # the angle, which is last, turns r_x as well
+                values[:, :, -1] += nodes[:, number, 1]
             # contributions of nodes that share a coordinate add up
+            dofs = block.dof[number, : len(columns)].ravel()
             for total, contribution in zip(result, values, strict=True):
-                total += np.bincount(entries.dofs, contribution, size)
+                total += np.bincount(dofs, contribution.ravel(), size)
     return result
-
-
-class Entries(NamedTuple):
-    """Coordinates dofs (k,) of all nodes of one kind: node, and nodal vector that each changes.
-
-    turning (m,): those among them that change r_x as well.
-    """
-
-    dofs: np.ndarray
-    nodes: np.ndarray
-    slots: np.ndarray
-    turning: np.ndarray
-
-
-def _entries(block: Block, names: tuple[str, ...]) -> list[Entries]:
-    entries = []
-    for kind in np.unique(block.node_kind).tolist():
-        nodes, columns = np.flatnonzero(block.node_kind == kind), labels(kind, names)
-        slots = np.tile([_slot(label, names) for label in columns], len(nodes))
-        turns = [kind in (STRETCH, SHEAR_RIGID) and label == "theta" for label in columns]
-        dofs = block.dof[nodes, : len(columns)].ravel()
-        entries.append(Entries(dofs, nodes.repeat(len(columns)), slots, np.flatnonzero(np.tile(turns, len(nodes)))))
-    return entries
 
 
 def _slot(label: str, names: tuple[str, ...]) -> int:
@@ -77,15 +55,13 @@ def _slot(label: str, names: tuple[str, ...]) -> int:
 def stress_errors(block: Block, names: tuple[str, ...]) -> np.ndarray:
     """Return the stress resultants (2, nc, nq, ns) for unit errors of positions, and of all other vectors."""
     slope, last = _sums(block.slope, names), len(names) - 1
-    of_r, of_d, of_e = np.zeros((3, 2, *block.weight.shape))
+    of_r, of_d, of_e = errors = np.zeros((3, 2, *block.weight.shape))
     of_r[:last], of_d[1] = slope[:last], np.abs(block.director).sum(axis=1)
     if block.measures == ELASTIC_LINE:
         of_e[:last] = _sums(block.second, names)[:last]
     else:
         of_e[1] = slope[last]
-    strain = np.zeros((2, *block.reference.shape))
-    for measure, vectors in enumerate(depends(block.measures)[0]):
-        strain[..., measure] = _total((of_r, of_d, of_e), vectors)
+    strain = np.einsum("vpcq,vj->pcqj", errors, depends(block.measures))
     return np.einsum("cqij,pcqj->pcqi", np.abs(block.stiffness), strain)
 
 
@@ -99,8 +75,8 @@ def _of_slots(block: Block, names: tuple[str, ...]) -> np.ndarray:
     """Return the force (2, nc, nv) on nodal vectors for unit errors of positions, and of all other vectors."""
     slot, per_node = np.arange(block.scale.shape[1]), len(names)
     along, across = slot[slot % per_node < per_node - 1], slot[per_node - 1 :: per_node]  # interpolate r0, and d
-    slope, stress = np.abs(block.slope), stress_errors(block, names).transpose(3, 0, 1, 2)
-    on_r, on_d, on_e = (block.weight * _total(stress, strains) for strains in depends(block.measures)[1])
+    slope, stress = np.abs(block.slope), stress_errors(block, names)
+    on_r, on_d, on_e = block.weight * np.einsum("vj,pcqj->vpcq", depends(block.measures), stress)
     result = np.empty((2, *block.scale.shape))
     on_along = np.einsum("pcq,cqi->pci", on_r, slope[:, :, along])
     on_across = np.einsum("pcq,qi->pci", on_d, np.abs(block.director))
@@ -112,25 +88,13 @@ def _of_slots(block: Block, names: tuple[str, ...]) -> np.ndarray:
     return result
 
 
-def _total(parts: Sequence[np.ndarray] | np.ndarray, chosen: tuple[int, ...]) -> np.ndarray:
-    """Return the sum of the chosen parts, zero without any."""
-    if not chosen:
-        return np.zeros_like(parts[0])
-    result = parts[chosen[0]]
-    for number in chosen[1:]:
-        result = result + parts[number]
-    return result
-
-
 @cache
-def depends(measures: int) -> tuple[tuple[tuple[int, ...], ...], tuple[tuple[int, ...], ...]]:
-    """Return on which of r0', d and a third vector that is small each strain measure depends, and the reverse."""
+def depends(measures: int) -> np.ndarray:
+    """Return 1 where a strain measure depends on r0', d or a third vector that is small, else 0 (3, ns)."""
     vectors = np.array([[0.8, 0.3], [-0.4, 0.9], [0.0, 0.0]])
     steps = vectors + _COMPLEX_STEP * 1j * np.eye(6).reshape(6, 3, 2)
     slopes = evaluate(MEASURES[measures], *np.moveaxis(steps, 1, 0)).imag.reshape(3, 2, -1)
-    found = np.any(slopes != 0.0, axis=1)
-    strains, on_vectors = ([tuple(np.flatnonzero(row).tolist()) for row in rows] for rows in (found.T, found))
-    return tuple(strains), tuple(on_vectors)
+    return np.any(slopes != 0.0, axis=1).astype(float)
 
 
 def _of_nodes(block: Block, errors: np.ndarray) -> np.ndarray:

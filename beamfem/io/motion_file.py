@@ -11,19 +11,8 @@ import numpy as np
 from beamfem.atomic_write import path_of, readable
 from beamfem.equations.callbacks import uninterrupted
 from beamfem.errors import FileError, InputError
+from beamfem.io import hdf5
 from beamfem.io.description import describe, rebuild
-from beamfem.io.hdf5 import (
-    Journal,
-    Pages,
-    begin_checked,
-    checksum,
-    extend_checked,
-    read_checked,
-    required_h5py,
-    shorten_checked,
-    write_checked,
-    write_hdf5,
-)
 from beamfem.io.results_hdf5 import (
     CHECKSUMS,
     EVENTS,
@@ -51,14 +40,14 @@ class MotionFile:
 
     def __init__(self, path: str | PathLike[str], create: Callable[[Path], None] | None = None) -> None:
         """create: writes the file, once nobody else does. Raises InputError, FileError and MissingPackageError."""
-        self.h5py = required_h5py("writing")
+        self.h5py = hdf5.required_h5py("writing")
         self.path = Path(os.path.realpath(path_of(path) if create else readable(path)))
-        self._journal = Journal(self.path)
+        self._journal = hdf5.Journal(self.path)
         try:
             self._journal.replay()
             if create is not None:
                 create(self.path)
-            self._pages = Pages(self.path, self._journal)
+            self._pages = hdf5.Pages(self.path, self._journal)
             try:
                 self._file = self.h5py.File(self._pages, "r+", libver=("v108", "v110"))
             except OSError as error:
@@ -96,7 +85,7 @@ class MotionFile:
     def checkpoint(self) -> dict[str, np.ndarray]:
         """What the run needs to go on."""
         group = self._file[_CHECKPOINT]
-        return {name: read_checked(group, name) for name in group}
+        return {name: hdf5.read_checked(group, name) for name in group}
 
     def model(self, given: Model | None) -> Model:
         """Return the model given, or that of the file. Raises InputError for another one, or if it has functions."""
@@ -107,7 +96,7 @@ class MotionFile:
                     f"{self.path} has functions of time, of which it holds values only; give resume the model itself"
                 )
             return rebuild(described)
-        if as_text(describe(given, np.array(described["at"])))[0] != read_checked(self._file, "model")[0]:
+        if as_text(describe(given, np.array(described["at"])))[0] != hdf5.read_checked(self._file, "model")[0]:
             raise InputError(f"{self.path} holds a motion of another model than the one given")
         return given
 
@@ -121,10 +110,10 @@ class MotionFile:
         self._tail = _last_block(self._file)
         _sum(self._file, rows - len(self._tail[0]), self._tail)
         if "turned" in self._file:
-            shorten_checked(self._file, "turned", rows)
+            hdf5.shorten_checked(self._file, "turned", rows)
         if EVENTS in self._file:
             for name in self._file[EVENTS]:
-                shorten_checked(self._file[EVENTS], name, events)
+                hdf5.shorten_checked(self._file[EVENTS], name, events)
 
     @uninterrupted
     def commit(
@@ -174,27 +163,27 @@ def created(
 
     def fill(file: Any, require_written: Callable[[], None]) -> None:
         begin_file(file, 0, description, size, block)
-        write_checked(file, "statistics", _padded(as_text(about(False, statistics))))
+        hdf5.write_checked(file, "statistics", _padded(as_text(about(False, statistics))))
         if turned:
-            begin_checked(file, "turned", (turned,), np.float64, block)
+            hdf5.begin_checked(file, "turned", (turned,), np.float64, block)
         if event_names:
             begin_events(file, max(len(name.encode()) for name in event_names))
         _append(file, _last_block(file), rows)
-        write_checked(file, _SETTINGS, as_text(settings))
+        hdf5.write_checked(file, _SETTINGS, as_text(settings))
         group = file.create_group(_CHECKPOINT)
         for name, values in checkpoint.items():
-            write_checked(group, name, values)
+            hdf5.write_checked(group, name, values)
 
     def create(path: Path) -> None:
         _refuse_unfinished(path)
-        write_hdf5(path, fill)
+        hdf5.write_hdf5(path, fill)
 
     return create
 
 
 def _refuse_unfinished(path: Path) -> None:
     """Raise InputError if a file holds a motion that has not ended."""
-    h5py = required_h5py("writing")
+    h5py = hdf5.required_h5py("writing")
     try:
         with h5py.File(path, "r") as file:
             unfinished = _CHECKPOINT in file and bool(read_text(file, _SETTINGS)["unfinished"])
@@ -224,7 +213,7 @@ def _append(file: Any, tail: list[np.ndarray], rows: Rows) -> list[np.ndarray]:
     joined = [np.concatenate([old, new]) if len(old) else new for old, new in zip(tail, added, strict=True)]
     _sum(file, before - len(tail[0]), joined)
     if "turned" in file:
-        extend_checked(file, "turned", rotations)
+        hdf5.extend_checked(file, "turned", rotations)
     for name in ("rows", "all_rows"):
         file.attrs.modify(name, before + len(times))
     whole = len(joined[0]) - len(joined[0]) % block
@@ -234,7 +223,7 @@ def _append(file: Any, tail: list[np.ndarray], rows: Rows) -> list[np.ndarray]:
 def _sum(file: Any, first: int, states: Sequence[np.ndarray]) -> None:
     """Write the checksums of blocks of rows from one on that begins a block."""
     block, count = file["at"].chunks[0], len(states[0])
-    sums = [checksum(*(values[at : at + block] for values in states)) for at in range(0, count, block)]
+    sums = [hdf5.checksum(*(values[at : at + block] for values in states)) for at in range(0, count, block)]
     file[CHECKSUMS].resize(first // block + len(sums), axis=0)
     file[CHECKSUMS][first // block :] = sums
 
@@ -248,8 +237,8 @@ def _write_anew(group: Any, name: str, values: np.ndarray) -> None:
     old = group.get(name)
     if old is not None and (old.shape, old.dtype) == (values.shape, values.dtype):
         old[...] = values
-        old.attrs.modify("crc32", checksum(np.asarray(old)))
+        old.attrs.modify("crc32", hdf5.checksum(np.asarray(old)))
         return
     if old is not None:
         del group[name]
-    write_checked(group, name, values)
+    hdf5.write_checked(group, name, values)

@@ -14,22 +14,8 @@ import numpy as np
 
 from beamfem.atomic_write import readable
 from beamfem.errors import InputError
+from beamfem.io import hdf5
 from beamfem.io.description import describe, rebuild
-from beamfem.io.hdf5 import (
-    begin_checked,
-    being_written,
-    checksum,
-    extend_checked,
-    opened_once_written,
-    read_checked,
-    read_label,
-    replay,
-    require_own,
-    required_h5py,
-    write_checked,
-    write_hdf5,
-    write_label,
-)
 from beamfem.results.axis_fields import QUANTITIES, section_forces
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import VALUES, LikeBeams, equal_beams
@@ -129,10 +115,10 @@ def save_critical(file: Any, path: EquilibriumPath) -> None:
     for name, parts in (("limit_points", _STATE), ("bifurcations", _CROSSING)):
         group, states = file.create_group(name), getattr(path, name)
         for part in parts:
-            write_checked(group, part, np.array([getattr(state, part) for state in states]))
+            hdf5.write_checked(group, part, np.array([getattr(state, part) for state in states]))
         turned = [state.turned for state in states if state.turned is not None]
         if turned and turned[0].size:
-            write_checked(group, "turned", np.array(turned))
+            hdf5.write_checked(group, "turned", np.array(turned))
 
 
 def load_path(file: Any, rows: Solution) -> Solution:
@@ -144,8 +130,8 @@ def load_path(file: Any, rows: Solution) -> Solution:
     def states(name: str, kind: type[PathState], parts: tuple[str, ...]) -> tuple[Any, ...]:
         group = file[name]
         # None if no beam needs them, or in older files
-        turns = read_checked(group, "turned") if "turned" in group else [None] * len(group["at"])
-        rows = zip(*(read_checked(group, part) for part in parts), turns, strict=True)
+        turns = hdf5.read_checked(group, "turned") if "turned" in group else [None] * len(group["at"])
+        rows = zip(*(hdf5.read_checked(group, part) for part in parts), turns, strict=True)
         return tuple(
             kind(p, zeros, zeros, float(at), model, *more, stability=False, turned=turned)
             for at, p, *more, turned in rows
@@ -178,11 +164,11 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
 
     def fill(file: Any, require_written: Callable[[], None]) -> None:
         begin_file(file, len(solution), description, solution.p.shape[1], block)
-        write_checked(file, "statistics", as_text(about(solution.static, solution.statistics)))
+        hdf5.write_checked(file, "statistics", as_text(about(solution.static, solution.statistics)))
         for name in _OPTIONAL:
             values = getattr(solution, name)
             if values is not None and values.size:
-                write_checked(file, name, values)
+                hdf5.write_checked(file, name, values)
         file.flush()
         for first in range(0, len(solution), block):
             _append(file, solution, slice(first, min(first + block, len(solution))))
@@ -194,16 +180,16 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
             append_events(file, solution.events)
         save_axes(file, solution, require_written)
 
-    write_hdf5(path, fill)
+    hdf5.write_hdf5(path, fill)
 
 
 def begin_file(file: Any, rows: int, description: np.ndarray, size: int, block: int) -> None:
     """Write what is before the first row; rows: of all; size: number of coordinates; block: rows with a checksum."""
-    write_label(file, "format", _FORMAT)
+    hdf5.write_label(file, "format", _FORMAT)
     file.attrs["format_version"] = _FORMAT_VERSION
-    write_label(file, "beamfem_version", version("beamfem"))
+    hdf5.write_label(file, "beamfem_version", version("beamfem"))
     file.attrs["all_rows"], file.attrs["rows"] = rows, 0
-    write_checked(file, "model", description)
+    hdf5.write_checked(file, "model", description)
     for name in STATES:
         row = (size,) if name != "at" else ()
         file.create_dataset(name, (0, *row), np.float64, maxshape=(None, *row), chunks=(block, *row))
@@ -248,9 +234,9 @@ def load(path: str | PathLike[str], rows: slice | None = None) -> Solution:
     >>> bf.load("cantilever.h5").at
     array([0., 1.])
     """
-    h5py = required_h5py("loading")
+    h5py = hdf5.required_h5py("loading")
     source = readable(path)
-    replay(Path(os.path.realpath(source)))
+    hdf5.replay(Path(os.path.realpath(source)))
     with source.open("rb") as stream:
         if stream.read(len(_SIGNATURE)) != _SIGNATURE:
             raise InputError(f"{source} is not a file that beamfem saved: it is no HDF5 file")
@@ -258,7 +244,7 @@ def load(path: str | PathLike[str], rows: slice | None = None) -> Solution:
         try:
             return _loaded(h5py, source, rows)
         except InputError:
-            if not being_written(source):
+            if not hdf5.being_written(source):
                 raise
     return _loaded(h5py, source, rows)
 
@@ -266,7 +252,7 @@ def load(path: str | PathLike[str], rows: slice | None = None) -> Solution:
 def _loaded(h5py: Any, source: Path, rows: slice | None) -> Solution:
     """Return the solution in a file. Raises InputError."""
     try:
-        with opened_once_written(h5py, source) as file:
+        with hdf5.opened_once_written(h5py, source) as file:
             return _read(file, slice(None) if rows is None else rows)
     except InputError as error:
         raise InputError(f"{source} cannot be loaded: {error}") from error
@@ -283,7 +269,7 @@ def _append(file: Any, solution: Solution, rows: slice) -> None:
         file[name][rows] = getattr(solution, name)[rows]
     blocks = len(file[CHECKSUMS])
     file[CHECKSUMS].resize(blocks + 1, axis=0)
-    file[CHECKSUMS][blocks] = checksum(*(getattr(solution, name)[rows] for name in STATES))
+    file[CHECKSUMS][blocks] = hdf5.checksum(*(getattr(solution, name)[rows] for name in STATES))
     # rows count only when their numbers have left for the file
     file.flush()
     file.attrs.modify("rows", rows.stop)
@@ -291,17 +277,17 @@ def _append(file: Any, solution: Solution, rows: slice) -> None:
 
 
 def _read(file: Any, selected: slice) -> Solution:
-    if read_label(file, "format") != _FORMAT:
+    if hdf5.read_label(file, "format") != _FORMAT:
         raise InputError("it is an HDF5 file, but not one that beamfem saved")
     if file.attrs["format_version"] > _FORMAT_VERSION:
         raise InputError(
-            f"beamfem {read_label(file, 'beamfem_version')} wrote it in format {file.attrs['format_version']}, this "
-            f"version reads formats up to {_FORMAT_VERSION}; a newer beamfem can load it"
+            f"beamfem {hdf5.read_label(file, 'beamfem_version')} wrote it in format {file.attrs['format_version']}, "
+            f"this version reads formats up to {_FORMAT_VERSION}; a newer beamfem can load it"
         )
     rows, all_rows = int(file.attrs["rows"]), int(file.attrs["all_rows"])
     if rows == 0:
         raise InputError("its writing was cut off before the first rows")
-    require_own(file, AXES)
+    hdf5.require_own(file, AXES)
     model = rebuild(read_text(file, "model"))
     for name in STATES:
         data = file[name]
@@ -327,7 +313,7 @@ def _read(file: Any, selected: slice) -> Solution:
         ended = f"{statistics.ended}; the file holds {rows} of {all_rows} rows because its writing was cut off"
         statistics = replace(statistics, ended=ended, status=Status.STOPPED)
     optional_arrays: dict[str, Any] = {
-        name: read_checked(file, name)[:rows][np.array(chosen)] for name in _OPTIONAL if name in file
+        name: hdf5.read_checked(file, name)[:rows][np.array(chosen)] for name in _OPTIONAL if name in file
     }
     events = _events(file)
     if len(chosen) < rows:
@@ -339,20 +325,20 @@ def begin_events(file: Any, size: int) -> None:
     """Make the group of events with names of at most some bytes."""
     group = file.create_group(EVENTS)
     for name, kind in (("name", f"S{size}"), ("time", np.float64), ("row", np.int64)):
-        begin_checked(group, name, (), kind, _BLOCK_EVENTS)
+        hdf5.begin_checked(group, name, (), kind, _BLOCK_EVENTS)
 
 
 def append_events(file: Any, events: Sequence[Occurrence]) -> None:
     """Write further events."""
-    extend_checked(file[EVENTS], "name", np.array([event.name.encode() for event in events]))
+    hdf5.extend_checked(file[EVENTS], "name", np.array([event.name.encode() for event in events]))
     for name in ("time", "row"):
-        extend_checked(file[EVENTS], name, np.array([getattr(event, name) for event in events]))
+        hdf5.extend_checked(file[EVENTS], name, np.array([getattr(event, name) for event in events]))
 
 
 def _events(file: Any) -> tuple[Occurrence, ...]:
     if EVENTS not in file:
         return ()
-    columns = (read_checked(file[EVENTS], name).tolist() for name in ("name", "time", "row"))
+    columns = (hdf5.read_checked(file[EVENTS], name).tolist() for name in ("name", "time", "row"))
     return tuple(Occurrence(name.decode(), time, row) for name, time, row in zip(*columns, strict=True))
 
 
@@ -363,7 +349,7 @@ def as_text(item: Any) -> np.ndarray:
 
 def read_text(file: Any, name: str) -> Any:
     """Return the object in a text; older versions wrote it without a checksum."""
-    return json.loads(read_checked(file, name)[0] if file[name].shape else file[name].asstr()[()])
+    return json.loads(hdf5.read_checked(file, name)[0] if file[name].shape else file[name].asstr()[()])
 
 
 def _states(file: Any, rows: int, chosen: np.ndarray) -> list[np.ndarray]:
@@ -376,7 +362,7 @@ def _states(file: Any, rows: int, chosen: np.ndarray) -> list[np.ndarray]:
     for number, first in enumerate(range(0, rows, block)):
         last = min(first + block, rows)
         parts = [np.asarray(file[name][first:last]) for name in STATES]
-        if sums is not None and checksum(*parts) != sums[number]:
+        if sums is not None and hdf5.checksum(*parts) != sums[number]:
             raise InputError(f"its rows {first} to {last - 1} are damaged: the checksum is that of other numbers")
         begin, end = np.searchsorted(chosen, [first, last])
         for values, part in zip(result, parts, strict=True):

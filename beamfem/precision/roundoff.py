@@ -5,18 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.equations.equations import (
-    ROUND_OFF,
-    STATICS,
-    imposed_forces,
-    linearise,
-    linearise_at_rest,
-    residual_at_rest,
-    residual_change,
-    residual_under,
-    sizes,
-    with_stresses,
-)
+from beamfem.equations import equations
 from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.equations.system import Proven, System
 
@@ -32,9 +21,9 @@ FEW_DIGITS = 4.0  # of the forces; with fewer, users are warned
 
 def row_floors(system: System, p: np.ndarray) -> np.ndarray:
     """Return the residual (n,) [N, N m] that rounded coordinates cause in each row, see `row_errors`."""
-    reach, turn = sizes(system, p)
+    reach, turn = equations.sizes(system, p)
     positions, directions = system.residual_errors
-    return np.asarray(ROUND_OFF * reach * positions + ROUND_OFF * turn * directions)
+    return np.asarray(equations.ROUND_OFF * reach * positions + equations.ROUND_OFF * turn * directions)
 
 
 @dataclass(frozen=True)
@@ -53,13 +42,13 @@ def digits_of(system: System, p: np.ndarray, load_factor: float, largest: float 
 
     largest [N m]: a force of other states of the same path, see `largest_force`; if it is larger, its digits count.
     """
-    unbalanced = residual_at_rest(system, p, load_factor)
+    unbalanced = equations.residual_at_rest(system, p, load_factor)
     return _digits(system, p, unbalanced, load_factor, largest)
 
 
 def largest_force(system: System, p: np.ndarray, load_factor: float) -> float:
     """Return the largest force times the size of the model, or moment [N m], that acts in a state p (n,)."""
-    return _acting(system, p, residual_at_rest(system, p, load_factor), load_factor)
+    return _acting(system, p, equations.residual_at_rest(system, p, load_factor), load_factor)
 
 
 def remainder(system: System, p: np.ndarray, load_factor: float) -> Remainder:
@@ -79,20 +68,20 @@ def remainder(system: System, p: np.ndarray, load_factor: float) -> Remainder:
 def _refined(system: System, p: np.ndarray, load_factor: float) -> Remainder:
     """Return the best result of corrections with the current kind of tangent, plain or mixed."""
     free = system.free_dofs
-    initial = residual_at_rest(system, p, load_factor)
+    initial = equations.residual_at_rest(system, p, load_factor)
     best = Remainder(np.zeros(len(p)), _digits(system, p, initial, load_factor))
     step, unbalanced = np.zeros(len(p)), initial
     try:
-        factors = linearise_at_rest(system, p, load_factor)[1].factorised(system.rotated)
+        factors = equations.linearise_at_rest(system, p, load_factor)[1].factorised(system.rotated)
         _, stresses = factors.correction(initial[free])
         if stresses is not None:
             # the stresses of the state itself are as inaccurate as its last digits
-            factors = linearise_at_rest(system, p, load_factor, stresses)[1].factorised(system.rotated)
+            factors = equations.linearise_at_rest(system, p, load_factor, stresses)[1].factorised(system.rotated)
         for _ in range(_CORRECTIONS):
             step[free] += factors.solve(-unbalanced[free])
             if not np.max(np.abs(step) / system.scale, initial=0.0) <= LAST_DIGITS:
                 break
-            unbalanced = initial + residual_change(system, p, step, load_factor)
+            unbalanced = initial + equations.residual_change(system, p, step, load_factor)
             digits = _digits(system, p, unbalanced, load_factor)
             if digits <= best.digits:
                 break
@@ -129,7 +118,7 @@ def _found_to_lose(system: System, p: np.ndarray, load_factor: float) -> bool | 
     if Proven.LOSES_DIGITS in system.proven or Proven.KEEPS_DIGITS in system.proven or system.connectors.items:
         return None
     try:
-        return lost_digits(system, p, load_factor, STATICS) > LOSES
+        return lost_digits(system, p, load_factor, equations.STATICS) > LOSES
     except LinAlgError:
         return None
 
@@ -137,8 +126,8 @@ def _found_to_lose(system: System, p: np.ndarray, load_factor: float) -> bool | 
 def lost_digits(system: System, p: np.ndarray, load_factor: float, coefficients: tuple[float, float, float]) -> float:
     """Return the relative error of a solution with the plain tangent, for weights of p, p', p''. Raises LinAlgError."""
     state, zeros = (p, np.zeros(len(p)), np.zeros(len(p))), np.zeros(len(p))
-    plain = linearise(system, p, zeros, zeros, load_factor, coefficients)[1]
-    return with_stresses(system, state, load_factor, coefficients, None, plain).lost(system.rotated)
+    plain = equations.linearise(system, p, zeros, zeros, load_factor, coefficients)[1]
+    return equations.with_stresses(system, state, load_factor, coefficients, None, plain).lost(system.rotated)
 
 
 def load_size(system: System, load_factor: float) -> float:
@@ -150,7 +139,7 @@ def load_size(system: System, load_factor: float) -> float:
     force, moment = loads.largest
     largest = max(system.extent * force, moment)
     if largest == 0.0 and loads.imposing.any() and not loads.body.any():
-        largest = max(largest, float(np.max(np.abs(imposed_forces(system, load_factor)) * system.scale)))
+        largest = max(largest, float(np.max(np.abs(equations.imposed_forces(system, load_factor)) * system.scale)))
     return largest
 
 
@@ -176,7 +165,7 @@ def _distributed(system: System, p: np.ndarray, unbalanced: np.ndarray, load_fac
     if not system.loads.at(load_factor).body.any():
         return 0.0
     factors = system.loads.factors(load_factor) * [not load.even for load in system.model.acting]
-    without = residual_under(system, p, load_factor, factors)
+    without = equations.residual_under(system, p, load_factor, factors)
     forces = without - unbalanced
     totals = [abs(float(rigid_rates(system, RigidVelocity(way), p) @ forces)) for way in ((1.0, 0.0), (0.0, 1.0))]
     return max(float(np.max(np.abs(forces) * system.scale, initial=0.0)), system.extent * max(totals))

@@ -73,6 +73,20 @@ def test_small_quantities_are_refined_as_any_other():
     assert solution.displacement(beam.end)[-1, 0] == pytest.approx(-1e-10 / 15.0, rel=1e-3)
 
 
+@pytest.mark.parametrize("place", [0.5, 1.0])
+def test_small_quantities_are_as_accurate_as_round_off_permits(place):
+    """Displacements of second order, of which positions hold 4 to 5 digits; a ConvergenceError after 6 meshes or more.
+
+    From u' = -w'^2 / 2 with w' = f (x - x^2 / 2), and the shear angle, which is 1e-4 of it.
+    """
+    beam, model = model_of(bf.CRBF(1), 1, lambda beam: [bf.PointForce(beam.end, (0.0, 1e-5 * EI))])
+    point = beam.at(place)
+    with pytest.warns(bf.RoundOffWarning, match="round-off leaves about [345] digits of the quantity"):
+        solution = bf.solve_static(model, accuracy=1e-6, quantity=lambda s: s.displacement(point)[-1, 0])
+    exact = -0.5e-10 * (place**3 / 3.0 - place**4 / 4.0 + place**5 / 20.0)
+    assert solution.displacement(point)[-1, 0] == pytest.approx(exact, rel=2e-3)
+
+
 def test_elements_are_short_only_where_it_is_needed():
     """On a stiff foundation only the loaded end bends."""
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(4), SECTION, STEEL)

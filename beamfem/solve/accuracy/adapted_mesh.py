@@ -221,7 +221,8 @@ class StaticAttempts:
             self._known = solution, finer
         if self._quantity is None:
             return solution, off, lambda: position_shares(state, finer)
-        return solution, relative_change(solution[last:], finer, self._quantity), lambda: error_shares(state, finer)
+        off = relative_change(solution[last:], finer, self._quantity, self._accuracy)
+        return solution, off, lambda: error_shares(state, finer)
 
     def _too_coarse(self, solution: Solution) -> tuple[Solution, float, Shares] | None:
         """Return what the decay of coefficients tells of a mesh without an estimate, None if it may be fine enough."""

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from beamfem.equations.system import system_of
-from beamfem.errors import InputError
+from beamfem.errors import InputError, RoundOffWarning, warn
 from beamfem.model.beam import Point
 from beamfem.results.solution import Solution
+from beamfem.solve.newton.newton import Newton, solve_equilibrium
 from beamfem.validation import shown
 
 Quantity = Callable[[Any], Any] | Point | None
@@ -47,16 +48,28 @@ def evaluated(
     )
 
 
-def relative_change(before: Solution, after: Solution, quantity: Callable[[Any], Any] | Point) -> float:
+def relative_change(
+    before: Solution, after: Solution, quantity: Callable[[Any], Any] | Point, accuracy: float = np.inf
+) -> float:
     """Return the largest change of a quantity over its largest value; 0 of one that is zero but for round-off.
 
-    Raises InputError, see `evaluated`.
+    It is also 0 of one row whose change is above an accuracy [-], but is no more than round-off makes of its
+    equilibrium, which is warned of. Raises InputError, see `evaluated`.
     """
     value, other = evaluated(quantity, before, after)
-    size, change = (float(np.abs(each).max(initial=0.0)) for each in (value, other - value))
-    if max(size, change) <= _NOISE * float(
-        np.abs(evaluated(quantity, _rounded(before), after)[0] - value).max(initial=0.0)
-    ):
+
+    def largest(numbers: np.ndarray) -> float:
+        return float(np.abs(numbers).max(initial=0.0))
+
+    def noise(rounded: Solution) -> float:
+        return _NOISE * largest(evaluated(quantity, rounded, after)[0] - value)
+
+    size, change, rounded = largest(value), largest(other - value), _rounded(before)
+    if max(size, change) <= noise(rounded):
+        return 0.0
+    if change > accuracy * size and change <= (left := noise(_in_equilibrium(rounded))):
+        digits = np.log10(_NOISE * size / left) if size > 0.0 else 0.0
+        warn(f"round-off leaves about {max(digits, 0.0):.0f} digits of the quantity", RoundOffWarning)
         return 0.0
     return change / size if size > 0.0 else change
 
@@ -86,3 +99,9 @@ def _rounded(solution: Solution) -> Solution:
     off = np.where(system.positions, system.extent, 1.0)
     off[system.history.numbers] = 0.0
     return replace(solution, p=solution.p + np.finfo(float).eps * signs * off)
+
+
+def _in_equilibrium(row: Solution) -> Solution:
+    """Return the equilibrium next to a state that is off by round-off, which differs in all that round-off leaves."""
+    found = solve_equilibrium(system_of(row.model, row.static), row.p[0], row.at[0], Newton())
+    return replace(row, p=found.state[None])

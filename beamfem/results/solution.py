@@ -288,6 +288,11 @@ class Solution:
         ConvergenceError
             If there is no equilibrium nearby on finer elements: the mesh is too coarse, or the state is a limit point.
 
+        Warns
+        -----
+        CoarseMeshWarning
+            If sections, loads or imposed strains vary within elements so much that the enriched ones miss 2 %, too.
+
         Examples
         --------
         >>> moment = solution.error(lambda s: s.reaction(beam.start)[-1, 2])
@@ -295,8 +300,11 @@ class Solution:
         True
         """
         from beamfem.solve.accuracy.error_estimate import error
+        from beamfem.solve.accuracy.narrow_features import warn_of_unseen
 
-        return error(self, quantity, row)
+        result = error(self, quantity, row)
+        self.computed(warn_of_unseen)
+        return result
 
     def error_shares(self, beam: Beam, row: int = -1) -> np.ndarray:
         """Return the share (ne,) [-] of each element of a beam in the discretisation error of a row, see `error`.

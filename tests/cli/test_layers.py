@@ -75,7 +75,11 @@ LAYERS = (
 INSIDE_METHODS = ("mesh", "view", "io", "io/results_hdf5")
 ANALYSES = {
     "model/model.py": ("beamfem.results.imperfection", "beamfem.solve.accuracy.error_estimate"),
-    "results/solution.py": ("beamfem.solve.stability.stability", "beamfem.solve.accuracy.error_estimate"),
+    "results/solution.py": (
+        "beamfem.solve.stability.stability",
+        "beamfem.solve.accuracy.error_estimate",
+        "beamfem.solve.accuracy.narrow_features",
+    ),
 }
 # classes of data: their methods import what computes results from them, and for type checkers what it returns
 DATA = ("model/model.py", "results/solution.py", "results/path.py", "io/line_mesh.py")

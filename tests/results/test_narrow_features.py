@@ -1,5 +1,7 @@
 """Features between the integration points of a first mesh, found in review: results and estimates missed them."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,8 @@ STEEL = bf.Material(2e11, 0.3, 7800.0)
 WIDTHS = np.array([0.05, 0.02, 0.01])
 SIDES = np.concatenate([0.4 + side * WIDTHS + beside for side in (-0.5, 0.5) for beside in (-1e-12, 1e-12)])
 LENGTHS = np.sort([*np.linspace(0.0, 1.0, 200001), *SIDES])
-MOMENT = 2e11 * bf.Rectangle(0.02, 0.01).second_moment
+THIN = bf.Rectangle(0.02, 0.01)
+MOMENT = 2e11 * THIN.second_moment
 
 
 def bump(width):
@@ -85,3 +88,21 @@ def test_a_quantity_that_is_no_number_is_refused(found):
     model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, MOMENT))])
     with pytest.raises(bf.InputError, match="quantity must return a number"):
         bf.solve_static(model, accuracy=1e-4, quantity=lambda solution: found)
+
+
+@pytest.mark.parametrize("what", ["section", "load", "actuation"])
+def test_estimates_on_meshes_of_ones_own_warn_of_what_they_miss(what):
+    def solved(width, elements):
+        section = (lambda s: bf.Rectangle(0.02, float(notched(width)(s)))) if what == "section" else THIN
+        beam = bf.Beam(bf.Line((0, 0), (1, 0)), elements, bf.CRBF(2), section, STEEL)
+        loads = {
+            "load": bf.DistributedLoad(beam, lambda s: (0.0, MOMENT * bump(width)(s) / width)),
+            "actuation": bf.Actuation(beam, curvature=lambda s: 0.1 * bump(width)(s) / width),
+        }
+        load = loads.get(what, bf.PointForce(beam.end, (0.0, 0.01 * MOMENT)))
+        return bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [load]))
+
+    with pytest.warns(bf.CoarseMeshWarning, match="what varies along beam 0 is narrower than its elements"):
+        solved(0.01, 3).error()
+    with warnings.catch_warnings(action="error"):
+        solved(0.2, 24).error()

@@ -10,13 +10,15 @@ import numpy as np
 
 from beamfem.curves import Arc, Line, Polyline
 from beamfem.element.fields import length_rule
+from beamfem.errors import CoarseMeshWarning, warn
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.along_beam import AlongBeam, functions_along
-from beamfem.model.beam import Beam
+from beamfem.model.beam import Beam, beam_in_words
 from beamfem.model.imposed_strains import ImposedStrain
 from beamfem.model.jumps import find_jumps
 from beamfem.model.model import Model
-from beamfem.solve.accuracy.error_estimate import finer_beam, remeshed, with_elements
+from beamfem.results.solution import Solution
+from beamfem.solve.accuracy.error_estimate import enriched, finer_beam, remeshed, with_elements
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 _SAMPLES = 128  # intervals of a beam: what is narrower is seen only if its function declares kinks
 # error of integration that is seen if the enriched space leaves so little of it, and that is never left to be seen
 _LEFT, _LARGE = 0.5, 0.1
+_UNSEEN = 0.02  # of an integral along a beam: what an estimate may miss
 _SHARE = 0.1  # of an accuracy that may be missed
 _LEAST = 1e-4  # smallest error of integration that the samples tell
 _NOTHING = 1e-12  # of the mean size: tails of functions, whose slopes would underflow
@@ -152,3 +155,18 @@ def _resolved(mesh: BeamMesh, profile: Profile | None, least: float) -> Beam:
         ends = np.sort([*ends, *(0.5 * (a + b) for (a, b), each in zip(pairwise(ends), unseen, strict=True) if each)])
         beam = with_elements(beam, ends)
     return beam
+
+
+def warn_of_unseen(solution: Solution) -> None:
+    """Warn of what varies along beams that their enriched elements miss as well, so that no estimate shows it."""
+    model = solution.model
+    pairs = zip(profiles_of(model), enriched(model).meshes, strict=True)
+    for number, (profile, mesh) in enumerate(pairs):
+        missed = 0.0 if profile is None else profile.missed(mesh.beam, mesh.vertices / mesh.vertices[-1]).sum()
+        if missed > _UNSEEN:
+            warn(
+                f"what varies along {beam_in_words(model.beams, number)} is narrower than its elements, of which the "
+                f"estimate of the error misses {min(100.0 * missed, 100.0):.2g} %: use more of them there, or "
+                'elements="auto", which are placed by it',
+                CoarseMeshWarning,
+            )

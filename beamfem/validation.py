@@ -236,7 +236,10 @@ def members(protocol: type) -> tuple[str, ...]:
 
 def function_value(name: str, function: Callable[[float], float], at: float) -> float:
     """Return the finite value of a user's function, or raise InputError naming it and the argument."""
-    return finite(f"{name} at {at:g}", called(name, function, at))
+    value = called(name, function, at)
+    if isinstance(value, float) and math.isfinite(value):
+        return float(value)
+    return finite(f"{name} at {at:g}", value)
 
 
 def called(name: str, function: Callable[..., Any], *arguments: Any) -> Any:

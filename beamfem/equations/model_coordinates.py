@@ -14,7 +14,8 @@ from beamfem.model.beam import Point
 from beamfem.model.contribution import prescribed_by, uses_rotations
 from beamfem.model.model import Model
 from beamfem.model.supports import PointSupport, Value
-from beamfem.validation import function_value
+from beamfem.model.time_functions import Integral
+from beamfem.validation import called, function_value
 
 Columns = list[tuple[str, np.ndarray, np.ndarray]]
 
@@ -63,20 +64,32 @@ COORDINATES = {"ux": "r^x", "uy": "r^y", "rotation": "theta"}  # nodal coordinat
 class PrescribedCoordinate(NamedTuple):
     """A coordinate that a support prescribes.
 
-    value: its change from the reference, a number or a function of time; rotation: whether it is a rotation; point:
-    position of the support.
+    value: its change from the reference, a number or a function of time; rotation: whether it is a rotation; place:
+    that of the support in messages, of functions.
     """
 
     dof: int
     value: Value
     rotation: bool
-    point: Point
+    place: str
+
+    @property
+    def name(self) -> str:
+        return f"value prescribed at {self.place}"
 
     def change(self, time: float, static: bool) -> float:
         """Return the change from the reference at a time, in statics at a load factor."""
         if callable(self.value):
-            return function_value(f"value prescribed at {self.point}", self.value, time)
+            return function_value(self.name, self.value, time)
         return self.value * (time if static else 1.0)
+
+    def course(self, times: np.ndarray) -> np.ndarray:
+        """Return the changes (n,) from the reference at times (n,) of a motion."""
+        if isinstance(self.value, Integral):
+            values = called(self.name, self.value.course, times)
+            if np.isfinite(values).all():
+                return np.asarray(values)
+        return np.array([self.change(time, False) for time in times.tolist()])
 
 
 def prescribed_coordinates(model: Model) -> tuple[PrescribedCoordinate, ...]:
@@ -98,11 +111,15 @@ def prescribed_coordinates(model: Model) -> tuple[PrescribedCoordinate, ...]:
                 raise InputError(
                     f"{what} at {support.point}: another support already prescribes {direction} there; one is enough"
                 )
-            coordinates[dof] = PrescribedCoordinate(dof, value, direction == "rotation", support.point)
+            coordinates[dof] = _prescribed(dof, value, direction == "rotation", support.point)
     values = ((item, value) for item in model.at_points for value in prescribed_by(item))
     for dof, (item, value) in enumerate(values, first_value(model)):
-        coordinates[dof] = PrescribedCoordinate(dof, value, uses_rotations(item), item.points[-1])
+        coordinates[dof] = _prescribed(dof, value, uses_rotations(item), item.points[-1])
     return tuple(coordinates[dof] for dof in sorted(coordinates))
+
+
+def _prescribed(dof: int, value: Value, rotation: bool, point: Point) -> PrescribedCoordinate:
+    return PrescribedCoordinate(dof, value, rotation, str(point) if callable(value) else "")
 
 
 def inclined_normals(model: Model, prescribed: set[int]) -> tuple[tuple[int, np.ndarray], ...]:

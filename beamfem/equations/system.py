@@ -251,6 +251,10 @@ class System:
         """Return the changes (nh,) of the prescribed coordinates from the reference at a time or load factor."""
         return np.array([item.change(time, self.static) for item in self.prescribed], dtype=float)
 
+    def prescribed_course(self, times: np.ndarray) -> np.ndarray:
+        """Return the changes (n, nh) of the prescribed coordinates from the reference at times (n,) of a motion."""
+        return np.column_stack([np.empty((len(times), 0)), *(item.course(times) for item in self.prescribed)])
+
     @shared_table
     def moved(self) -> bool:
         """Whether a prescribed value may differ from the reference."""

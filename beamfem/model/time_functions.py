@@ -102,14 +102,26 @@ class Integral:
         return kinks_of(self.function)
 
     def __call__(self, time: float) -> float:
+        return float(self.course(np.array([time]))[0])
+
+    def course(self, times: np.ndarray) -> np.ndarray:
+        """Return the integrals (n,) to times (n,) [s], each from that to the time before it."""
         if not callable(self.function):
-            return self.function * time
+            return self.function * times
+        kinks = self.kinks
+        return np.cumsum([self._between(*ends, kinks) for ends in pairwise([0.0, *times.tolist()])])
+
+    def _between(self, start: float, end: float, kinks: tuple[float, ...]) -> float:
+        """Return the integral between two times [s]."""
         from scipy.integrate import quad  # slow to import and rarely needed
 
-        ends = [0.0, *sorted((kink for kink in self.kinks if 0.0 < kink < time or time < kink < 0.0), key=abs), time]
-        size = max(abs(self.function(share * time)) for share in _SHARES)
+        assert callable(self.function)
+        length = end - start
+        inside = [kink for kink in kinks if min(start, end) < kink < max(start, end)]
+        ends = [start, *sorted(inside, reverse=length < 0.0), end]
+        size = max(abs(self.function(start + share * length)) for share in _SHARES)
         # full_output: no warning where the function itself has no more digits
-        options = {"epsabs": _ACCURATE * abs(time) * size, "epsrel": _ACCURATE, "limit": _PARTS, "full_output": True}
+        options = {"epsabs": _ACCURATE * abs(length) * size, "epsrel": _ACCURATE, "limit": _PARTS, "full_output": True}
         return float(sum(quad(self.function, *part, **options)[0] for part in pairwise(ends)))
 
 

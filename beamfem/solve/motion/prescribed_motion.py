@@ -4,14 +4,18 @@ from itertools import pairwise
 
 import numpy as np
 
+from beamfem.equations.model_coordinates import PrescribedCoordinate
 from beamfem.equations.system import System
 from beamfem.errors import InputError
 from beamfem.model.sampled_functions import Sampled
+from beamfem.model.time_functions import Integral
+from beamfem.validation import function_value
 
 _ORDER = 4  # of the filter
 _WIDTH = 0.02  # of a step: width of the differences that give velocities
 # weights of the first derivative inside, and of the first and third at an end, from values inside only
 _INSIDE = np.array([-2, -1, 1, 2]), np.array([1, -8, 8, -1]) / 12.0
+_MEAN = np.array([-1, 4, 4, -1]) / 6.0  # of rates there, in the middle
 _AT_END = np.arange(5), np.array([-25, 48, -36, 16, -3]) / 12.0, np.array([-5, 18, -24, 14, -3]) / 2.0
 
 
@@ -36,23 +40,32 @@ def prescribed_motion(system: System, ends: np.ndarray) -> np.ndarray:
         return values
     steps = np.diff(ends)
     # more accurate than positions far from the origin
-    moved = np.array([system.prescribed_changes(time) for time in ends])
+    moved = system.prescribed_course(ends)
     values[:, 0] = system.reference[system.prescribed_dofs] + moved - _unresolved(moved, steps)
     mean = np.diff(moved, axis=0) / steps[:, None]
     width = _WIDTH * np.minimum(steps[:-1], steps[1:])
-    for i, time in enumerate(ends[1:-1]):
-        around = np.array([system.prescribed_changes(time + k * width[i]) for k in _INSIDE[0]])
-        values[i + 1, 1] = _INSIDE[1] @ around / width[i]
+    for column, item in enumerate(system.prescribed):
+        if callable(item.value):
+            values[1:-1, 1, column] = _rates(item, ends[1:-1, None] + width[:, None] * _INSIDE[0], width)
     values[1:-1, 2] = np.diff(mean, axis=0) / (0.5 * (steps[:-1] + steps[1:]))[:, None]
     for end, inward, step in ((0, 1, steps[0]), (-1, -1, -steps[-1])):
         width = _WIDTH * step
-        near = np.array([system.prescribed_changes(ends[end] + k * width) for k in _AT_END[0]])
+        near = system.prescribed_course(ends[end] + width * _AT_END[0])
         velocity, third = _AT_END[1] @ near / width, _AT_END[2] @ near / width**3
         half = 2.0 * (mean[end] - velocity) / step
         beside = values[end + inward, 2] if len(steps) > 1 else half
         values[end, 1] = velocity
         values[end, 2] = half - _smaller(step * third / 3.0, 0.5 * (beside - half))
     return values
+
+
+def _rates(item: PrescribedCoordinate, around: np.ndarray, width: np.ndarray) -> np.ndarray:
+    """Return the velocities (m,) of a prescribed coordinate by differences of its values at times (m, 4) around."""
+    if isinstance(item.value, Integral) and callable(item.value.function):
+        function = item.value.function
+        rates = [[function_value(item.name, function, time) for time in times] for times in around.tolist()]
+        return np.array(rates).reshape(-1, len(_MEAN)) @ _MEAN
+    return item.course(around.ravel()).reshape(around.shape) @ _INSIDE[1] / width
 
 
 def _unresolved(moved: np.ndarray, steps: np.ndarray) -> np.ndarray:

@@ -75,7 +75,7 @@ class Coefficients:
     def moved(self, system: System, begin: float, end: float, step: float) -> np.ndarray:
         """Return prescribed changes and their rates (samples, 3, nh) in a step [s] between two times [s]."""
         at = begin + (end - begin) * self.points
-        return self.motion(np.array([system.prescribed_changes(time) for time in at]), step).swapaxes(0, 1)
+        return self.motion(system.prescribed_course(at), step).swapaxes(0, 1)
 
     def motion(self, changes: np.ndarray, step: float) -> np.ndarray:
         """Return u, u' and u'' (3, samples, m) at the stages, and at the end, of values (points, m) in a step [s].

@@ -12,7 +12,7 @@ from beamfem.errors import warn
 from beamfem.model.beam import Beam, beam_in_words
 from beamfem.model.load_base import Load
 from beamfem.model.model import Model
-from beamfem.model.time_functions import kinks_of
+from beamfem.model.time_functions import Integral, kinks_of
 from beamfem.validation import function_value
 
 # of a step, at which a function is evaluated; unequal, so that few oscillations are missed
@@ -75,7 +75,10 @@ class FunctionOfTime:
     def values(self, times: np.ndarray) -> np.ndarray:
         """Return its values at times (n,) [s], without the checks of `at` unless one fails."""
         try:
-            values = np.array([self.function(time) for time in times.tolist()], dtype=float)
+            if isinstance(self.function, Integral):
+                values = self.function.course(times)
+            else:
+                values = np.array([self.function(time) for time in times.tolist()], dtype=float)
         except Exception:  # `at` reports which value it was
             values = np.full(len(times), np.nan)
         if values.shape == times.shape and np.isfinite(values).all():
@@ -95,7 +98,7 @@ def functions_of_time(system: System) -> list[FunctionOfTime]:
             by_id.setdefault(id(amplitude), FunctionOfTime(f"amplitude of {_name(load, model)}", amplitude, True))
     for item in system.prescribed:
         if callable(item.value):
-            by_id.setdefault(id(item.value), FunctionOfTime(f"motion prescribed at {item.point}", item.value, False))
+            by_id.setdefault(id(item.value), FunctionOfTime(f"motion prescribed at {item.place}", item.value, False))
     return list(by_id.values())
 
 

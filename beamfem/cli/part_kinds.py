@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Sequence
 from inspect import isclass
-from typing import Any, NamedTuple, get_type_hints
+from typing import Any, NamedTuple
 
 import numpy as np
 from skfem import MeshLine1
@@ -56,13 +56,12 @@ def _by_kind(*made: Callable[..., Any]) -> dict[str, Callable[..., Any]]:
     return {_kind_of(make): make for make in made}
 
 
-_SHAPES = (make for make in public("section") if get_type_hints(make).get("return") is section.Section)
 CURVES: Kinds = {
     **_by_kind(*(make for make in public_dataclasses("curves") if make is not Parametric), elliptic_arc),
     "hermite": spline_through_hermite,
 }
 SECTIONS: Kinds = {
-    **{kind: _along(make) for kind, make in _by_kind(*_SHAPES).items()},
+    **{kind: _along(make) for kind, make in _by_kind(section.Circle, section.Rectangle, section.Tube).items()},
     "moments": _along(section.Section),
     "stiffness": _along(section.Section.from_stiffness),
     **_by_kind(section.Polygon, section.Profile, section.Layered, section.Fibres),

@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.section.moments import Section
 from beamfem.section.outline import StripOutline
 from beamfem.section.section_shapes import ShapedSection
 from beamfem.validation import finite, items, not_negative, optional, positive, shown
@@ -33,7 +32,7 @@ class _Side(NamedTuple):
 
 def Polygon(
     corners: Sequence[Corner], holes: Sequence[Sequence[Corner]] = (), shear_factor: float | None = None
-) -> Section:
+) -> ShapedSection:
     """Return the section inside a polygon, whose corners may be rounded, with its centroid on the beam's axis.
 
     It bends in its plane, held against lateral motion and twist, even if its axes are not principal axes. Raises

@@ -6,7 +6,6 @@ from dataclasses import replace
 from importlib.resources import files
 
 from beamfem.errors import InputError
-from beamfem.section.moments import Section
 from beamfem.section.polygon import Corner, of_loops
 from beamfem.section.section_shapes import ShapedSection, Tube
 from beamfem.validation import flag, positive, text
@@ -15,7 +14,7 @@ _SIZES = ("h", "b", "tw", "tf", "r1", "r2")  # of the table [mm]
 _HOLLOW = re.compile(r"(SHS|RHS|CHS) ([\d.]+)(?:X([\d.]+))??X([\d.]+)( COLD)?")
 
 
-def Profile(name: str, weak: bool = False, millimetre: float = 1e-3) -> Section:
+def Profile(name: str, weak: bool = False, millimetre: float = 1e-3) -> ShapedSection:
     """Return a rolled or hollow section by its name, with its nominal dimensions, root fillets and rounded edges.
 
     There are "IPE 80" to "IPE 600", "HEA 100" and "HEB 100" to 1000, "UPN 80" to "UPN 400" and angles such as

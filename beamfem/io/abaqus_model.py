@@ -290,12 +290,12 @@ class _Reading:
             way = self._planar(direction, value)
             for node in _nodes(frame, names, name) if way else ():
                 held.setdefault(node, {})[way] = turn * value if way == "rotation" else value
-        supports = [_support(frame.places[node][0], values) for node, values in held.items()]
+        supports = [_support(_point(frame, node), values) for node, values in held.items()]
         loads: list[Load] = []
         for (name, direction, follower), value in self.forces.items():
             way = self._planar(direction, value)
             for node in _nodes(frame, names, name) if way else ():
-                point = frame.places[node][0]
+                point = _point(frame, node)
                 if way == "rotation":
                     loads.append(PointMoment(point, turn * value))
                 else:
@@ -358,11 +358,22 @@ def _known(names: dict[str, str], kind: str, name: str) -> str:
 
 
 def _nodes(frame: Frame, names: dict[str, str], name: str) -> list[int]:
-    """Return the nodes of a set. Raises InputError for a node at which no element ends."""
+    """Return the nodes of a set. Raises InputError for a node that no element has."""
     nodes = frame.mesh.point_sets[_known(names, "nset", name)].tolist()
-    if any(node < 0 or not frame.places[node] for node in nodes):
-        raise InputError(f"nset or node {name} has a support or load where no element ends")
+    if any(node not in frame.mesh.cells or node < 0 for node in nodes):
+        raise InputError(f"nset or node {name} has a support or load where there is no element")
     return nodes
+
+
+def _point(frame: Frame, node: int) -> Point:
+    """Return the point at a node, which may be in the middle of an element."""
+    if places := frame.places[node]:
+        return places[0]
+    cell = int(np.argmax(frame.mesh.cells[:, 2] == node))
+    beam, ends = frame.beams[frame.owner[cell]], frame.mesh.cells[cell, :2]
+    first, last = (next(at.fraction for at in frame.places[end] if at.beam is beam) for end in ends)
+    before, behind = np.linalg.norm(frame.mesh.nodes[ends] - frame.mesh.nodes[node], axis=1)
+    return beam.at(float(first + (last - first) * before / (before + behind)))
 
 
 def _runs_along(frame: Frame, cell: int) -> bool:

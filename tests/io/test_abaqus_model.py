@@ -215,6 +215,17 @@ def test_a_beam_in_another_plane_as_freecad_writes_it(tmp_path, axes, across, ab
     assert turned == pytest.approx(sense * 1e6 * 8000.0 / bending, rel=1e-6)
 
 
+def test_forces_at_the_middle_of_quadratic_elements(tmp_path):
+    """Consistent forces of 0.01 N/m on one element from 0 to 0.5 m: P x^2 (3 L - x) / (6 EI), by Simpson's rule."""
+    halves = "1, 1, 2, 3\n2, 3, 4, 5"
+    lines = NODES.replace("type=B21", "type=B22").replace("1, 1, 2\n2, 2, 3\n3, 3, 4\n4, 4, 5", halves)
+    step = STEP.replace("Tip, 2, -7.", "2, 2, 0.02\n3, 2, 0.005\n1, 2, 0.005")
+    expected = sum(p * x**2 * (3.0 - x) for x, p in ((0.25, 0.02), (0.5, 0.005))) / (6.0 * RIGIDITY)
+    file = read(tmp_path, lines + SECTION + step)
+    assert [load.point.fraction for load in file.model.loads] == [0.25, 0.5, 0.0]
+    assert tip(file)[1] == pytest.approx(expected, rel=2e-4)
+
+
 def test_a_straight_beam_is_in_the_plane_of_its_loads(tmp_path):
     text = (NODES + SECTION + STEP).replace("Tip, 2, -7.", "Tip, 3, -7.").replace("type=B21", "type=B31")
     turned = read(tmp_path, text)  # a width of 2 mm, 10 mm high

@@ -1,4 +1,4 @@
-"""Gauss quadrature on an interval, the rules of scikit-fem."""
+"""Gauss quadrature on an interval, the rules of scikit-fem, and interpolation by polynomials."""
 
 from functools import lru_cache
 
@@ -21,3 +21,10 @@ def gauss_between(low: float, high: float, points: int) -> tuple[np.ndarray, np.
     """Return Gauss points (points,) between two ends and their weights (points,)."""
     at, weights = gauss(points)
     return low + (high - low) * at, (high - low) * weights
+
+
+def interpolation_weights(at: np.ndarray, x: float | np.ndarray) -> np.ndarray:
+    """Return the weights (..., k) of values at `at` (k,) that give their interpolation polynomial at x (...)."""
+    itself = np.eye(len(at), dtype=bool)
+    above = np.where(itself, 1.0, np.asarray(x)[..., None, None] - at)
+    return np.asarray(np.prod(above / np.where(itself, 1.0, at[:, None] - at), axis=-1))

@@ -18,6 +18,7 @@ from beamfem.model.imposed_strains import ImposedStrain
 from beamfem.model.load_base import MovingLoad, PointLoad, factor, forces_of
 from beamfem.model.model import Model
 from beamfem.physics.stations import DEAD, FOLLOWING, GROUNDED, STRETCHING
+from beamfem.quadrature import interpolation_weights
 
 _KEPT = 2  # load factors whose loads are cached
 
@@ -122,12 +123,6 @@ class Actions:
         order = distributed[np.argsort(self.stations.element[distributed], kind="stable")]
         return order, self.stations.element[order]
 
-    @cached_property
-    def _at_points(self) -> list[tuple[int, int]]:
-        """Number of each load at a point and its number in `model.acting`."""
-        rows = np.flatnonzero(self.rule == 0)
-        return list(zip(rows.tolist(), self.source[rows].tolist(), strict=True))
-
     def distributed_on(self, elements: np.ndarray) -> np.ndarray:
         """Return the numbers (k,) of the distributed loads and foundations on elements of the block, ascending."""
         order, owner = self._distributed
@@ -138,8 +133,8 @@ class Actions:
     def of(self, model: Model) -> "Actions":
         """Return the actions on a model whose loads differ from the own ones only in their size."""
         unit = self.unit.copy()
-        for row, number in self._at_points:
-            unit[row] = cast("PointLoad", model.acting[number]).value
+        for row in np.flatnonzero(self.rule == 0).tolist():
+            unit[row] = cast("PointLoad", model.acting[self.source[row]]).value
         return replace(self, unit=unit)
 
     def values(self, time: float, factors: np.ndarray) -> np.ndarray:
@@ -264,11 +259,7 @@ class _Moving:
             return np.empty(0, dtype=np.int64), np.empty(0)
         element, xi = self.mesh.locate(fraction)
         points = length_rule(self.mesh.beam.element.field)[0]
-        count = len(points)
-        own = np.eye(count, dtype=bool)
-        apart = np.where(own, 1.0, points[:, None] - points)
-        shares = np.prod(np.where(own, 1.0, xi - points) / apart, axis=1)
-        return element * count + np.arange(count), shares
+        return element * len(points) + np.arange(len(points)), interpolation_weights(points, xi)
 
 
 def build_actions(model: Model, block: int) -> Actions:

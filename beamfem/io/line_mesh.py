@@ -70,10 +70,8 @@ class LineMesh:
     __repr__ = brief
 
     def __post_init__(self) -> None:
-        nodes, cells = (
-            number_table("nodes of LineMesh", self.nodes, 2),
-            number_table("cells of LineMesh", self.cells, 3),
-        )
+        nodes = number_table("nodes of LineMesh", self.nodes, 2)
+        cells = number_table("cells of LineMesh", self.cells, 3)
         object.__setattr__(self, "nodes", nodes.astype(float))
         ends = _numbers_below("ends of cells of LineMesh", cells[:, :2], len(nodes), 0)
         middle = _numbers_below("middles of cells of LineMesh", cells[:, 2:], len(nodes), -1)

@@ -46,11 +46,8 @@ def arrays(solution: Solution, beam: Beam | None, errors: bool = False) -> tuple
     [m], x0, y0 [m] of the reference (station,). errors: whether there is error_share [-] of the elements along beams.
     Adjacent elements each have a station at their common end, where section forces may jump.
     """
-    over, names, about = (
-        _over(solution),
-        _ALONG + ("error_share",) * flag("errors", errors),
-        partial(named, solution.model),
-    )
+    over, about = _over(solution), partial(named, solution.model)
+    names = _ALONG + ("error_share",) * flag("errors", errors)
     groups, energy = groups_of(solution.model, beam, len(solution)), solution.energy()
     data = side_by_side(groups, lambda group: _along(solution, group.points, names))
     data = {name: each for name, each in data.items() if not name.startswith("stress_") or np.isfinite(each[1]).any()}

@@ -14,7 +14,7 @@ from beamfem.model.beam import Beam, names
 from beamfem.model.model import Model
 from beamfem.results import postprocess
 from beamfem.results.axis_fields import QUANTITIES
-from beamfem.results.axis_points import AxisPoints, rate_at
+from beamfem.results.axis_points import AxisPoints, axis_at
 from beamfem.results.batched_beams import LikeBeams, equal_beams
 from beamfem.results.beam_stress import (
     in_the_plane,
@@ -85,7 +85,7 @@ class Samples:
             "rotation": self._at_all_heights(rotation(self.points, solution, rows)),
         }
         if not solution.static:
-            rate = rate_at(self.mesh, p, solution.v[rows], self.points.element, self.points.xi)
+            rate = axis_at(self.mesh, p, self.points.element, self.points.xi, solution.v[rows])
             result["velocity"] = self._at_heights(rate.r, rate.d)
         strain = postprocess.green_strain(now, self.axis, self.y)
         for component in ("xx", "yy", "xy"):

@@ -59,11 +59,6 @@ def axis_at(mesh: BeamMesh, p: np.ndarray, element: np.ndarray, xi: np.ndarray, 
     return interpolate(mesh, vectors.reshape(len(vectors), len(element), -1, 2), element, xi)
 
 
-def rate_at(mesh: BeamMesh, p: np.ndarray, v: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:
-    """Return the rate of the axis at points (element, xi), likewise."""
-    return axis_at(mesh, p, element, xi, v)
-
-
 def has_angles(mesh: BeamMesh) -> bool:
     """Return whether the rotation of every node's section is a coordinate."""
     if mesh.beam.element.forces.turns_with == "r_x":
@@ -147,7 +142,7 @@ class AxisPoints:
 
     def velocities(self, p: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Return the velocity of the axis (steps, points, 2) [m/s]."""
-        return rate_at(self.mesh, p, v, self.element, self.xi).r
+        return axis_at(self.mesh, p, self.element, self.xi, v).r
 
     def accelerations(self, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
         """Return the acceleration of the axis (steps, points, 2) [m/s^2], B p'' + B' p' with B' by a difference."""
@@ -157,7 +152,7 @@ class AxisPoints:
 
     def angular_velocities(self, p: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Return the angular velocity of the sections (steps, points) [rad/s]."""
-        now, rate = self.now(p), rate_at(self.mesh, p, v, self.element, self.xi)
+        now, rate = self.now(p), axis_at(self.mesh, p, self.element, self.xi, v)
         turns = "r_s" if self.mesh.beam.element.forces.turns_with == "r_x" else "d"
         vector = getattr(now, turns)
         return cross(vector, getattr(rate, turns)) / dot(vector, vector)

@@ -80,10 +80,8 @@ def of_beam(solution: Solution, number: int, values: Values) -> np.ndarray:
         return values(solution, meshes[number])
     if number not in kept[values]:
         group = next(numbers for numbers in solution.model.numbered.joinable if number in numbers)
-        joined, ends = (
-            values(solution, join([meshes[i] for i in group])),
-            np.cumsum([meshes[i].elements for i in group]),
-        )
+        joined = values(solution, join([meshes[i] for i in group]))
+        ends = np.cumsum([meshes[i].elements for i in group])
         parts = np.split(joined, joined.shape[-1] // int(ends[-1]) * ends[:-1], axis=-1)
         kept[values].update(zip(group, parts, strict=True))
     return kept[values][number].copy()  # the user may change what it gets

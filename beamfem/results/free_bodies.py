@@ -22,7 +22,7 @@ from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import inertia_at, interpolate, length_points
 from beamfem.physics.compiled_connections import in_python
 from beamfem.physics.stations import STATIONS
-from beamfem.quadrature import gauss
+from beamfem.quadrature import gauss, interpolation_weights
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.postprocess import direction
 from beamfem.results.solution import Solution
@@ -200,9 +200,8 @@ def to_more_points(points: int, more: int) -> np.ndarray:
 
     It keeps the polynomial density through the fewer points.
     """
-    (xi, _), (fine, weights) = gauss(points), gauss(more)
-    old_values, new_values = (np.polynomial.legendre.legvander(2.0 * at - 1.0, points - 1) for at in (xi, fine))
-    return np.asarray(weights[:, None] * ((new_values * (2 * np.arange(points) + 1)) @ old_values.T))
+    (xi, old), (fine, weights) = gauss(points), gauss(more)
+    return np.asarray(weights[:, None] * interpolation_weights(xi, fine) / old)
 
 
 def nearest(xi: np.ndarray, at: np.ndarray) -> np.ndarray:

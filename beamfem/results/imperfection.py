@@ -18,7 +18,7 @@ from beamfem.model.check_replaceable import require_remade
 from beamfem.model.load_base import Load
 from beamfem.model.model import Model
 from beamfem.reprs import brief
-from beamfem.results.axis_points import AxisPoints, rate_at
+from beamfem.results.axis_points import AxisPoints, axis_at
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import finite, number_below, of_package, shown, squared
 
@@ -124,7 +124,7 @@ def _rates(mesh: BeamMesh, p: np.ndarray, shape: np.ndarray) -> tuple[np.ndarray
     A linear field has no unique slope at its nodes: the axis is taken to turn with the section there.
     """
     points = _points(mesh)
-    rates = rate_at(mesh, p[None], shape[None], points.element, points.xi)
+    rates = axis_at(mesh, p[None], points.element, points.xi, shape[None])
     slope = -across(rates.d[0]) if mesh.beam.element.field.degree == 1 else rates.r_s[0]
     return rates.r[0], slope
 

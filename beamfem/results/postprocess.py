@@ -16,7 +16,7 @@ from beamfem.mesh.reference import (
     reference_axis,
 )
 from beamfem.reprs import brief
-from beamfem.results.axis_points import AxisPoints, axis_at, has_angles, nodal_angles, nodal_vectors, rate_at
+from beamfem.results.axis_points import AxisPoints, axis_at, has_angles, nodal_angles, nodal_vectors
 from beamfem.section.law import THICKNESS, ConstitutiveLaw
 
 
@@ -204,7 +204,7 @@ def kinetic_energy(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Return the kinetic energy of a beam (steps,) [J]."""
     element, xi, inertia = inertia_points(mesh)
     mass, first, rotary = inertia.T
-    rate = rate_at(mesh, p, v, element, xi)
+    rate = axis_at(mesh, p, element, xi, v)
     return 0.5 * (dot(rate.r, rate.r) @ mass + dot(rate.d, rate.d) @ rotary) + dot(rate.r, rate.d) @ first
 
 
@@ -213,7 +213,7 @@ def momenta(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> np.ndarray:
     element, xi, inertia = inertia_points(mesh)
     mass, first, rotary = inertia.T
     now = axis_at(mesh, p, element, xi)
-    rate = rate_at(mesh, p, v, element, xi)
+    rate = axis_at(mesh, p, element, xi, v)
     linear = np.einsum("sqc,q->sc", rate.r, mass) + np.einsum("sqc,q->sc", rate.d, first)
     angular = cross(now.r, rate.r) @ mass + cross(now.d, rate.d) @ rotary
     angular = angular + (cross(now.r, rate.d) + cross(now.d, rate.r)) @ first

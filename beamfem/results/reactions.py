@@ -211,7 +211,7 @@ def _of_motor(solution: Solution, motor: Motor) -> np.ndarray:
     """Return the torque of a motor (steps, 3)."""
     last = motor.parts[-1]
     if isinstance(last, PointLoad):
-        return _of_load(solution, last)
+        return force_of_load(solution, last)
     if not isinstance(last, PointSupport):
         return connector_force(solution, last)[:, -1]
     return reaction_of(solution, [last]) * (0.0, 0.0, 1.0)
@@ -227,7 +227,7 @@ def _of_cut(solution: Solution, joint: Joint) -> np.ndarray:
             result -= reaction_of(solution, supports)
     for load in solution.model.point_loads:
         if _node(solution.model, load.point) in side:
-            result -= _of_load(solution, load)
+            result -= force_of_load(solution, load)
     for item in loading(solution)[0].connectors.items:
         for number, point in enumerate(item.item.points):
             if _node(solution.model, point) in side:
@@ -287,7 +287,7 @@ def _on_node(mesh: BeamMesh, elements: np.ndarray, node: int, rows: Rows, own: P
     return result
 
 
-def _of_load(solution: Solution, load: PointLoad) -> np.ndarray:
+def force_of_load(solution: Solution, load: PointLoad) -> np.ndarray:
     """Return the force and the moment (steps, 3) of a load at a point."""
     system, times = loading(solution)
     factors = np.array([factor(load, float(time), system.static) for time in times])

@@ -10,7 +10,7 @@ from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point, beam_in_words
 from beamfem.model.contribution import Contribution
 from beamfem.model.joint_base import Joint
-from beamfem.model.load_base import PointLoad, factor
+from beamfem.model.load_base import PointLoad
 from beamfem.model.model import Model
 from beamfem.parts.motor import Motor
 from beamfem.results.axis_fields import AT_POINT, QUANTITIES, UNITS, Quantity, value_of
@@ -18,9 +18,8 @@ from beamfem.results.axis_fields import quantity as quantity_along
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.envelope import Envelope
 from beamfem.results.path import Path, PathState
-from beamfem.results.reactions import tension
+from beamfem.results.reactions import force_of_load, tension
 from beamfem.results.solution import Solution
-from beamfem.results.solution_system import loading
 from beamfem.solve.linear.linear_model import QUANTITIES as LINEAR
 from beamfem.units import units_of
 from beamfem.validation import items, number_below, one_of, require_known, shown
@@ -230,7 +229,7 @@ def _taken(solution: Solution, which: str, given: Drawn) -> tuple[str, np.ndarra
         name, load = given
         require_known(f"{which} of a curve is no {shown(name)} of a load", name, _OF_LOAD)
         part = list(_OF_LOAD).index(name)
-        return f"{_OF_LOAD[name]} [{solution.model.unit(UNITS[name])}]", _applied(solution, load)[:, part]
+        return f"{_OF_LOAD[name]} [{solution.model.unit(UNITS[name])}]", force_of_load(solution, load)[:, part]
     if isinstance(given, tuple) and len(given) == 2 and isinstance(given[1], Joint | Contribution | Motor):
         name, part = given
         require_known(f"{which} of a curve is no {shown(name)} of a {type(part).__name__}", name, _OF_PART)
@@ -251,16 +250,6 @@ def _taken(solution: Solution, which: str, given: Drawn) -> tuple[str, np.ndarra
             f"numbers, one a row, got {shown(given)}"
         )
     return label, values
-
-
-def _applied(solution: Solution, load: PointLoad) -> np.ndarray:
-    """Return fx, fy [N] and moment [N m] of a load in each row (steps, 3)."""
-    system, at = loading(solution)
-    values = np.outer([factor(load, time, system.static) for time in at.tolist()], load.value)
-    if load.follower:
-        turn = np.exp(1j * solution.rotation(load.point)) * (values[:, 0] + 1j * values[:, 1])
-        values[:, 0], values[:, 1] = turn.real, turn.imag
-    return values
 
 
 def _of_section(solution: Solution, quantity: Quantity, point: Point) -> tuple[str, str, np.ndarray]:

@@ -15,8 +15,9 @@ from scipy.linalg import LinAlgError
 
 from beamfem.cached_properties import cached_property
 from beamfem.equations.equations import linearise_at_rest, residual_at_rest
+from beamfem.quadrature import interpolation_weights
 from beamfem.solve.continuation.continuation import Continuation, PathPoint
-from beamfem.solve.continuation.critical_points import DISTANCE, Segment, SegmentLostError, interpolation_weights
+from beamfem.solve.continuation.critical_points import DISTANCE, Segment, SegmentLostError
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.cached_properties import cached_property
+from beamfem.quadrature import interpolation_weights
 from beamfem.solve.continuation.continuation import Continuation, PathPoint
 from beamfem.solve.newton.newton import balance_of
 
@@ -264,13 +265,6 @@ def _cubic(x: float, a: Any, b: Any, a_slope: Any, b_slope: Any) -> Any:
     """Cubic on [0, 1] with values a, b and slopes at its ends."""
     y = 1.0 - x
     return y * y * (1.0 + 2.0 * x) * a + x * x * (3.0 - 2.0 * x) * b + x * y * (y * a_slope - x * b_slope)
-
-
-def interpolation_weights(at: np.ndarray, x: float | np.ndarray) -> np.ndarray:
-    """Return the weights (..., k) of values at `at` (k,) that give their interpolation polynomial at x (...)."""
-    itself = np.eye(len(at), dtype=bool)
-    above = np.where(itself, 1.0, np.asarray(x)[..., None, None] - at)
-    return np.asarray(np.prod(above / np.where(itself, 1.0, at[:, None] - at), axis=-1))
 
 
 def _zero(values: list[float], at: np.ndarray) -> float:

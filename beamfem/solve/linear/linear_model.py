@@ -17,7 +17,7 @@ from beamfem.model.beam import Point
 from beamfem.model.load_base import Load
 from beamfem.model.model import Model
 from beamfem.parts.floating_body import FloatingBody
-from beamfem.results.axis_points import axis_at, rate_at
+from beamfem.results.axis_points import axis_at
 from beamfem.results.solution import State
 from beamfem.solve.linear.quadratic_modes import slowest_rates
 from beamfem.solve.modes.mode_stiffness import upright
@@ -261,7 +261,7 @@ def output_row(model: Model, p: np.ndarray, quantity: Any) -> csr_array:
     dofs = dofs[dofs >= 0]
     rates = np.zeros((len(dofs), len(p)))
     rates[np.arange(len(dofs)), dofs] = 1.0
-    rate = rate_at(mesh, np.broadcast_to(p, rates.shape), rates, element, xi)
+    rate = axis_at(mesh, np.broadcast_to(p, rates.shape), element, xi, rates)
     if name == "rotation":
         now = axis_at(mesh, p[None], element, xi)
         by_slope = mesh.beam.element.forces.turns_with == "r_x"

@@ -15,6 +15,7 @@ from beamfem.errors import ConvergenceError, InputError, RoundOffWarning
 from beamfem.linalg.eigenpairs import digits_for
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
+from beamfem.quadrature import interpolation_weights
 from beamfem.results.locking import stiffness_locking
 from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import advice, may_lock, warn_of
@@ -24,7 +25,7 @@ from beamfem.solve.accuracy.carried_start import carried
 from beamfem.solve.accuracy.error_estimate import enriched, enriched_state, mode_shares
 from beamfem.solve.continuation.bifurcations import Crossing, bifurcations, condensed
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
-from beamfem.solve.continuation.critical_points import DISTANCE, Segment, SegmentLostError, interpolation_weights
+from beamfem.solve.continuation.critical_points import DISTANCE, Segment, SegmentLostError
 from beamfem.solve.continuation.steps import Refused, Step, longest_accepted, longest_step, take_step
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.newton.newton import Newton, Termination

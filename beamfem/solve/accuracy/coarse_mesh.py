@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 from math import comb
+from typing import Any
 from warnings import catch_warnings
 
 import numpy as np
@@ -13,7 +14,7 @@ from beamfem.element.element import Element
 from beamfem.element.fields import Lagrange
 from beamfem.equations.system import System, system_of
 from beamfem.errors import CoarseMeshWarning, ConvergenceError, InputError, LockingWarning
-from beamfem.kernels.bent_elements import WEIGHTS, coarseness
+from beamfem.kernels.bent_elements import ELEMENT, FACTORS, WEIGHTS, coarseness
 from beamfem.kernels.records import address_of
 from beamfem.mesh.beam_grid import distances
 from beamfem.mesh.beam_mesh import BeamMesh
@@ -39,6 +40,7 @@ _MARGIN = 1.05  # of an indicator whose error is small: larger ones for which it
 _CHIEF = 0.8  # of the error: what the elements that a warning names account for
 
 _SMALLEST = np.finfo(float).tiny  # bending stiffness [N m^2]
+_SAMPLES = 128  # of a section that varies along a beam without jumps
 _SAME = 1e-9  # of the length of a beam: tolerance between places
 
 # sum of the angles between the directors of an element of order k, with which a strip that is rolled up is off by 1 %
@@ -52,37 +54,35 @@ class _Table:
 
     def __init__(self, system: System) -> None:
         self.fine = 1.0
-        model, neighbours = system.model, system.table(pairs)
-        joined = [_joined(*each) for each in zip(model.meshes, required_nodes(model), strict=True)]
-        bending = [_bending(mesh) for mesh in model.meshes]
-        block = np.repeat([mesh.block for mesh in model.meshes], [mesh.elements for mesh in model.meshes])
-        length = np.concatenate([mesh.lengths for mesh in model.meshes])
-        start, end = (np.concatenate([each[side] for each in bending]) for side in (0, 1))
-        inner = np.array([len(element.field.nodes) - 1 for element in model.groups])[block]
-        orders = np.array([_order(element) for element in model.groups])
-        whole = np.column_stack([inner, np.concatenate(joined), orders[block]]).astype(np.int64)
-        alone = np.repeat([mesh.elements == 1 for mesh in model.meshes], [mesh.elements for mesh in model.meshes])
-        weights, columns = np.zeros((len(length), WEIGHTS)), np.empty((len(neighbours.length), 5))
-        mean, first = np.maximum(0.5 * (start + end), _SMALLEST), np.cumsum(inner) - inner
-        for number, element in enumerate(model.groups):
-            own = np.flatnonzero(block == number)
-            order, h, xi = orders[number], length[own], np.asarray(element.field.nodes)
-            weights[own, 0] = 1.0 / (_TURN[order - 1] if isinstance(element.field, Lagrange) else _CUBIC_TURN)
-            weights[own, 1] = h / length.sum()
-            weights[own, 2] = h / (mean[own] * 8.0 * (2 * order + 1) * _JUMP)
-            if len(xi) > 3 or order < len(xi) - 1 > 1:
-                weights[own, 3] = h * mean[own] / ((2 * len(xi) - 3) * _PART)
-            elif order == 1:
-                weights[own, 4] = np.where(alone[own], h / (12.0 * mean[own] * _JUMP), 0.0)
-            slopes = _differences(tuple(element.field.nodes))
-            scales = start[own] / h, end[own] / h, mean[own] / h, 1.0 / h
-            rows = first[own, None] + np.arange(len(xi) - 1)
-            for column, (scale, slope) in enumerate(zip(scales, slopes, strict=True)):
-                columns[rows, column] = scale[:, None] * slope
-        columns[:, 4] = np.concatenate([_turned(mesh) for mesh in model.meshes])
-        factors = np.hstack([np.ascontiguousarray(neighbours.at_rest[:, 1:]).view(float), columns])
+        meshes, neighbours = system.model.meshes, system.table(pairs)
+        elements, total = sum(mesh.elements for mesh in meshes), sum(float(mesh.vertices[-1]) for mesh in meshes)
+        whole, weights = np.empty((elements, ELEMENT), dtype=np.int64), np.zeros((elements, WEIGHTS))
+        factors = np.empty((len(neighbours.length), FACTORS))
+        factors[:, :4] = neighbours.at_rest[:, 1:].view(float)
+        element = pair = 0
+        for mesh, parts in zip(meshes, required_nodes(system.model), strict=True):
+            kind, count = mesh.beam.element, mesh.elements
+            inner, order = len(kind.field.nodes) - 1, _order(kind)
+            own, own_pairs = slice(element, element + count), slice(pair, pair + count * inner)
+            element, pair = own.stop, own_pairs.stop
+            whole[own, 0], whole[own, 1], whole[own, 2] = inner, _joined(mesh, parts), order
+            h, (start, end) = mesh.lengths, _bending(mesh)
+            mean = 0.5 * (start + end)
+            turn = _TURN[order - 1] if isinstance(kind.field, Lagrange) else _CUBIC_TURN
+            weights[own, 0], weights[own, 1] = 1.0 / turn, h / total
+            weights[own, 2] = h / (mean * (8.0 * (2 * order + 1) * _JUMP))
+            if inner > 2 or order < inner > 1:
+                weights[own, 3] = h * mean / ((2 * inner - 1) * _PART)
+            elif order == 1 and count == 1:
+                weights[own, 4] = h / (12.0 * mean * _JUMP)
+            scales = np.empty((count, 1, 4))
+            scales[:, 0, 0], scales[:, 0, 1], scales[:, 0, 2], scales[:, 0, 3] = start, end, mean, 1.0
+            scales /= h[:, None, None]
+            slopes = _differences(tuple(kind.field.nodes))
+            factors[own_pairs, 4:8] = (scales * slopes).reshape(-1, 4)
+            factors[own_pairs, 8] = _turned(mesh)
         self._arrays = whole, weights, np.ascontiguousarray(neighbours.numbers[:, 4:]), factors
-        self._table = np.array([len(whole), *map(address_of, self._arrays)], dtype=np.int64)
+        self._table = np.array([elements, *map(address_of, self._arrays)], dtype=np.int64)
         self.address = address_of(self._table)
 
 
@@ -94,38 +94,39 @@ def _order(element: Element) -> int:
 
 def _joined(mesh: BeamMesh, parts: list[tuple[float, str]]) -> np.ndarray:
     """Return whether each element (ne,) of a beam continues the one before, with no part that may let moments jump."""
-    result = np.ones(mesh.elements, dtype=bool)
-    result[0] = False
-    if len(mesh.node) > 1:
-        result[1:] = mesh.node[1:, 0] == mesh.node[:-1, -1]
-        parted = np.array([at for at, name in parts if name != "PointForce" and 0.0 < at < 1.0])
-        if len(parted):
-            length = mesh.vertices[-1]
-            result[1:] &= distances(mesh.vertices[1:-1], parted * length) > _SAME * length
+    result = np.zeros(mesh.elements, dtype=bool)
+    result[1:] = mesh.node[1:, 0] == mesh.node[:-1, -1]
+    parted = np.array([at for at, name in parts if name != "PointForce" and 0.0 < at < 1.0])
+    if len(parted):
+        length = mesh.vertices[-1]
+        result[1:] &= distances(mesh.vertices[1:-1], parted * length) > _SAME * length
     return result
 
 
-def _bending(mesh: BeamMesh) -> np.ndarray:
-    """Return the bending stiffness (2, ne) [N m^2] at the start and the end of the elements of a beam."""
-    beam = mesh.beam
+def _bending(mesh: BeamMesh) -> tuple[Any, Any]:
+    """Return the bending stiffness (ne,) [N m^2] at the start and the end of the elements of a beam, or of all."""
+    beam, every = mesh.beam, np.arange(mesh.elements)
     if beam.prismatic:
-        return np.full((2, mesh.elements), beam.section_at(0.0).rigidity(beam.material).bending)
-    every = np.arange(mesh.elements)
-    ends = [mesh.section_arc_length(every, np.full(mesh.elements, xi)).tolist() for xi in (0.0, 1.0)]
-    return np.array([[beam.section_at(s).rigidity(beam.material).bending for s in side] for side in ends])
+        constant = max(beam.section_at(0.0).rigidity(beam.material).bending, _SMALLEST)
+        return constant, constant
+    sides = [mesh.section_arc_length(every, np.full(mesh.elements, xi)) for xi in (0.0, 1.0)]
+    at = np.unique(sides)
+    at = at[:: 1 + len(at) // _SAMPLES] if not beam.jumps else at
+    known = [max(beam.section_at(s).rigidity(beam.material).bending, _SMALLEST) for s in at.tolist()]
+    return np.interp(sides[0], at, known), np.interp(sides[1], at, known)
 
 
-def _turned(mesh: BeamMesh) -> np.ndarray:
+def _turned(mesh: BeamMesh) -> Any:
     """Return the angles (m,) between the sections of neighbouring nodes in the reference."""
     if mesh.straight:
-        return np.zeros(mesh.node[:, 1:].size)
+        return 0.0
     tangent = mesh.tangent[:, 0] + 1j * mesh.tangent[:, 1]
     return np.angle(tangent[mesh.node[:, 1:]] / tangent[mesh.node[:, :-1]]).ravel()
 
 
 @lru_cache(maxsize=64)  # by the orders of elements, of which there are few
-def _differences(nodes: tuple[float, ...]) -> tuple[np.ndarray, ...]:
-    """Return what the differences (m,) of a polynomial between its nodes (m + 1,) contribute to its slope.
+def _differences(nodes: tuple[float, ...]) -> np.ndarray:
+    """Return what the differences of a polynomial between its nodes (m + 1,) contribute to its slope (m, 4).
 
     They are the slope at xi = 0 and at 1, its weight in the energy, and the part of the highest degree at xi = 1.
     """
@@ -134,7 +135,8 @@ def _differences(nodes: tuple[float, ...]) -> tuple[np.ndarray, ...]:
     coefficients = np.linalg.inv(xi[1:, None] ** np.arange(1, order + 1)) @ np.tril(np.ones((order, order)))
     # in the monomial of degree n, the Legendre polynomial of that degree has the factor 1 / binomial(2 n, n)
     highest = order * coefficients[-1] / comb(2 * (order - 1), order - 1)
-    return coefficients[0], np.arange(1, order + 1) @ coefficients, 1.0 / np.diff(xi), highest
+    slope = np.arange(1, order + 1) @ coefficients
+    return np.column_stack([coefficients[0], slope, 1.0 / np.diff(xi), highest])
 
 
 def warned_of_coarse_mesh(solution: Solution) -> Solution:

@@ -81,8 +81,8 @@ def read_abaqus_model(path: str | PathLike[str], elements: int = 1, element: Ele
     *BEAM SECTION (RECT, CIRC, PIPE, BOX, I) with the shear coefficients of Abaqus, *BEAM GENERAL SECTION and *SOLID
     SECTION; *ELASTIC, *DENSITY, *EXPANSION, and the first yield stress of *PLASTIC as strength; *BOUNDARY, *CLOAD, and
     *DLOAD of types PX, PY, PZ, P2 and GRAV. Loads and displacements are those at the end of the last step. Elements in
-    sequence become one beam. Deflections are always large, with or without NLGEOM. CalculiX files can be read too, but
-    the size of a CIRC section is taken as the radius, as in Abaqus, not as the diameter.
+    sequence become one beam. Deflections are always large, with or without NLGEOM. CalculiX files can be read too; the
+    size of a CIRC section is the radius, as in Abaqus, and the diameter, as in CalculiX, if there are B31R or B32R.
 
     Parameters
     ----------
@@ -120,7 +120,8 @@ def read_abaqus_model(path: str | PathLike[str], elements: int = 1, element: Ele
     source = readable(path)
     keywords = list(keywords_of(source))
     content, plane = _planar(content_of(source, keywords, _TRUSSES), keywords)
-    reading = _Reading(plane)
+    kinds = [keyword.parameters.get("TYPE", "").upper() for keyword in keywords if keyword.keyword == "ELEMENT"]
+    reading = _Reading(plane, calculix=any(kind in ("B31R", "B32R") for kind in kinds))
     for keyword in keywords:
         reading.take(keyword)
     try:
@@ -138,6 +139,7 @@ class _Reading:
     """What keywords have said so far; names in capitals."""
 
     plane: tuple[int, int, int]
+    calculix: bool
     materials: dict[str, dict[str, float]] = field(default_factory=dict)
     sections: dict[str, tuple[Any, str | Material | None]] = field(default_factory=dict)
     held: dict[tuple[str, int], float] = field(default_factory=dict)
@@ -256,6 +258,9 @@ class _Reading:
         sizes = _numbers(rows[0])[:count]
         if len(sizes) < count:
             raise InputError(f"SECTION={shape} needs {count} sizes, got {len(sizes)}")
+        if shape == "CIRC" and self.calculix:
+            self.note("SECTION=CIRC (its size is the diameter, as in CalculiX: B31R and B32R are its elements)")
+            sizes = [0.5 * sizes[0]]
         if len(rows) > 1 and len(rows[1]) >= 3:
             x, y, z = (abs(number(rows[1][axis])) for axis in self.plane)
             if z < max(x, y):  # the first axis of the section is in the plane

@@ -251,6 +251,14 @@ def test_sets_of_a_part_and_of_the_assembly_may_have_the_same_name(tmp_path):
     assert tip(file)[1] == pytest.approx(-last, rel=2e-4)
 
 
+def test_the_size_of_a_circle_is_a_diameter_with_elements_of_calculix(tmp_path):
+    text = (NODES + SECTION + STEP).replace("section=RECT", "section=CIRC").replace("0.01, 0.002", "0.02")
+    assert read(tmp_path, text).model.beams[0].section == bf.Circle(0.04, 0.89)
+    with pytest.warns(bf.NotReadWarning, match="diameter, as in CalculiX"):
+        (beam,) = read(tmp_path, text.replace("type=B21", "type=B31R")).model.beams
+    assert beam.section == bf.Circle(0.02, 0.89)
+
+
 def test_supports_in_directions_of_the_plane_only(tmp_path):
     held = SECTION.partition("*Boundary")[0] + "*Boundary\n1, PINNED\n5, 2, 4\n3, XSYMM\n2, 6\n"
     kinds = read(tmp_path, NODES + held).model.supports

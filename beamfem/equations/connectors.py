@@ -31,7 +31,7 @@ from beamfem.parts.at_points import AxisRows, OnElements, PartAlongBeam, PartAtP
 from beamfem.physics.compiled_connections import passes_of
 from beamfem.physics.connections import Connection
 from beamfem.physics.stations import GENERATED
-from beamfem.validation import called, finite, items
+from beamfem.validation import called, finite, items, of_package
 
 COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted
 
@@ -256,6 +256,20 @@ class Connector:
             )
         kinetic, potential = energies.tolist()
         return kinetic, potential
+
+    def energies(self, motion: Motion, times: np.ndarray, gravity: np.ndarray) -> np.ndarray:
+        """Return kinetic and potential energy (rows, 2) [J] in motions (rows, n), with gravity (rows, 2).
+
+        Parts of the package have energies that do not depend on time.
+        """
+        if isinstance(self.item, PartAtPoints) and of_package(type(self.item)):
+            q, rate, second = (np.moveaxis(self.by_point(values[:, self.dofs]), 0, -1) for values in motion)
+            own, memory = (motion[0][:, numbers].T for numbers in (self.own, self.memory))
+            both = self.item.energy(At(q, rate, second, own, memory, self.reference, 0.0, gravity.T))
+            return np.column_stack([np.broadcast_to(each, times.shape) for each in both])
+        rows = zip(*motion, times.tolist(), gravity, strict=True)
+        energies = [self.energy(self.at((p, v, a), time, acting)) for p, v, a, time, acting in rows]
+        return np.array(energies).reshape(-1, 2).real
 
     def own_motion(self, motion: Motion) -> Motion:
         """Return the motion (n,) of what the contribution acts on, complex, numbered as `alone`."""
@@ -540,12 +554,10 @@ class Connectors:
         gravity = self.gravity(time) if self.items else np.zeros(2)
         return [item.tangent(motion, time, gravity, weights) for item in self.items]
 
-    def energies(self, motion: Motion, time: float) -> tuple[float, float]:
-        """Return the total kinetic and potential energy [J]."""
-        gravity = self.gravity(time)
-        energies = [item.energy(item.at(motion, time, gravity)) for item in self.items]
-        kinetic, potential = np.array(energies).reshape(-1, 2).real.sum(axis=0).tolist()
-        return kinetic, potential
+    def energies(self, motion: Motion, times: np.ndarray) -> np.ndarray:
+        """Return the total kinetic and potential energy (rows, 2) [J] in motions p, p', p'' (rows, n) at times."""
+        gravity = np.array([self.gravity(time) for time in times.tolist() if self.items]).reshape(-1, 2)
+        return sum((item.energies(motion, times, gravity) for item in self.items), np.zeros((len(times), 2)))
 
     def momenta(self, motion: Motion, time: float) -> np.ndarray:
         """Return the linear momentum [kg m/s] and the angular momentum about the origin [kg m^2/s] (3,)."""

@@ -129,6 +129,16 @@ def _residual(
     return result
 
 
+def energies_of_beams(
+    system: System, p: np.ndarray, v: np.ndarray, imposing: np.ndarray
+) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Return numbers of each beam and places of loads in states p and p' (rows, n), see `Assembler.energies`."""
+    assembler = _acquired(system)
+    result = assembler.energies(p, v, len(system.model.beams), imposing)
+    _return_assembler(system, assembler)
+    return result
+
+
 def _acquired(system: System) -> Assembler:
     """Return an assembler whose workspace no other evaluation uses: a spare one, or a new one."""
     try:

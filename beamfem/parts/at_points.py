@@ -16,7 +16,8 @@ from beamfem.physics.compiled_connections import in_python
 from beamfem.physics.connections import Connection, Functions
 from beamfem.validation import convert, vector
 
-ANALYTIC = Functions(np.sqrt, np.cos, np.sin, lambda x: x if np.real(x) > 0.0 else 0.0 * x)  # of complex numbers too
+# of numbers and arrays, complex ones too
+ANALYTIC = Functions(np.sqrt, np.cos, np.sin, lambda x: np.where(np.real(x) > 0.0, x, 0.0 * x))
 
 
 class PartAtPoints:
@@ -100,8 +101,9 @@ class PartAtPoints:
         return (*self.data(at.reference), *at.memory)
 
     def _coordinates(self, rows: np.ndarray) -> np.ndarray:
-        """Return the coordinates of rows like `At.q`."""
-        return np.asarray(rows)[:, : self.connection.coordinates].ravel()[: self.connection.size]
+        """Return the coordinates (k, ...) of rows like `At.q`."""
+        own = np.asarray(rows)[:, : self.connection.coordinates]
+        return own.reshape(-1, *own.shape[2:])[: self.connection.size]
 
     def force(self, at: At) -> np.ndarray:
         """Return the resisting forces fx, fy, moment at each point, then the conditions (3 m + k,)."""
@@ -115,7 +117,7 @@ class PartAtPoints:
         return np.concatenate([forces.ravel(), result[size:]])
 
     def energy(self, at: At) -> tuple[float, float]:
-        """Return the kinetic and the potential energy [J]."""
+        """Return the kinetic and the potential energy [J], of many states if they are a last axis of `at`."""
         connection, data = self.connection, self._data(at)
         q, v = (connection.split(self._coordinates(x)) for x in (at.q, at.v))
         kinetic = connection.kinetic(q, v, data, ANALYTIC) if connection.kinetic else 0.0

@@ -109,12 +109,13 @@ class SpringDamper(BetweenPlaces):
         """Return no kinetic energy, and the potential energy [J], of a law by quadrature of its force."""
         if (law := self._law) is None:
             return BetweenPlaces.energy(self, at)
-        ends = [np.real(row[:2]) for row in at.q] + ([np.array(self.ground)] if self.ground else [])
-        elongation = float(np.hypot(*(ends[1] - ends[0]))) - self.data(at.reference)[2]
+        (ax, ay), (bx, by) = [np.real(row[:2]) for row in at.q] + ([self.ground] if self.ground else [])
+        elongation = np.hypot(bx - ax, by - ay) - self.data(at.reference)[2]
         places, weights = gauss(_POINTS)
         every = (np.arange(_PARTS)[:, None] + places) / _PARTS
-        forces = np.broadcast_to(law(elongation * every, _OF_ARRAYS), every.shape)
-        return 0.0, elongation * float((forces @ weights).mean())
+        strained = elongation[..., None, None] * every
+        forces = np.broadcast_to(law(strained, _OF_ARRAYS), strained.shape)
+        return 0.0, elongation * (forces @ weights).mean(axis=-1)
 
     def shapes(self) -> tuple[Coil, ...]:
         """Return the shape to draw."""

@@ -8,20 +8,18 @@ import numpy as np
 from beamfem.cached_properties import cached_property
 from beamfem.equations.applied_loads import even_loads
 from beamfem.equations.connectors import Connectors
-from beamfem.equations.equations import residual
+from beamfem.equations.equations import energies_of_beams, residual
 from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
-from beamfem.model.model import Model
 from beamfem.parts.at_points import ANALYTIC
 from beamfem.physics.stations import STATIONS
 from beamfem.reprs import brief
-from beamfem.results.axis_points import nodal_vectors
-from beamfem.results.postprocess import kinetic_energy, strain_energies
-from beamfem.results.reactions import energies_of, energies_of_part
+from beamfem.results.postprocess import strain_energies
+from beamfem.results.reactions import energies_of_part, momenta_of_connectors
 from beamfem.results.solution import Solution
-from beamfem.results.solution_system import imposed_measures, loading
+from beamfem.results.solution_system import imposed_measures, imposing, loading
 
 
 @dataclass(frozen=True)
@@ -77,9 +75,8 @@ class Energy:
         if not isinstance(part, Beam):
             kinetic, stored, power = energies_of_part(own, part).T
             return PartEnergy(kinetic, none, stored, power)
-        mesh = own.model.meshes[own.model.number_of(part)]
-        strain = strain_energies(mesh, own.p, imposed_measures(own, mesh))[:, 0]
-        return PartEnergy(kinetic_energy(mesh, own.p, own.v), strain, none, np.full(len(none), np.nan))
+        kinetic, strain = _of_beams(own)[0][:, own.model.number_of(part), :2].T
+        return PartEnergy(kinetic, strain, none, np.full(len(none), np.nan))
 
     @cached_property
     def _exchange(self) -> tuple[np.ndarray, np.ndarray]:
@@ -120,16 +117,42 @@ class Energy:
         return self.work - (self.total - self.total[:1]) - (self.dissipated - self.dissipated[:1])
 
 
-def potential(solution: Solution) -> np.ndarray:
-    """Return the potential (steps,) [J] of loads, springs and foundations, zero in the reference configuration.
+def energy(solution: Solution) -> Energy:
+    """Return the energies of a solution; the potential is zero in the reference."""
+    system, times = loading(solution)
+    beams, lost, moved = _of_beams(solution)
+    moving, stored = system.connectors.energies((solution.p, solution.v, solution.a), times).T
+    kinetic, strain = beams[:, :, :2].sum(axis=1).T
+    acting = stored + system.springs.potential(solution.p) + _of_frame(solution)
+    acting += _of_loads(solution, beams[:, :, 2:6], moved)
+    return Energy(kinetic + moving, strain, acting, _recorded(solution, lost), solution.model.unit("J"), solution)
 
-    Connectors are not included.
+
+def _of_beams(solution: Solution) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
+    """Return the numbers of each beam (steps, beams, 9), and what sections have dissipated (steps,) [J].
+
+    See `kernels.energy_passes`; sums of positions are those since the reference. And the positions of stations
+    (steps + 1, nl, 2) [m] of each block, the last ones in the reference.
     """
-    springs = loading(solution)[0].springs.potential(solution.p)
-    return np.asarray(springs + _of_loads(solution) + _of_frame(solution))
+    system, _ = loading(solution)
+    p, v = np.vstack([solution.p, system.reference]), np.vstack([solution.v, np.zeros_like(system.reference)])
+    factors = solution.computed(imposing) if system.loads.imposes.any() else np.empty((len(solution), 0))
+    result, places = energies_of_beams(system, p, v, np.vstack([factors, np.zeros((1, factors.shape[1]))]))
+    result[:-1, :, 2:6] -= result[-1, :, 2:6]
+    result, lost = result[:-1], np.zeros(len(solution))
+    for number, mesh in enumerate(solution.model.meshes):
+        if mesh.beam.law is not None:
+            result[:, number, 1], own = strain_energies(mesh, solution.p, imposed_measures(solution, mesh)).T
+            lost += own
+    return result, lost, places
 
 
-def recorded(solution: Solution, by_sections: np.ndarray) -> np.ndarray:
+def momenta(solution: Solution) -> np.ndarray:
+    """Return linear momentum [kg m/s] and angular momentum about the origin [kg m^2/s] (steps, 3)."""
+    return np.asarray(_of_beams(solution)[0][:, :, 6:].sum(axis=1) + momenta_of_connectors(solution))
+
+
+def _recorded(solution: Solution, by_sections: np.ndarray) -> np.ndarray:
     """Return what history variables record as dissipated (steps,) [J]; by_sections: by sections with history.
 
     In statics nan if a connector that is not conservative has no record.
@@ -144,8 +167,11 @@ def recorded(solution: Solution, by_sections: np.ndarray) -> np.ndarray:
     return by_sections + sum(solution.p[:, each].sum(axis=1) for each in own)
 
 
-def _of_loads(solution: Solution) -> np.ndarray:
-    """Return the potential (steps,) [J] of loads that keep their direction, and of foundations."""
+def _of_loads(solution: Solution, moments: np.ndarray, places: list[np.ndarray]) -> np.ndarray:
+    """Return the potential (steps,) [J] of loads that keep their direction, and of foundations.
+
+    moments (steps, beams, 4): of mass and length of the beams; places: of stations, see `_of_beams`.
+    """
     system, times = loading(solution)
     model, result = solution.model, np.zeros(len(solution))
     if not system.loads.conserves.any() and not model.line_supports:
@@ -153,40 +179,20 @@ def _of_loads(solution: Solution) -> np.ndarray:
     rows = times if system.static or system.loads.varying else times[:1]  # one row stands for all of them
     factors = np.array([np.where(system.loads.conserves, system.loads.factors(at), 0.0) for at in rows.tolist()])
     factors = factors.reshape(len(rows), -1)
-    body = even_loads(model, factors)
-    for number, (block, actions) in enumerate(zip(system.blocks, system.loads.actions, strict=True)):
+    result -= (even_loads(model, factors) * moments).sum(axis=(1, 2))
+    for r, actions in zip(places, system.loads.actions, strict=True):
         at = actions.stations
-        if not (body.any() or len(at.element)):
-            continue
-        e, start = _by_element(model, number, solution.p), system.table(_start)[number]
-        for table, columns in ((block.gravity, slice(2)), (block.length, slice(2, 4))):
-            if (acting := body[:, block.beam, columns]).any():
-                result -= np.einsum("sec,sec->s", np.einsum("en,senc->sec", table[block.kind], e - start), acting)
-        if len(at.element):
-            r, at_start = (np.einsum("qn,sqnc->sqc", at.position, each[:, at.element]) for each in (e, start))
-            own = np.append(factors, np.zeros((len(rows), 1)), axis=1)[:, actions.source]
-            result -= np.einsum("sqc,qc,sq->s", r - at_start, actions.unit[:, :2], own)
-            data = np.hstack([np.zeros((len(at.constants), 3)), at.constants])
-            for kind in np.unique(at.kind).tolist():
-                if energy := STATIONS[kind].potential:
-                    some = at.kind == kind
-                    result += energy([tuple(r[:, some].T)], data[some].T[:, :, None], (), ANALYTIC).sum(axis=0)
+        own = np.append(factors, np.zeros((len(rows), 1)), axis=1)[:, actions.source]
+        result -= np.einsum("sqc,qc,sq->s", r[:-1] - r[-1], actions.unit[:, :2], own)
+        data = np.hstack([np.zeros((len(at.constants), 3)), at.constants])
+        for kind in np.unique(at.kind).tolist():
+            if energy := STATIONS[kind].potential:
+                some = at.kind == kind
+                result += energy([tuple(r[:-1, some].T)], data[some].T[:, :, None], (), ANALYTIC).sum(axis=0)
     for load, own in zip(model.acting, factors.T, strict=True):
         if isinstance(load.place, Point) and (moment := load.acting(np.zeros(1))["moment"][0, 0]) and own.any():
             result -= own * moment * solution.rotation(load.place)
     return result
-
-
-def _start(system: System) -> list[np.ndarray]:
-    """Return the nodal vectors (1, ne, nv, 2) of each block in the reference."""
-    return [_by_element(system.model, number, system.reference[None]) for number in range(len(system.blocks))]
-
-
-def _by_element(model: Model, block: int, p: np.ndarray) -> np.ndarray:
-    """Return the nodal vectors (steps, ne, nv, 2) of the elements of a block in states p (steps, n)."""
-    meshes = [mesh for mesh in model.meshes if mesh.block == block]
-    own = [nodal_vectors(mesh, p)[:, mesh.node] for mesh in meshes]
-    return np.concatenate([e.reshape(*e.shape[:2], -1, 2) for e in own], axis=1)
 
 
 def _of_frame(solution: Solution) -> np.ndarray:
@@ -198,9 +204,8 @@ def _of_frame(solution: Solution) -> np.ndarray:
     unit = RigidVelocity(angular=1.0, about=frame.about)
     p = np.vstack([solution.p, system.reference])
     spin = np.array([rigid_rates(system, unit, row) for row in p])
-    moments = sum((kinetic_energy(mesh, p, spin) for mesh in solution.model.meshes), np.zeros(len(p)))
-    zeros = np.zeros(p.shape[1])
-    moments += [system.connectors.energies((row, rate, zeros), 0.0)[0] for row, rate in zip(p, spin, strict=True)]
+    moments = energies_of_beams(system, p, spin, np.empty((len(p), 0)))[0][:, :, 0].sum(axis=1)
+    moments += system.connectors.energies((p, spin, np.zeros_like(p)), np.zeros(len(p)))[:, 0]
     factors = times if system.static else np.ones(len(times))
     return -(frame.speed**2) * factors * (moments[:-1] - moments[-1])
 
@@ -236,18 +241,18 @@ def exchange(solution: Solution, forces: Forces) -> Exchange:
     alone.
     """
     driving = system_of(solution.model, static=False).connectors.driving
-    moved, at = np.diff(solution.p, axis=0), solution.at
+    moved, at, motion = np.diff(solution.p, axis=0), solution.at, (solution.p, solution.v, solution.a)
     means = [0.5 * (values[1:] + values[:-1]) for values in forces]
     work, given = (np.einsum("sn,sn->s", mean, moved) for mean in means[:2])
     if any(load.amplitude is not None for load in solution.model.loads):
 
         def energy(times: np.ndarray) -> np.ndarray:
             total = replace(solution, at=times).energy().total
-            return np.asarray(total - energies_of(driving, solution, times).sum(axis=1))
+            return np.asarray(total - driving.energies(motion, times).sum(axis=1))
 
         now, later, earlier = map(energy, (at, np.append(at[1:], at[-1]), np.append(at[0], at[:-1])))
         work = work + 0.5 * ((later - now)[:-1] + (now - earlier)[1:])
-    stored = np.diff(energies_of(driving, solution, at).sum(axis=1))
+    stored = np.diff(driving.energies(motion, at).sum(axis=1))
     return Exchange(work, given, stored, means[2] * np.diff(at))
 
 

@@ -222,14 +222,9 @@ def _some_rows(solution: "Solution") -> "Solution":
     return with_rows(solution, np.unique([*range(FIRST), *fastest, len(solution) - 1]))
 
 
-def balance(
-    solution: "Solution", accuracy: float = MotionLimits().tolerance, energy: "Energy | None" = None
-) -> Balance:
-    """Return the energy balance of the rows of a motion.
-
-    accuracy: of coordinates, relative to the model; energy: that of the rows, if it is known.
-    """
-    system, energy = system_of(solution.model, static=False), energy or solution.energy()
+def balance(solution: "Solution", accuracy: float = MotionLimits().tolerance) -> Balance:
+    """Return the energy balance of the rows of a motion; accuracy: of coordinates, relative to the model."""
+    system, energy = system_of(solution.model, static=False), solution.energy()
     known, driving = _resolved(solution, system), np.fmin(energy.recorded, 0.0)
     forces = forces_without_potential(solution)
     work, given, stored, lost = exchange(solution, forces)

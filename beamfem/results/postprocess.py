@@ -1,4 +1,4 @@
-"""Results derived from states: fields, section forces, energies, momenta; vectorised over steps."""
+"""Results derived from states: fields, section forces, energies; vectorised over steps."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -11,7 +11,6 @@ from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import (
     energy_points,
     energy_stiffness_at,
-    inertia_points,
     reference_angle,
     reference_axis,
 )
@@ -198,26 +197,6 @@ def _energies_of_law(
     history = p[:, mesh.history].reshape(rows * len(weights), mesh.history.shape[-1])
     energies = law.energy(acting.reshape(-1, 3), history)
     return np.einsum("sqi,q->si", energies.reshape(rows, len(weights), 2), weights)
-
-
-def kinetic_energy(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Return the kinetic energy of a beam (steps,) [J]."""
-    element, xi, inertia = inertia_points(mesh)
-    mass, first, rotary = inertia.T
-    rate = axis_at(mesh, p, element, xi, v)
-    return 0.5 * (dot(rate.r, rate.r) @ mass + dot(rate.d, rate.d) @ rotary) + dot(rate.r, rate.d) @ first
-
-
-def momenta(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Return the linear momentum [kg m/s] and that about the origin [kg m^2/s] of a beam (steps, 3)."""
-    element, xi, inertia = inertia_points(mesh)
-    mass, first, rotary = inertia.T
-    now = axis_at(mesh, p, element, xi)
-    rate = axis_at(mesh, p, element, xi, v)
-    linear = np.einsum("sqc,q->sc", rate.r, mass) + np.einsum("sqc,q->sc", rate.d, first)
-    angular = cross(now.r, rate.r) @ mass + cross(now.d, rate.d) @ rotary
-    angular = angular + (cross(now.r, rate.d) + cross(now.d, rate.r)) @ first
-    return np.column_stack([linear, angular])
 
 
 def part_of(fields: Fields, index: Any) -> Fields:

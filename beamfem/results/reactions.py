@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from beamfem.element.fields import cross
-from beamfem.equations.connectors import Connector, Connectors, Motion
+from beamfem.equations.connectors import Connector, Motion
 from beamfem.equations.equations import residual
 from beamfem.equations.frame_inertia import seen_from_rest
 from beamfem.equations.model_coordinates import COORDINATES, coordinate_of
@@ -85,12 +85,6 @@ def support_forces(solution: Solution) -> np.ndarray:
     return exactly(solution, forces)
 
 
-def energies_of_connectors(solution: Solution) -> np.ndarray:
-    """Return the kinetic and the potential energy (steps, 2) [J] of all connectors."""
-    system, times = loading(solution)
-    return energies_of(system.connectors, solution, times)
-
-
 def momenta_of_connectors(solution: Solution) -> np.ndarray:
     """Return their linear momentum [kg m/s] and moment of momentum about the origin [kg m^2/s] (steps, 3)."""
     system, times = loading(solution)
@@ -137,14 +131,6 @@ def _bound(solution: Solution, connector: Any) -> list[Connector]:
     raise InputError(f"{shown(connector)} is not a connector of this model; use one of model.connectors")
 
 
-def energies_of(connectors: Connectors, solution: Solution, times: np.ndarray) -> np.ndarray:
-    """Return the kinetic and potential energy (steps, 2) [J] of some connectors, with the loads at given times."""
-    if not connectors.items:
-        return np.zeros((len(solution), 2))
-    energies = [connectors.energies(state, at) for state, at in _states(solution, times)]
-    return np.array(energies).reshape(-1, 2)
-
-
 def energies_of_part(solution: Solution, part: Any) -> np.ndarray:
     """Return kinetic and potential energy [J], and power [W], of a connector, mass or motor (steps, 3)."""
     if isinstance(part, Motor) and any(part is load for load in solution.model.loads):
@@ -157,7 +143,8 @@ def energies_of_part(solution: Solution, part: Any) -> np.ndarray:
         gravity = system.connectors.gravity(at)
         for item in items:
             power[row] -= item.force_in(state, at, gravity)[: len(item.dofs)] @ state[1][item.dofs]
-    return np.column_stack([energies_of(replace(system.connectors, items=tuple(items)), solution, times), power])
+    own = replace(system.connectors, items=tuple(items))
+    return np.column_stack([own.energies((solution.p, solution.v, solution.a), times), power])
 
 
 def _states(solution: Solution, times: np.ndarray) -> list[tuple[Motion, float]]:

@@ -18,7 +18,7 @@ from beamfem.model.load_base import Load
 from beamfem.model.model import Model
 from beamfem.reprs import brief
 from beamfem.results import postprocess
-from beamfem.results.axis_points import AxisPoints
+from beamfem.results.axis_points import AxisPoints, has_angles, nodal_angles
 from beamfem.results.postprocess import Fields
 from beamfem.results.status import Statistics, Status, counted
 from beamfem.validation import number_below, shown, whole
@@ -354,7 +354,10 @@ class Solution:
         """Return the rotation of the section (steps,) [rad], counter-clockwise positive, full turns included."""
         from beamfem.results.full_turns import rotation
 
-        return rotation(AxisPoints.at(self.model.mesh_of(point), [point.fraction]), self)[:, 0]
+        mesh = self.model.mesh_of(point)
+        if (node := mesh.node_near(point.fraction)) is not None and has_angles(mesh):
+            return nodal_angles(mesh, self.p, np.array([node]))[:, 0]
+        return rotation(AxisPoints.at(mesh, [point.fraction]), self)[:, 0]
 
     def reaction(self, point: Point) -> np.ndarray:
         """Return fx, fy [N] and m [N m] of supports and springs on the beam at a point (steps, 3).
@@ -504,13 +507,6 @@ class Solution:
 
         return safety_factor(self, beam)
 
-    @cached_property
-    def _momenta(self) -> np.ndarray:
-        from beamfem.results.reactions import momenta_of_connectors
-
-        beams = sum(postprocess.momenta(mesh, self.p, self.v) for mesh in self.model.meshes)
-        return beams + momenta_of_connectors(self)
-
     def energy(self) -> "Energy":
         """Return kinetic, strain, potential, total and dissipated energy, and work (steps,) [J], see `Energy`.
 
@@ -524,17 +520,9 @@ class Solution:
         >>> energy.of(beam).strain.round(1)
         array([  0. , 152.6])
         """
-        from beamfem.results.energies import Energy, potential, recorded
-        from beamfem.results.reactions import energies_of_connectors
-        from beamfem.results.solution_system import imposed_measures
+        from beamfem.results.energies import energy
 
-        moving, stored = energies_of_connectors(self).T
-        kinetic = sum((postprocess.kinetic_energy(mesh, self.p, self.v) for mesh in self.model.meshes), moving)
-        imposed = ((mesh, imposed_measures(self, mesh)) for mesh in self.model.meshes)
-        parts = (postprocess.strain_energies(mesh, self.p, measures) for mesh, measures in imposed)
-        strain, lost = sum(parts, np.zeros((len(self), 2))).T
-        acting = stored + potential(self)
-        return Energy(kinetic, strain, acting, recorded(self, lost), self.model.unit("J"), self)
+        return energy(self)
 
     @cached_property
     def energy_drift(self) -> "EnergyDrift | None":
@@ -548,11 +536,15 @@ class Solution:
 
     def linear_momentum(self) -> np.ndarray:
         """Return the linear momentum in x and y (steps, 2) [kg m/s]."""
-        return self._momenta[:, :2].copy()
+        from beamfem.results.energies import momenta
+
+        return momenta(self)[:, :2]
 
     def angular_momentum(self) -> np.ndarray:
         """Return the angular momentum about the origin (steps,) [kg m^2/s]."""
-        return self._momenta[:, 2].copy()
+        from beamfem.results.energies import momenta
+
+        return momenta(self)[:, 2]
 
     def spline(self, beam: Beam, row: int = -1) -> BSpline:
         """Return the exact deformed axis of a beam of cubic elements in a row as a cubic B-spline.

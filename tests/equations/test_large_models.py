@@ -14,7 +14,7 @@ from beamfem.equations.equations import STATICS, linearise
 from beamfem.equations.system import System
 from beamfem.mesh.beam_grid import Grid, distances, make_grid, make_grids, nearest
 from beamfem.model.beam import reference_positions
-from beamfem.results import batched_beams, postprocess
+from beamfem.results import batched_beams, energies
 from beamfem.results import solution_system as last_digits
 from beamfem.solve.start.mechanisms import Conditions, mechanisms
 
@@ -316,7 +316,7 @@ def test_tables_and_pictures_of_many_beams_compute_what_belongs_to_the_model_onc
 
         monkeypatch.setattr(module, name, call)
 
-    counted(postprocess, "strain_energies")
+    counted(energies, "energies_of_beams")
     counted(last_digits, "digits_of")
     counts = []
     for number in (3, 9):
@@ -326,6 +326,6 @@ def test_tables_and_pictures_of_many_beams_compute_what_belongs_to_the_model_onc
         calls.clear()
         solution.to_pandas()
         solution.plot()
-        counts.append((calls["strain_energies"] / number, calls["digits_of"]))
+        counts.append((calls["energies_of_beams"], calls["digits_of"]))
     assert counts[0] == counts[1]
     assert counts[0][0] == 1.0

@@ -20,7 +20,6 @@ from beamfem.kernels.block import (
 from beamfem.kernels.conserving_step import Conserving, Strained
 from beamfem.physics.connections import BODY, MASS
 from beamfem.physics.discrete_gradients import DISCRETE_GRADIENTS
-from beamfem.physics.kinematics import MEASURES, evaluate
 from beamfem.physics.stations import DEAD, FOLLOWING, GROUNDED, STRETCHING
 
 _BODIES = (MASS, BODY)
@@ -113,25 +112,6 @@ class ConservingModel(NamedTuple):
             np.add.at(force, _numbers(block)[at.element[dead]], own)
             result += nodal.T @ force.ravel()
         return result
-
-    def energies(
-        self, system: System, p: np.ndarray, v: np.ndarray, forces: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return kinetic, strain and potential energies (rows,) [J] in states p and p' (rows, n), without `others`.
-
-        forces (m,): of loads, see `forces`.
-        """
-        z, w = self.vectors.of(np.vstack([system.reference, p]), np.vstack([np.zeros_like(v[:1]), v]))
-        potential = ((0.5 * (self.ground @ z.T).T - forces) * z).sum(axis=1)
-        strain = np.zeros(len(z))
-        for block, points in zip(system.blocks, self.points, strict=True):
-            reference = block.reference[block.kind]
-            q = (points @ z.T).T.reshape(len(z), *reference.shape[:2], 3, 2)
-            strains = evaluate(MEASURES[block.measures], *np.moveaxis(q, -2, 0)) - reference
-            stress = (strains[..., None, :] @ block.stiffness[block.kind])[..., 0, :]
-            strain += 0.5 * np.einsum("req,eq->r", (stress * strains).sum(axis=-1), block.weight[block.kind])
-        kinetic = 0.5 * ((self.mass @ w.T).T * w).sum(axis=1)
-        return kinetic[1:], strain[1:], potential[1:] - potential[0]
 
 
 def conserving_model(system: System) -> ConservingModel:

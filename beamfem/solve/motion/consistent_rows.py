@@ -15,7 +15,6 @@ from beamfem.parts.at_points import ANALYTIC
 from beamfem.physics.connections import MASS
 from beamfem.solve.motion.constraints import CENTRAL
 
-_FUNCTIONS = ANALYTIC._replace(positive=lambda x: np.where(np.real(x) > 0.0, x, 0.0 * x))
 _ENTRIES = 1_000_000  # of gradients at a time
 _OFF = 1e-12  # of the model: gap of a condition that is corrected
 _CORRECTIONS = 3  # of positions, at most
@@ -116,7 +115,7 @@ def _conditions(item: Connector, chosen: np.ndarray, q: np.ndarray, p: np.ndarra
     connection, data = item.compiled, (*item.data.tolist(), *p[:, item.memory].T)
     assert connection is not None
     assert connection.conditions is not None
-    values = connection.conditions(connection.split(list(q.T)), data, _FUNCTIONS)
+    values = connection.conditions(connection.split(list(q.T)), data, ANALYTIC)
     return np.array([np.broadcast_to(values[number], len(q)) for number in chosen.tolist()]).T
 
 
@@ -156,7 +155,7 @@ def _inertia(found: _Compliance, p: np.ndarray) -> np.ndarray:
         assert connection is not None
         assert connection.kinetic is not None
         q, units = connection.split(list(p[:, item.dofs].T)), np.eye(len(item.dofs))
-        energies = [[connection.kinetic(q, connection.split(i + j), data, _FUNCTIONS) for j in units] for i in units]
+        energies = [[connection.kinetic(q, connection.split(i + j), data, ANALYTIC) for j in units] for i in units]
         for i, row in enumerate(places):
             for j, column in enumerate(places):
                 result[:, row, column] += energies[i][j] - 0.25 * (energies[i][i] + energies[j][j])

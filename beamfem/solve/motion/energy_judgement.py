@@ -12,7 +12,6 @@ from beamfem.results.energies import Energy
 from beamfem.results.energy_balance import Balance, balance, driven, masses
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics
-from beamfem.solve.motion.conserving_model import ConservingModel, conserving_model, not_conserved
 
 CHUNK = 8  # steps that are judged together
 _UNRESOLVED = 0.005  # (w h)^6 of vibrations times their share of the kinetic energy; below, energies are not evaluated
@@ -117,27 +116,12 @@ class EnergyJudge:
         for group in [chunks] if self.conservative else _adjacent(chunks):
             rows = sorted({row for first, last in group for row in range(first, last + 1)})
             some = self._solution(times[rows], states[rows])
-            found = balance(some, _ACCURACY, self._energy(some) if cut else None)
+            found = balance(some, _ACCURACY)
             place = {row: i for i, row in enumerate(rows)}
             for first, last in group:
                 if not self._passes(found, place[first], place[last], final):
                     return first
         return len(times) - 1
-
-    @cached_property
-    def _tables(self) -> tuple[ConservingModel, np.ndarray] | None:
-        """Tables for energies, and the forces of loads: worth their time where steps are cut; None if others act."""
-        if not self.conservative or not_conserved(self._system) is not None:
-            return None
-        tables = conserving_model(self._system)
-        return (tables, tables.forces(self._system, 0.0)) if tables.others is None else None
-
-    def _energy(self, solution: Solution) -> Energy | None:
-        """Return the energies of rows by tables, if there are any."""
-        if self._tables is None:
-            return None
-        tables, forces = self._tables
-        return Energy(*tables.energies(self._system, solution.p, solution.v, forces), np.zeros(len(solution)))
 
     def _passes(self, found: Balance, first: int, last: int, final: bool) -> bool:
         """Judge the chunk of steps between two rows of a balance, and take it into account if it is good."""

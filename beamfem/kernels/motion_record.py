@@ -21,15 +21,14 @@ class MotionLimits(Record):
     """Limits of the iteration of a time step.
 
     tolerance: of a correction, relative to the scale of a coordinate; iterations: the most that Newton's method may
-    take; most: the most with a kept tangent, after which Newton's method starts the step anew; many, slow: number of
-    them, or rate of convergence, above which the next step gets a new tangent.
+    take; most: the most with a kept tangent, after which Newton's method starts the step anew; tangent: how many
+    iterations a new tangent costs.
     """
 
     tolerance: float = 1e-9
     iterations: int = 25
     most: int = 8
-    many: int = 3
-    slow: float = 0.05
+    tangent: float = 3.0
 
 
 class MotionStatistics(Record):
@@ -39,7 +38,8 @@ class MotionStatistics(Record):
     ratio of a pivot to the row's original diagonal entry; rate: of convergence of the last step, negative if its
     tangent is of no use; tangents: how many were factorised; best_order: of the extrapolation, for the last step;
     known_differences: of p'', from which the next step extrapolates; change: what the last change of p'' changed in p;
-    noise: size of corrections that are round-off.
+    noise: size of corrections that are round-off; spent: iterations since the last tangent, with those that it cost,
+    in `lived` steps.
     """
 
     iterations: int = 0
@@ -52,6 +52,8 @@ class MotionStatistics(Record):
     known_differences: float = 0.0
     change: float = 0.0
     noise: float = 0.0
+    spent: float = 0.0
+    lived: int = 0
 
     def begin_anew(self) -> None:
         """Forget what says nothing about steps of another size, or after a jump of the acceleration."""

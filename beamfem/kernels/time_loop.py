@@ -82,6 +82,7 @@ def march(system: System, solver: MotionSolver) -> int:
                 pivots = call.factorise(system, solver)
                 statistics.pivot_ratio = min(statistics.pivot_ratio, pivots)
                 statistics.tangents += 1
+                statistics.spent, statistics.lived = limits.tangent, 0
             call.solve(system, solver)
             if full != 0:
                 _predict_resultants(system, solver)
@@ -124,8 +125,9 @@ def march(system: System, solver: MotionSolver) -> int:
                 call.predict(solver)
                 full, iteration = full + 1, 0
         statistics.most_iterations = max(statistics.most_iterations, iteration)
-        slow = iteration > limits.many or (iteration > 1 and rate[RATIO] > limits.slow)
-        statistics.rate = -1.0 if slow else rate[RATIO]
+        # a tangent has lived long enough when a step takes more than the mean of its steps
+        statistics.spent, statistics.lived = statistics.spent + iteration, statistics.lived + 1
+        statistics.rate = -1.0 if iteration * statistics.lived > statistics.spent else rate[RATIO]
         if done <= 0:
             for i in range(4 * n):
                 state[i] = before[i]

@@ -11,8 +11,7 @@ from beamfem.solve.motion.coupled_stages import CoupledStages, is_weak
 from beamfem.solve.motion.stored_states import Saving
 
 BAND = MotionLimits()
-SPARSE = MotionLimits(most=24, many=16, slow=0.5)  # a factorisation costs as much as ten iterations
-BORDERED = MotionLimits(most=12, many=6, slow=0.2)  # with the tangents of connectors, as much as four
+SPARSE, BORDERED = MotionLimits(most=24, tangent=10.0), MotionLimits(most=12, tangent=4.0)
 
 
 class StepsInCalls:

@@ -26,8 +26,6 @@ from beamfem.solve.motion.stored_states import Saving
 from beamfem.solve.motion.time_steps import PARTS, Stretch
 
 _CHUNK_SECONDS = 0.25  # of a call of compiled code, which the next call is made to last at least
-_AT_START = 4 * CHUNK  # steps of the first call, which energy refuses most often, with all that follow it
-_GROWTH = 8  # of such calls
 _MOST = 8  # cuts of a step, to 1 / 65536
 _REFUSED = "changes the energy by more than work and damping explain"
 
@@ -114,7 +112,7 @@ class StepCutter:
         jump at the beginning; goes_on: whether the steps before were equal, so that both accelerations remain.
         """
         done, steps = 0, len(part.times) - 1
-        size = steps if level else self.size if goes_on or self.judge is None else min(self.size, _AT_START)
+        size = self.size if level == 0 else steps
         while done < steps:
             continued = goes_on and done == 0
             own: np.ndarray | None = state[[2, 3 if continued else 2]]
@@ -167,7 +165,7 @@ class StepCutter:
         if window is not None:
             return min(CHUNK, self.largest)
         if size < self.size:
-            return min(_GROWTH * size, self.size)  # after a start or a cut
+            return min(4 * size, self.size)  # after a cut
         return min(4 * size, self.largest) if spent < _CHUNK_SECONDS and count == size else size
 
     def _advance(

@@ -9,7 +9,7 @@ from beamfem.equations.system import System
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.progress import progress
 from beamfem.solve.motion.cut_steps import Rows, StepCutter, keep_momentum
-from beamfem.solve.motion.energy_judgement import BROKEN, EnergyJudge
+from beamfem.solve.motion.energy_judgement import BROKEN, CHUNK, EnergyJudge
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.generalized_alpha import GeneralizedAlpha, Scheme, is_scheme
 from beamfem.solve.motion.saved_rows import SavedRows
@@ -19,6 +19,7 @@ from beamfem.solve.motion.time_steps import Stretch
 
 _FIRST_CHUNK = 200_000  # coordinates times steps
 _LARGEST_CHUNK = 3_200_000
+_AFTER_JUMP = 4 * CHUNK  # steps of the first call if loads act at points: energy often refuses their sudden start
 
 
 @dataclass
@@ -148,6 +149,8 @@ def cutter_of(
     judge, largest = None, 1
     if is_scheme(integrator) or has_stages(integrator):
         size, largest = max(first_chunk // system.model.size, 1), max(_LARGEST_CHUNK // system.model.size, 1)
+        if any(actions.unit.any() for actions in system.loads.actions):
+            size = min(size, _AFTER_JUMP)
     judged: Scheme | None = integrator if is_scheme(integrator) else None
     if is_explicit(integrator):  # by its damping alone
         judged = GeneralizedAlpha(0.0 if integrator.order > 2 else 1.0)

@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.equations.applied_loads import LoadsAt
 from beamfem.equations.callbacks import Deferred
 from beamfem.equations.element_group import ElementGroup
-from beamfem.kernels import element_passes, energy_passes, model_passes, node_passes, record
+from beamfem.kernels import element_passes, model_passes, node_passes, record
 from beamfem.kernels.records import address_of, aligned
 from beamfem.kernels.simd import WIDTH
 
@@ -258,25 +258,6 @@ class Assembler:
             vectors.append(work.rows(0, 2 * work.record.vectors))
         return vectors
 
-    def energies(
-        self, p: np.ndarray, v: np.ndarray, beams: int, imposing: np.ndarray
-    ) -> tuple[np.ndarray, list[np.ndarray]]:
-        """Return numbers of each beam (rows, beams, 9) in states p and p' (rows, n), see `energy_passes`.
-
-        And the positions (rows, nl, 2) [m] of the stations of each group. imposing (rows, k): see `impose`. Strain
-        energies of section laws other than the linear one are zero.
-        """
-        result, rows = np.zeros((len(p), beams, energy_passes.OF_BEAM)), (_plain(p), _plain(v))
-        places = [np.zeros((len(p), work.record.stations, 2)) for work in self.works]
-        self.impose(imposing)
-        self.require()
-        self.record.fill(v=np.zeros(self.size), tangent=0, predicted=0)
-        for work, own in zip(self.works, places, strict=True):
-            strained = work.group.law is None
-            energy_passes.add_energies(work.record, self.record, len(p), beams, strained, *rows, result, own)
-        self.record.forget("p", "v", "a")
-        return result, places
-
     def smallest_jacobian(self, p: np.ndarray) -> float:
         """Return the smallest r0' x d of all quadrature points in a state (n,), at most 1; negative if inverted."""
         self.require()
@@ -286,10 +267,6 @@ class Assembler:
             node_passes.place_nodes(work.record, self.record, 0)
             smallest = min(smallest, model_passes.smallest_jacobian(work.record))
         return smallest
-
-
-def _plain(values: np.ndarray) -> np.ndarray:
-    return np.ascontiguousarray(values, dtype=float)
 
 
 def _imposed(group: ElementGroup, factors: np.ndarray) -> np.ndarray | None:

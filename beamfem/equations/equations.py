@@ -11,6 +11,7 @@ from beamfem.equations.connectors import Motion
 from beamfem.equations.differences import differentiated
 from beamfem.equations.frame_inertia import absolute, right_angle, right_angle_of_unknowns, speeds
 from beamfem.equations.system import Proven, System
+from beamfem.kernels.energy_passes import OF_BEAM, add_energies
 from beamfem.linalg.bordered import Border, BorderedTangent
 from beamfem.linalg.tangent import UNROTATED, BandTangent, SaddleTangent, SparseTangent, Tangent
 from beamfem.precision.mixed_tangent import MixedTangent, mixed
@@ -132,11 +133,23 @@ def _residual(
 def energies_of_beams(
     system: System, p: np.ndarray, v: np.ndarray, imposing: np.ndarray
 ) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Return numbers of each beam and places of loads in states p and p' (rows, n), see `Assembler.energies`."""
-    assembler = _acquired(system)
-    result = assembler.energies(p, v, len(system.model.beams), imposing)
+    """Return numbers of each beam (rows, beams, 9) in states p and p' (rows, n), see `energy_passes`.
+
+    And the positions (rows, nl, 2) [m] of the stations of each block. imposing (rows, k): see `Assembler.impose`.
+    Strain energies of section laws other than the linear one are zero.
+    """
+    assembler, beams, rows = _acquired(system), len(system.model.beams), (_plain(p), _plain(v))
+    result = np.zeros((len(p), beams, OF_BEAM))
+    places = [np.zeros((len(p), work.record.stations, 2)) for work in assembler.works]
+    assembler.impose(imposing)
+    assembler.require()
+    assembler.record.fill(v=np.zeros(len(system.reference)), tangent=0, predicted=0)
+    for work, own in zip(assembler.works, places, strict=True):
+        strained = work.group.law is None
+        add_energies(work.record, assembler.record, len(p), beams, strained, *rows, result, own)
+    assembler.record.forget("p", "v", "a")
     _return_assembler(system, assembler)
-    return result
+    return result, places
 
 
 def _acquired(system: System) -> Assembler:

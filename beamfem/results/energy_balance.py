@@ -81,8 +81,9 @@ def masses(system: System) -> np.ndarray:
     return result
 
 
-_DRIFT_ROWS = 100  # rows at which the exchanged energy is evaluated
-FIRST = 32  # rows at which it is evaluated besides: what a sudden start gives rise to may last for a few steps only
+FIRST = (
+    32  # rows in which energies are evaluated in any case: what a sudden start gives rise to may last for a few steps
+)
 
 
 @dataclass(frozen=True)
@@ -124,17 +125,9 @@ def energy_drift(solution: "Solution") -> EnergyDrift | None:
     system = system_of(solution.model, static=False)
     if system.damped or system.history.laws:
         return None
-    energy = _energy_of_rows(solution)
+    energy = _some_rows(solution).energy()
     exchanged = max(energy.kinetic.max(), np.ptp(energy.strain), np.ptp(energy.potential))
     return EnergyDrift(float(energy.total[-1] - energy.total[0]), float(exchanged), solution.model.unit("J"))
-
-
-def _energy_of_rows(solution: "Solution") -> "Energy":
-    """Return the energies of at most `_DRIFT_ROWS` rows, of the first `FIRST` ones, and of the fastest one."""
-    fastest = np.argmax(np.einsum("sn,sn->s", solution.v, solution.v))
-    spread, first = np.linspace(0, len(solution) - 1, _DRIFT_ROWS).astype(int), np.arange(min(FIRST, len(solution)))
-    rows = np.unique(np.concatenate([spread, first, [fastest]]))
-    return with_rows(solution, rows).energy()
 
 
 def with_rows(solution: "Solution", rows: Any) -> "Solution":

@@ -8,7 +8,7 @@ import pytest
 from beamfem import ContinuumMechanics, Element, Gravity, Line, Material, Model, Pin, Section
 from beamfem.element.coordinates import Gradients, Rotation, labels
 from beamfem.element.fields import Cubic, Field, Lagrange
-from beamfem.equations.equations import INERTIA, STATICS, linearise, residual
+from beamfem.equations.equations import INERTIA, STATICS, energies_of_beams, linearise, residual
 from beamfem.equations.system import System
 from beamfem.forms import (
     beam_basis,
@@ -247,11 +247,13 @@ def test_inertia_and_weight_of_the_kernel_alone(field: Field, moving: float):
 
 
 @each_field
-def test_strain_energy(field: Field):
+def test_energies(field: Field):
     system = make_system(Element(field, Gradients(), ContinuumMechanics()))
     oracle = Oracle(system)
-    e, _, _ = random_state(system, 0.2)
+    e, v, _ = random_state(system, 0.2)
     assert_equal_to_round_off(strain_energies(system.model.meshes[0], e[None])[0, 0], oracle.energy(e))
+    numbers, _ = energies_of_beams(system, e[None], v[None], np.empty((1, 0)))
+    assert_equal_to_round_off(numbers[0, 0, :2], np.array([0.5 * v @ oracle.mass() @ v, oracle.energy(e)]))
 
 
 @each_field

@@ -63,34 +63,16 @@ class Vectors(NamedTuple):
         result[self.stretched(self.stretches)] = both[:, None]
         return result
 
-    def of(self, p: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return z and its rates (rows, m) in states p and p' (rows, n)."""
-        u, s = np.exp(1j * p[:, self.angles]), p[:, self.stretches]
-        turning, along = 1j * v[:, self.angles] * u, u[:, self.angle_of]
-        rates = v[:, self.stretches] * along + s * turning[:, self.angle_of]
-
-        def joined(plain: np.ndarray, *vectors: np.ndarray) -> np.ndarray:
-            pairs = [np.ascontiguousarray(each).view(float) for each in vectors]
-            return np.hstack([np.where(self.linear, plain, 0.0), *pairs])
-
-        return joined(p, u, s * along), joined(v, turning, rates)
-
 
 class ConservingModel(NamedTuple):
     """A model in two states, or in any.
 
-    mass, ground (m, m): of z, and the stiffness of springs and foundations; nodal (2 vectors, m): nodal vectors of each
-    block from z; points (6 points, m): r', d and the third vector at its quadrature points; masses (m, 2) [kg]: of
-    parts at points, on which gravity acts; fixed (m,): forces that depend on neither time nor state; others: equations
-    of the forces that are not in z, None if there are none; record: of steps; matrix: view of the derivative of both
-    their equations by p and p'.
+    nodal (2 vectors, m): nodal vectors of each block from z; masses (m, 2) [kg]: of parts at points, on which gravity
+    acts; fixed (m,): forces that depend on neither time nor state; others: equations of the forces that are not in z,
+    None if there are none; record: of steps; matrix: view of the derivative of both their equations by p and p'.
     """
 
-    vectors: Vectors
-    mass: csr_array
-    ground: csr_array
     nodal: tuple[csr_array, ...]
-    points: tuple[csr_array, ...]
     masses: np.ndarray
     fixed: np.ndarray
     others: Equations | None
@@ -139,9 +121,9 @@ def conserving_model(system: System) -> ConservingModel:
     if plain:
         ground = ground + csr_array(coo_array((stiffness, (springs, springs)), shape=(size, size)))
         np.add.at(fixed, springs, stiffness * system.springs.data[:, 1])
-    mass, ground, others = csr_array(mass), csr_array(ground), _others(system, plain)
-    tables = _record(system, vectors, (mass, ground), gathers, others)
-    return ConservingModel(vectors, mass, ground, nodal, tuple(gathers), masses, fixed, others, *tables)
+    others = _others(system, plain)
+    tables = _record(system, vectors, (csr_array(mass), csr_array(ground)), gathers, others)
+    return ConservingModel(nodal, masses, fixed, others, *tables)
 
 
 def not_conserved(system: System) -> str | None:

@@ -17,7 +17,7 @@ from beamfem.parts.at_points import ANALYTIC
 from beamfem.physics.stations import STATIONS
 from beamfem.reprs import brief
 from beamfem.results.postprocess import strain_energies
-from beamfem.results.reactions import energies_of_part, momenta_of_connectors
+from beamfem.results.reactions import energies_of_part
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import imposed_measures, imposing, loading
 
@@ -149,7 +149,10 @@ def _of_beams(solution: Solution) -> tuple[np.ndarray, np.ndarray, list[np.ndarr
 
 def momenta(solution: Solution) -> np.ndarray:
     """Return linear momentum [kg m/s] and angular momentum about the origin [kg m^2/s] (steps, 3)."""
-    return np.asarray(_of_beams(solution)[0][:, :, 6:].sum(axis=1) + momenta_of_connectors(solution))
+    system, times = loading(solution)
+    rows = zip(solution.p, solution.v, solution.a, times.tolist(), strict=True)
+    parts = np.array([system.connectors.momenta((p, v, a), at) for p, v, a, at in rows]).reshape(-1, 3)
+    return np.asarray(_of_beams(solution)[0][:, :, 6:].sum(axis=1) + parts)
 
 
 def _recorded(solution: Solution, by_sections: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Forces that supports, connectors and joints exert on beams; energies and momenta of connectors."""
+"""Forces that supports, connectors and joints exert on beams; energies of connectors."""
 
 from collections import defaultdict
 from collections.abc import Sequence
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from beamfem.element.fields import cross
-from beamfem.equations.connectors import Connector, Motion
+from beamfem.equations.connectors import Connector
 from beamfem.equations.equations import residual
 from beamfem.equations.frame_inertia import seen_from_rest
 from beamfem.equations.model_coordinates import COORDINATES, coordinate_of
@@ -85,13 +85,6 @@ def support_forces(solution: Solution) -> np.ndarray:
     return exactly(solution, forces)
 
 
-def momenta_of_connectors(solution: Solution) -> np.ndarray:
-    """Return their linear momentum [kg m/s] and moment of momentum about the origin [kg m^2/s] (steps, 3)."""
-    system, times = loading(solution)
-    momenta = [system.connectors.momenta(state, at) for state, at in _states(solution, times)]
-    return np.array(momenta).reshape(-1, 3)
-
-
 def connector_force(solution: Solution, connector: Contribution) -> np.ndarray:
     """Return the forces of a connector on its points (steps, m, 3): fx, fy [N], moment [N m]. Raises InputError.
 
@@ -139,17 +132,12 @@ def energies_of_part(solution: Solution, part: Any) -> np.ndarray:
         return np.column_stack([np.zeros((len(solution), 2)), _of_motor(solution, part)[:, 2] * sum(speeds)])
     items, (system, times) = _bound(solution, part), loading(solution)
     power = np.zeros(len(solution))
-    for row, (state, at) in enumerate(_states(solution, times)):
+    for row, (p, v, a, at) in enumerate(zip(solution.p, solution.v, solution.a, times.tolist(), strict=True)):
         gravity = system.connectors.gravity(at)
         for item in items:
-            power[row] -= item.force_in(state, at, gravity)[: len(item.dofs)] @ state[1][item.dofs]
+            power[row] -= item.force_in((p, v, a), at, gravity)[: len(item.dofs)] @ v[item.dofs]
     own = replace(system.connectors, items=tuple(items))
     return np.column_stack([own.energies((solution.p, solution.v, solution.a), times), power])
-
-
-def _states(solution: Solution, times: np.ndarray) -> list[tuple[Motion, float]]:
-    rows = zip(solution.p, solution.v, solution.a, strict=True)
-    return list(zip(rows, np.asarray(times, dtype=float).tolist(), strict=True))
 
 
 Node = tuple[int, int]  # number of the beam, and of its node

@@ -75,7 +75,7 @@ class Element:
         require_field(self.field)
         has_slope = "r_x" in self.field.vectors
         if self.integration is None:
-            free_of_locking = has_stations(self.field) and not self.forces.fills_body
+            free_of_locking = has_stations(self.field) and lobatto.is_default(self.forces)
             object.__setattr__(self, "integration", "lobatto" if free_of_locking else "full")
         if self.integration == "lobatto" and not has_stations(self.field):
             raise InputError(

@@ -29,6 +29,11 @@ def knows(forces: Forces) -> bool:
     return forces.code in (STRUCTURAL, ELASTIC_LINE, GREEN_LAGRANGE)
 
 
+def is_default(forces: Forces) -> bool:
+    """Return whether these rules are the default of forces; the paper integrates those of a continuum fully."""
+    return forces.code in (STRUCTURAL, ELASTIC_LINE)
+
+
 def energy_points(forces: Forces) -> tuple[np.ndarray, np.ndarray]:
     """Return points (nq,) and weights (nq,) on [0, 1]: the Lobatto points, then two more for structural curvature.
 

@@ -185,13 +185,14 @@ def _of_loads(solution: Solution, moments: np.ndarray, places: list[np.ndarray])
     result -= (even_loads(model, factors) * moments).sum(axis=(1, 2))
     for r, actions in zip(places, system.loads.actions, strict=True):
         at = actions.stations
-        own = np.append(factors, np.zeros((len(rows), 1)), axis=1)[:, actions.source]
-        result -= np.einsum("sqc,qc,sq->s", r[:-1] - r[-1], actions.unit[:, :2], own)
-        data = np.hstack([np.zeros((len(at.constants), 3)), at.constants])
-        for kind in np.unique(at.kind).tolist():
+        if actions.unit[:, :2].any():
+            own = np.append(factors, np.zeros((len(rows), 1)), axis=1)[:, actions.source]
+            result -= np.einsum("sqc,qc,sq->s", r[:-1] - r[-1], actions.unit[:, :2], own)
+        for kind in set(at.kind.tolist()):
             if energy := STATIONS[kind].potential:
                 some = at.kind == kind
-                result += energy([tuple(r[:-1, some].T)], data[some].T[:, :, None], (), ANALYTIC).sum(axis=0)
+                data = np.hstack([np.zeros((some.sum(), 3)), at.constants[some]])
+                result += energy([tuple(r[:-1, some].T)], data.T[:, :, None], (), ANALYTIC).sum(axis=0)
     for load, own in zip(model.acting, factors.T, strict=True):
         if isinstance(load.place, Point) and (moment := load.acting(np.zeros(1))["moment"][0, 0]) and own.any():
             result -= own * moment * solution.rotation(load.place)

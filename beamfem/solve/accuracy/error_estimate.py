@@ -1,6 +1,6 @@
 """Discretisation error of a static result, estimated by the equilibrium on an enriched space; shares of elements."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from copy import copy
 from dataclasses import dataclass, fields, replace
 from itertools import chain
@@ -32,7 +32,6 @@ from beamfem.results.status import Statistics, Status
 from beamfem.solve.accuracy.quantity_change import Quantity, evaluated, require_quantity
 from beamfem.solve.newton.newton import (
     Newton,
-    NewtonResult,
     PivotedProblem,
     PrescribedStep,
     Termination,
@@ -160,7 +159,7 @@ def carried_stresses(state: State, target: Model, step: np.ndarray | None = None
     would spoil the first tangent.
     """
     source = state.model
-    acting = _stresses_after(state, np.zeros(len(state.p)) if step is None else step, static)
+    acting = _stresses_after(state, step, static)
     blocks = system_of(target, static).blocks
     result = tuple(np.zeros((len(block.kind), *block.stiffness.shape[1:3])) for block in blocks)
     for old, new in zip(source.meshes, target.meshes, strict=True):
@@ -257,7 +256,7 @@ def beam_shares(solution: Solution, beam: Beam, row: int) -> np.ndarray:
     """Return the share of each element of a beam in the error of a row, see `Solution.error_shares`."""
     of_beam = solution.model.number_of(beam)
     number, finer = enriched_row_kept(solution, row)
-    known = solution.computed(_SharesByRow)
+    known = solution.computed(_Enriched).shares
     if number not in known:
         known[number] = error_shares(solution[number], finer)
     return known[number][of_beam]
@@ -268,26 +267,17 @@ def enriched_row_kept(solution: Solution, row: int) -> tuple[int, Solution]:
     if not solution.static:
         raise InputError("errors are estimated for static solutions only; this one is a motion")
     number = number_below("row", row, len(solution), -len(solution)) % len(solution)
-    return number, solution.computed(_Enriched).row(number)
-
-
-class _SharesByRow(dict[int, list[np.ndarray]]):
-    """Shares of the elements of each beam in the errors of rows of a solution, each found once."""
-
-    def __init__(self, solution: Solution) -> None:
-        super().__init__()
+    known = solution.computed(_Enriched).rows
+    if number not in known:
+        known[number] = enriched_row(solution, number)
+    return number, known[number]
 
 
 class _Enriched:
-    """Rows of a solution on the enriched space, each found once."""
+    """Rows of a solution on the enriched space by their numbers, and shares in their errors, each found once."""
 
     def __init__(self, solution: Solution) -> None:
-        self._solution, self.rows = solution, dict[int, Solution]()
-
-    def row(self, number: int) -> Solution:
-        if number not in self.rows:
-            self.rows[number] = enriched_row(self._solution, number)
-        return self.rows[number]
+        self.rows, self.shares = dict[int, Solution](), dict[int, list[np.ndarray]]()
 
 
 def keep_enriched_row(solution: Solution, finer: Solution) -> None:
@@ -303,19 +293,17 @@ def enriched_row(solution: Solution, number: int, model: Model | None = None) ->
     """
     model = model or enriched(solution.model)
     system = system_of(model, static=True)
-    memory, iterations = system.history.numbers, 0
-    state, p, past = solution[number], system.reference, system.history.start
+    memory, past = system.history.numbers, system.history.start
+    state, p = solution[number], system.reference
     for row in range(number + 1) if len(memory) else (number,):
         state = solution[row]
         p = carried_coordinates(state, model)
         p[memory] = past
-        result = _equilibrium(system, p, state)
-        p = system.history.in_equilibrium(result.state, state.at)
-        past, iterations = p[memory], iterations + result.iterations
-    turned = None if state.turned is None else first_turns(model, p, state.turned)[None]
-    none = np.zeros((1, model.size))
-    statistics = Statistics(iterations, 1, 0, "an equilibrium on the enriched space")
-    return Solution(model, True, np.array([state.at]), p[None], none, none.copy(), statistics, turned=turned)
+        p = system.history.in_equilibrium(_equilibrium(system, p, state), state.at)
+        past = p[memory]
+    turned = None if state.turned is None else first_turns(model, p, state.turned)
+    none = np.zeros(model.size)
+    return State(p, none, none.copy(), state.at, model, turned=turned).as_row(static=True)
 
 
 NEAR = 0.05  # of the size of the model, or rad: how far a state may move to become one of another mesh
@@ -363,13 +351,11 @@ def enriched_state(state: State) -> State:
         model = enriched(state.model)
         p, rest = system_of(model, static=True).reference, np.zeros(model.size)
         return State(p, rest, rest.copy(), state.at, model)
-    rows = np.array([state.at]), state.p[None], state.v[None], state.a[None]
-    turned = None if state.turned is None else state.turned[None]
-    return enriched_row(Solution(state.model, True, *rows, Statistics(0, 0, 0, "one state"), turned=turned), 0)[0]
+    return enriched_row(state.as_row(static=True), 0)[0]
 
 
-def _equilibrium(system: System, p: np.ndarray, state: State) -> NewtonResult:
-    """Return the equilibrium next to a state carried over to p (n,). Raises ConvergenceError.
+def _equilibrium(system: System, p: np.ndarray, state: State) -> np.ndarray:
+    """Return the equilibrium (n,) next to a state carried over to p (n,). Raises ConvergenceError.
 
     If it is not near, as p strains finer elements where the old ones had no strain, stress resultants are carried over
     as well; the first iteration is then the linear estimate.
@@ -377,7 +363,7 @@ def _equilibrium(system: System, p: np.ndarray, state: State) -> NewtonResult:
     step, newton = PrescribedStep(system, p, state.at), Newton()
     result = solve_banded(system, p, state.at, newton, step)
     if result is not None and result.ended.good and largest_change(system, result.state - p) <= _CLOSE:
-        return result
+        return result.state
     problem = PivotedProblem(system, p, state.at, newton, step, stresses=carried_stresses(state, system.model))
     try:
         result = problem.find()
@@ -385,7 +371,7 @@ def _equilibrium(system: System, p: np.ndarray, state: State) -> NewtonResult:
         raise _without_estimate(str(reason)) from reason
     if not result.ended.good:
         raise _without_estimate(result.ended.value)
-    return result
+    return result.state
 
 
 def _without_estimate(reason: str) -> ConvergenceError:
@@ -397,12 +383,19 @@ def _without_estimate(reason: str) -> ConvergenceError:
 
 def largest_position_error(state: State, finer: Solution) -> float:
     """Return the largest change [m] of a position along beams, at the nodes of the finer model and between them."""
-    largest = 0.0
+    return max(float(np.abs(change).max()) for _, _, change in _position_changes(state, finer))
+
+
+def _position_changes(state: State, finer: Solution) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Yield for each beam old element, xi and change [m], as a complex number, of the nodes (elements, m) of the finer.
+
+    Elements have their own ends, so that nodes between two of them are there twice.
+    """
     for old, new in zip(state.model.meshes, finer.model.meshes, strict=True):
-        element, xi = (each.ravel() for each in places(old, new, new.beam.element.field.nodes))
-        change = finer.p[0][new.kinematics.dof[new.node.ravel(), :2]] - axis_at(old, state.p[None], element, xi).r[0]
-        largest = max(largest, float(np.linalg.norm(change, axis=1).max()))
-    return largest
+        element, xi = places(old, new, new.beam.element.field.nodes)
+        before = axis_at(old, state.p[None], element.ravel(), xi.ravel()).r[0]
+        change = _complex(finer.p[0][new.kinematics.dof[new.node.ravel(), :2]] - before)
+        yield element[:, 0], xi, change.reshape(xi.shape)
 
 
 def largest_displacement_error(state: State, finer: Solution) -> float:
@@ -425,7 +418,7 @@ def error_shares(state: State, finer: Solution) -> list[np.ndarray]:
     stiffness C.
     """
     static = finer.static
-    now = _stresses_after(finer[0], np.zeros(finer.model.size), static)
+    now = _stresses_after(finer[0], static=static)
     carried = carried_stresses(state, finer.model, static=static)
     changes = tuple(after - before for after, before in zip(now, carried, strict=True))
     return _shares(state.model, finer.model, _energies(finer.model, changes))
@@ -438,11 +431,7 @@ def position_shares(state: State, finer: Solution) -> list[np.ndarray]:
     the errors of all elements, in which they have `error_shares`. Their sum may exceed 1, as each is the larger of two.
     """
     within, at_ends = [], 0.0
-    for old, new in zip(state.model.meshes, finer.model.meshes, strict=True):
-        element, xi = places(old, new, new.beam.element.field.nodes)
-        before = axis_at(old, state.p[None], element.ravel(), xi.ravel()).r[0]
-        change = _complex(finer.p[0][new.kinematics.dof[new.node.ravel(), :2]] - before).reshape(xi.shape)
-        parent = element[:, 0]
+    for old, (parent, xi, change) in zip(state.model.meshes, _position_changes(state, finer), strict=True):
         every = np.arange(old.elements)
         start = change[np.searchsorted(parent, every), 0]
         end = change[np.searchsorted(parent, every, side="right") - 1, -1]
@@ -508,8 +497,7 @@ def mode_shares(
     """
     total = list[np.ndarray]()
     for (state, shape, finer, finer_shape), error, all_stiffness in zip(modes, errors, stiffness, strict=True):
-        rest, finer_rest = np.zeros_like(shape), np.zeros_like(finer_shape)
-        still, finer_still = carried_stresses(state, finer.model, rest), _stresses_after(finer, finer_rest)
+        still, finer_still = carried_stresses(state, finer.model), _stresses_after(finer)
         moved, finer_moved = carried_stresses(state, finer.model, shape), _stresses_after(finer, finer_shape)
         before, after = (
             tuple(a - b for a, b in zip(*pair, strict=True)) for pair in ((moved, still), (finer_moved, finer_still))
@@ -542,8 +530,10 @@ def _difference(model: Model, finer: Model, before: Stresses, after: Stresses) -
     return (sum(float(each.sum()) for each in off) / size if size > 0.0 else 0.0), size, _shares(model, finer, off)
 
 
-def _stresses_after(state: State, step: np.ndarray, static: bool = True) -> Stresses:
-    return predicted_stresses(system_of(state.model, static), state.p, step, state.at)
+def _stresses_after(state: State, step: np.ndarray | None = None, static: bool = True) -> Stresses:
+    return predicted_stresses(
+        system_of(state.model, static), state.p, np.zeros(len(state.p)) if step is None else step, state.at
+    )
 
 
 def _energies(model: Model, stresses: Stresses, others: Stresses | None = None) -> list[np.ndarray]:

@@ -17,7 +17,7 @@ from beamfem.progress import kept, progress
 from beamfem.results.full_turns import first_turns
 from beamfem.results.locking import locking
 from beamfem.results.path import Bifurcation, Path, PathState
-from beamfem.results.solution import Solution
+from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import advice, warned
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.accuracy.adapted_mesh import Shares, prepared, refined_until, require_unlocked
@@ -148,10 +148,8 @@ def path_attempt(path: Path, quantity: Quantity, trace: Callable[[Model], Path])
         if not corrected.ended.good:
             lost = True
             continue
-        p, at = corrected.y[:-1], float(corrected.y[-1])
-        rest = np.zeros((1, model.size))
-        summary = Statistics(corrected.iterations, 1, 0, "an equilibrium on the enriched space")
-        finer = Solution(model, True, np.array([at]), p[None], rest, rest.copy(), summary)
+        rest, at = np.zeros(model.size), float(corrected.y[-1])
+        finer = State(corrected.y[:-1], rest, rest.copy(), at, model).as_row(static=True)
         change = largest_position_error(state, finer) / system.extent
         moved.append(max(change, abs(at - state.at) / largest))
         if isinstance(quantity, Point):

@@ -4,6 +4,8 @@ A step of double size beside each pair shows the error of both (Hairer, Norsett 
 the accelerations of the pair, so that an iteration or two suffice.
 """
 
+import math
+
 from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.motion_record import MotionSolver
 from beamfem.kernels.pointers import at, small_code
@@ -17,10 +19,13 @@ _SAFETY = 0.8  # of the step that would have the error allowed
 _SAME = 1.25  # times the step, up to which it is kept, with its tangent
 _LARGEST, _SMALLEST = 4.0, 0.2  # changes of the step at once
 _RECOVERED = 1.25  # after a step was refused, the largest change grows by
-_HALVED = 0.4  # the same if its iterations do not converge
+_SHORTER = 0.7  # change of the step if its iterations do not converge
 _ROUND_OFF = 2e-14  # of the model: error of a step that may be round-off
-_ITERATED = 1e-3  # of the error allowed: that of iterations
-_LINEAR, _USELESS = 0.1, 0.4  # rates of convergence with which one iteration shows the difference, or a tangent ends
+_ITERATED = 1e-2  # of the error allowed: that of iterations
+_LINEAR = 0.1  # share of the difference, or of the one allowed, that is left to iterations
+_FAST = 0.4  # rate of convergence of the next steps: it grows with their square, as sections turn within them
+_USELESS = 0.5  # rate of convergence with which a tangent ends
+_MOST = 5  # iterations
 
 
 @routine()
@@ -35,7 +40,6 @@ def resize(stages: Stages, doubled: Doubled, h: float) -> None:
     s = stages.stages
     for i in range(s * s):
         stages.of_p[i], stages.of_v[i] = h * h * doubled.of_p[i], h * doubled.of_v[i]
-        stages.to_multipliers[i] = doubled.to_multipliers[i] / (h * h)
     for i in range(s):
         stages.of_begin[2 * i] = h * h * doubled.of_begin[2 * i]
         stages.of_begin[2 * i + 1] = h * doubled.of_begin[2 * i + 1]
@@ -97,25 +101,44 @@ def difference(solver: MotionSolver, doubled: Doubled) -> float:
 
 
 @routine()
-def compare(system: System, solver: MotionSolver, coarse: Stages) -> None:
-    """Iterate on the double step, once, or twice where its tangent is new or may be of little use."""
+def compare(system: System, solver: MotionSolver, coarse: Stages, allowed: float) -> None:
+    """Iterate on the double step until its corrections show its difference from the pair, or are far below the allowed.
+
+    A kept tangent that shows too large a difference is replaced. Where iterations on a step of this size diverge, the
+    first correction with a tangent of the pair shows the size of the difference.
+    """
     small_code()
-    own, size, fresh = coarse.routines, 0.0, 1 if coarse.factored == 0 else 0
-    own.predict(system, solver, coarse, 2, 0)
-    if fresh != 0:
-        coarse.factored = own.factorise(system, solver, coarse, 2) > 0.0
-        solver.statistics.tangents += 1
-    for iteration in range(2):
-        if iteration == 0 or fresh != 0 or coarse.rate > _LINEAR:
+    own, fresh, done = coarse.routines, 1 if coarse.factored == 0 else 0, 0
+    while done == 0:
+        own.predict(system, solver, coarse, 2, 0)
+        if fresh != 0:
+            coarse.factored = own.factorise(system, solver, coarse, 2) > 0.0
+            solver.statistics.tangents += 1
+        size, first, rate, iteration = 0.0, 0.0, 1.0 if fresh != 0 else coarse.rate, 0
+        while done == 0:
             coarse.iteration = iteration
             for i in range(coarse.stages):
                 own.residual(system, solver, coarse, 2, i)
             own.solve(solver, coarse)
             before, size = size, own.correct(solver, coarse)
             solver.statistics.iterations += 1
+            first = size if iteration == 0 else first
             if iteration > 0:
-                coarse.rate = size / before if before > 0.0 else 0.0
-                coarse.factored = coarse.rate <= _USELESS
+                rate = size / before if before > 0.0 else 0.0
+                coarse.rate, coarse.factored = rate, rate <= _USELESS
+            iteration += 1
+            if not rate <= _USELESS and iteration > 1:
+                break
+            small = size <= _LINEAR * allowed or rate * size <= _LINEAR * first
+            done = 1 if small or iteration == _MOST else 0
+        if done == 0 and fresh != 0:
+            for k in range(coarse.stages * coarse.height):
+                coarse.planes[k] = -coarse.planes[k]
+            own.correct(solver, coarse)
+            done = 1
+        elif fresh == 0 and not first <= allowed:
+            done = 0
+        fresh = 1
 
 
 @routine()
@@ -147,7 +170,7 @@ def take_pair(system: System, solver: MotionSolver, doubled: Doubled, h: float) 
         _gather(doubled, step)
         doubled.ends[doubled.filled + step + 1] = doubled.time + (step + 1) * h
     solver.routines, solver.kept_directions = doubled.coarse_routines, doubled.coarse_directions
-    doubled.routines.compare(system, solver, coarse)
+    doubled.routines.compare(system, solver, coarse, doubled.divisor * allowed)
     solver.routines, solver.kept_directions = doubled.fine_routines, doubled.fine_directions
     return doubled.routines.difference(solver, doubled)
 
@@ -187,7 +210,7 @@ def march_doubled(system: System, solver: MotionSolver, doubled: Doubled) -> Non
                 solver.rotated_by[k] = doubled.turned[k]
             doubled.refused, growth = doubled.refused + 1, 1.0
             fine.known = 0
-            doubled.step = max(best, _SMALLEST * h) if ratio > 1.0 else _HALVED * h
+            doubled.step = max(best, _SMALLEST * h) if ratio > 1.0 else _SHORTER * h
             if doubled.step < doubled.shortest:
                 doubled.failed = 1
                 return
@@ -196,5 +219,5 @@ def march_doubled(system: System, solver: MotionSolver, doubled: Doubled) -> Non
         doubled.time = doubled.end if last != 0 else doubled.time + 2.0 * h
         doubled.ends[doubled.filled] = doubled.time
         if best > _SAME * h or best < h:
-            doubled.step = min(best, growth * h)
+            doubled.step = min(best, min(growth, max(math.sqrt(_FAST / max(fine.rate, 1e-4)), 1.0)) * h)
         growth = min(_RECOVERED * growth, _LARGEST)

@@ -47,11 +47,11 @@ class Stages(Record):
     of_p: Annotated[Reals, "stages", "stages"]  # h^2 A^2
     of_v: Annotated[Reals, "stages", "stages"]  # h A
     of_begin: Annotated[Reals, "stages", 2]  # of p'' at the beginning, in p and p' of the stages
-    to_multipliers: Annotated[Reals, "stages", "stages"]  # inverse of h^2 A^2
     at_end: Annotated[Reals, 3, "stages"]  # h^2 b A, h b, and the polynomial of accelerations at the end
     ahead: Reals  # (s, s + 1): that through the stages and the end, at the stages of the next step, equal to this one
     into: Annotated[Reals, "stages", "stages"]  # planes of stages
-    back: Annotated[Reals, "stages", "stages"]  # stages of planes
+    back: Annotated[Reals, "stages", "stages"]  # stages of planes, times A^2
+    to_accelerations: Annotated[Reals, "stages", "stages"]  # inverse of A^2
     weights: Annotated[Reals, "stages", 3]  # of p, p' and p'' in the tangent of each plane
 
     # limits and estimates of iterations
@@ -74,7 +74,9 @@ class Stages(Record):
     right: Annotated[Reals, "stages", "height"]
     planes: Annotated[Reals, "stages", "height"]
     entries: int
+    turned: int  # 2 node_stride
     matrices: Annotated[Reals, "stages", "entries"]
+    rotations: Annotated[Reals, "stages", "turned"]  # of sections since the last tangent, see `MotionSolver`
 
 
 class DoubledRoutines(Record):
@@ -106,7 +108,6 @@ class Doubled(Record):
     of_p: Reals  # A^2
     of_v: Reals  # A
     of_begin: Reals  # (s, 2)
-    to_multipliers: Reals  # inverse of A^2
     at_end: Reals  # (3, s)
     weights: Reals  # (s, 3)
     shares: Reals  # (samples,): times within a step

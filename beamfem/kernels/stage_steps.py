@@ -5,6 +5,8 @@ pair (Hairer and Wanner 1996, IV.8). Tangents are kept, rotated with the section
 converge fast.
 """
 
+import math
+
 from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.motion_record import MotionSolver
 from beamfem.kernels.pointers import at, small_code
@@ -67,8 +69,8 @@ def predict(system: System, solver: MotionSolver, stages: Stages, step: int, att
             for i in range(s):
                 total_of_one = 0.0
                 for j in range(s):
-                    total_of_one += stages.to_multipliers[i * s + j] * changes[j]
-                own[i * stride] = total_of_one
+                    total_of_one += stages.to_accelerations[i * s + j] * changes[j]
+                own[i * stride] = total_of_one / (h * h)
     for roller in range(solver.rollers):  # round-off along a normal is not corrected, and grows if it is extrapolated
         x, y = solver.free_dofs[solver.roller_first[roller]], solver.free_dofs[solver.roller_first[roller] + 1]
         c, d = solver.roller_normal[2 * roller], solver.roller_normal[2 * roller + 1]
@@ -106,8 +108,10 @@ def residual(system: System, solver: MotionSolver, stages: Stages, step: int, i:
     """Fill the right-hand side of a stage with the residual of the unknown coordinates, negative."""
     load_row(system, solver, step * stages.samples + i)
     _take(system, stages, i)
-    system.tangent, solver.rotations_wanted = 0, i == stages.stages // 2 and stages.iteration == 0
+    system.tangent, solver.rotations_wanted = 0, stages.iteration == 0
+    usual, solver.rotations = solver.rotations, at(stages.rotations, i * 2 * solver.node_stride)
     solver.routines.assemble(system, solver)
+    solver.rotations = usual
     right, forces, free = at(stages.right, i * stages.height), system.residual, solver.free_dofs
     for k in range(solver.unknown):
         right[k] = -forces[free[k]]
@@ -155,10 +159,11 @@ def factor_planes(solver: MotionSolver, stages: Stages) -> float:
 
 @inlined
 def _rotate(solver, stages, sense):
-    """Rotate vectors of right-hand sides with their sections, see `motion_steps.rotate_pairs`."""
-    count, runs, stride, rotations = solver.pair_run_count, solver.pair_runs, solver.node_stride, solver.rotations
+    """Rotate vectors of each stage with their sections there, see `motion_steps.rotate_pairs`."""
+    count, runs, stride = solver.pair_run_count, solver.pair_runs, solver.node_stride
     for i in range(stages.stages):
-        solver.routines.rotate_pairs(count, sense, runs, stride, rotations, at(stages.right, i * stages.height))
+        rotations, right = at(stages.rotations, i * 2 * stride), at(stages.right, i * stages.height)
+        solver.routines.rotate_pairs(count, sense, runs, stride, rotations, right)
 
 
 @inlined
@@ -175,7 +180,10 @@ def _combine(stages, factors, source, target):
 
 @routine(fastmath=FAST)
 def solve(solver: MotionSolver, stages: Stages) -> None:
-    """Replace the right-hand sides by corrections of the accelerations of the stages."""
+    """Fill the planes with corrections of the accelerations of the stages.
+
+    The stiffness of a stage acts on its own p: so the corrections of p are rotated, not those of p''.
+    """
     call, rollers, first_of, normal = solver.routines, solver.rollers, solver.roller_first, solver.roller_normal
     for i in range(stages.stages):
         call.rotate_in(rollers, first_of, normal, at(stages.right, i * stages.height))
@@ -186,6 +194,7 @@ def solve(solver: MotionSolver, stages: Stages) -> None:
     _rotate(solver, stages, 1.0)
     for i in range(stages.stages):
         call.rotate_back(rollers, first_of, normal, at(stages.right, i * stages.height))
+    _combine(stages, stages.to_accelerations, stages.right, stages.planes)
 
 
 @routine()
@@ -205,9 +214,9 @@ def correct(solver: MotionSolver, stages: Stages) -> float:
     """Add corrections to the stages; return the largest change of p, relative to its scale."""
     s, stride, unknown, free = stages.stages, stages.stride, solver.unknown, solver.free_dofs
     for i in range(s):
-        right, change = at(stages.right, i * stages.height), at(stages.change, i * stride)
+        found, change = at(stages.planes, i * stages.height), at(stages.change, i * stride)
         for k in range(unknown):
-            change[free[k]] = right[k]
+            change[free[k]] = found[k]
     changes, p, v, a = as_rows(stages.change), as_rows(stages.p), as_rows(stages.v), as_rows(stages.a)
     scale, size = as_rows(solver.inverse_scale), zeros()
     for k in range(0, stride, WIDTH):
@@ -295,7 +304,7 @@ def iterate(system: System, solver: MotionSolver, stages: Stages, step: int, fre
     Iterations end where their estimated error is a share of that of the step, or where corrections are round-off.
     """
     small_code()
-    own, statistics, size, tolerance = stages.routines, solver.statistics, 0.0, _FINEST
+    own, statistics, size, tolerance, ratio = stages.routines, solver.statistics, 0.0, _FINEST, 1.0
     rate = 1.0 if fresh != 0 else max(stages.rate, _SMALLEST_RATE) ** 0.8
     for iteration in range(_ITERATIONS):
         stages.iteration = iteration
@@ -315,7 +324,8 @@ def iterate(system: System, solver: MotionSolver, stages: Stages, step: int, fre
             estimated = stages.error_factor * size**stages.error_power
             tolerance = min(max(_SHARE * estimated, _FINEST), _COARSEST)
         if iteration > 0:
-            rate = max(size / before, _SMALLEST_RATE)
+            last, ratio = ratio, max(size / before, _SMALLEST_RATE)
+            rate = ratio if iteration == 1 else math.sqrt(last * ratio)  # of two, as errors may turn
             if rate > _SLOW:
                 if size > _COARSEST or (fresh == 0 and size > statistics.noise):
                     return 0

@@ -49,7 +49,6 @@ class DoubledSteps(StepsInCalls):
             fine_directions=solver.kept_directions,
             coarse_directions=np.zeros_like(solver.kept_directions),
             varies=varies,
-            to_multipliers=np.linalg.inv(rule.of_p),
             weights=rule.weights(1.0),
             shares=rule.samples,
             gathered=np.ascontiguousarray([gathered[:, :s], gathered[:, s:]]),
@@ -77,7 +76,8 @@ class DoubledSteps(StepsInCalls):
             solved=0,
             ahead=np.zeros((s, s + 1)),
             at_end=self._rule.at_end.copy(),
-            **{name: np.zeros((s, s)) for name in ("of_p", "of_v", "to_multipliers")},
+            of_p=np.zeros((s, s)),
+            of_v=np.zeros((s, s)),
             of_begin=np.zeros((s, 2)),
             weights=np.zeros((s, 3)),
         )

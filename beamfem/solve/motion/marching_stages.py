@@ -159,13 +159,11 @@ class StageSteps(StepsInCalls):
 
 def _fill_step(own: Stages, rule: Coefficients, h: float) -> None:
     """Set the size of the steps [s], and what follows from it."""
-    of_p = h * h * rule.of_p
     own.fill(
         time_step=h,
-        of_p=of_p,
+        of_p=h * h * rule.of_p,
         of_v=h * rule.of_v,
         of_begin=rule.of_begin * (h * h, h),
-        to_multipliers=of_p if rule.explicit else np.linalg.inv(of_p),
         at_end=rule.at_end * [[h * h], [h], [1.0]],
         weights=rule.weights(h),
     )
@@ -181,6 +179,7 @@ def workspace_of(system: System, space: MotionWorkspace, rule: Coefficients) -> 
         stride=padded(solver.size),
         height=padded(solver.unknown),
         entries=0 if rule.explicit else system.unknowns.entries,
+        turned=2 * solver.node_stride,
         error_factor=rule.error[0],
         error_power=rule.error[1],
         kept_rate=_KEPT,
@@ -191,7 +190,8 @@ def workspace_of(system: System, space: MotionWorkspace, rule: Coefficients) -> 
         nodes=rule.nodes,
         ahead=rule.ahead,
         into=rule.into,
-        back=rule.back,
-        **aligned(own.shapes("begin", "p", "v", "a", "last", "change", "right", "planes", "matrices")),
+        back=rule.of_p @ rule.back,
+        to_accelerations=rule.of_p if rule.explicit else np.linalg.inv(rule.of_p),
+        **aligned(own.shapes("begin", "p", "v", "a", "last", "change", "right", "planes", "matrices", "rotations")),
     )
     return own

@@ -10,6 +10,7 @@ from history_laws import Creeping
 from own_bushing import Mount
 
 import beamfem as bf
+from beamfem.equations.system import system_of
 
 RUBBER = bf.Material(5e5, 0.0, 1000.0)
 DAMPED = bf.Material(5e5, 0.0, 1000.0, retardation_time=2e-3)
@@ -59,6 +60,18 @@ def linked(element):
     return pushed(one, other, connectors=[bf.Link(one.end, other.end)])
 
 
+def linked_twice(element):
+    one, other = beam(element), beam(element, (0, 0.5), (1, 0.6))
+    return pushed(one, other, connectors=[bf.Link(one.end, other.end), bf.Link(one.at(0.5), other.at(0.5))])
+
+
+def motored(element):
+    one, other = beam(element), beam(element, (1, 0), (2, 0.3))
+    hinge = bf.Hinge(one.end, other.start)
+    motor = bf.Motor(hinge, angle=lambda t: 0.5 * np.sin(20 * t) ** 8)
+    return one, bf.Model([one, other], [bf.Clamp(one.start)], [motor], joints=[hinge])
+
+
 def sprung(element):
     one, other = beam(element), beam(element, (0, 0.5), (1, 0.6))
     return pushed(one, other, connectors=[bf.SpringDamper(one.end, other.end, 300.0, 2.0)])
@@ -101,6 +114,25 @@ def test_order_with_moved_supports_of_positions_and_reactions(integrator, expect
     for result, at in ((bf.Solution.position, one.end), (bf.Solution.reaction, one.start)):
         found = [np.max(np.abs(result(motion, at) - result(exact, at))[:-1]) for motion in motions]
         assert order(found) == pytest.approx(expected, abs=0.35)
+
+
+@pytest.mark.parametrize(
+    ("make", "integrator", "expected"),
+    [
+        *((linked_twice, each, (order,) * 3) for each, order in (*GAUSS, *RADAU[1:], BATHE)),
+        *((motored, each, (order, order, 2)) for each, order in RADAU[1:]),
+    ],
+)
+def test_orders_of_positions_velocities_and_multipliers(make, integrator, expected):
+    model = make(bf.CRBF(2))[1]
+    system = system_of(model, static=False)
+    exact = bf.simulate(model, 0.12, 2.5e-4, integrator=bf.Radau(5), save_every=16)
+    motions = [bf.simulate(model, 0.12, step, integrator, save_every=round(STEPS[0] / step)) for step in STEPS]
+    for rows, which, one in zip(
+        "pvp", (system.positions,) * 2 + (system.connectors.multipliers,), expected, strict=True
+    ):
+        differences = (getattr(motion, rows) - getattr(exact, rows) for motion in motions)
+        assert order([np.abs(each[:, which]).max() for each in differences]) == pytest.approx(one, abs=0.35)
 
 
 class Failing(Mount):

@@ -20,6 +20,7 @@ from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.linalg.tangent import Stresses
 from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.model_meshes import required_nodes
 from beamfem.mesh.reference import reference_axis, reference_position
 from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
@@ -66,14 +67,15 @@ class EnrichedModel(Model):
 
 
 def enriched(model: Model) -> EnrichedModel:
-    """Return a model whose elements are of order k + 1 instead of k = 1 or 2, and halves of other ones.
+    """Return a model whose elements are of order k + 1 instead of k = 1 or 2, and halves or thirds of other ones.
 
     A mesh found by refinement may have the finer one of the mesh before. Those of models that `Model.with_loads` has
     made share their meshes and tables as these do.
     """
     known: EnrichedModel | None = model.tables.get("enriched")
     if known is None:
-        known = model.tables["enriched"] = remeshed(model, [_enriched(mesh) for mesh in model.meshes])
+        asked = zip(model.meshes, required_nodes(model), strict=True)
+        known = model.tables["enriched"] = remeshed(model, [_enriched(*each) for each in asked])
     return known if known.loads == model.loads else cast(EnrichedModel, known.with_loads(model.loads))
 
 
@@ -114,18 +116,36 @@ def meshed(model: Model, like: State | Solution | str) -> Model:
     )
 
 
-def _enriched(mesh: BeamMesh) -> Beam:
-    length = mesh.vertices[-1]
-    middles = mesh.arc_length(np.arange(mesh.elements), np.full(mesh.elements, 0.5))
-    return finer_beam(mesh.beam, mesh.vertices / length, middles / length)
+def _enriched(mesh: BeamMesh, required: Iterable[tuple[float, Any]]) -> Beam:
+    """Return the beam of a mesh on the enriched space; required: fractions at which other parts need nodes.
+
+    An element alone between such nodes may be symmetric, so that a node in its middle would not turn either.
+    """
+    ends, order = mesh.vertices / mesh.vertices[-1], mesh.beam.element.field.degree
+    fixed = np.isin(ends, [0.0, 1.0, *(fraction for fraction, _ in required)])
+    alone = fixed[1:] & fixed[:-1]
+    if _raised(mesh.beam):
+        return finer_beam(mesh.beam, ends, raised=2 if order == 1 and alone.any() else 1)
+    parts = np.where(alone & (len(mesh.beam.element.field.nodes) == 2), 3, 2)
+    inside = [(number, part / of) for number, of in enumerate(parts) for part in range(1, of)]
+    number, xi = np.array(inside).T
+    return finer_beam(mesh.beam, ends, mesh.arc_length(number.astype(int), xi) / mesh.vertices[-1])
 
 
-def finer_beam(beam: Beam, ends: np.ndarray, middles: np.ndarray | None = None) -> Beam:
-    """Return a beam on the enriched space; ends (ne + 1,): fractions at which elements end, middles (ne,): of each."""
+def _raised(beam: Beam) -> bool:
     field = beam.element.field
-    if type(field) is Lagrange and field.order <= _RAISED:
-        return with_elements(beam, ends, of_order(beam.element, field.order + 1))
-    between = 0.5 * (ends[1:] + ends[:-1]) if middles is None else middles
+    return type(field) is Lagrange and field.order <= _RAISED
+
+
+def finer_beam(beam: Beam, ends: np.ndarray, inside: np.ndarray | None = None, raised: int = 1) -> Beam:
+    """Return a beam on the enriched space.
+
+    ends (ne + 1,): fractions at which elements end, inside (m,): at which they are divided, by default in halves;
+    raised: by how much orders are raised that are low.
+    """
+    if _raised(beam):
+        return with_elements(beam, ends, of_order(beam.element, beam.element.field.degree + raised))
+    between = 0.5 * (ends[1:] + ends[:-1]) if inside is None else inside
     return with_elements(beam, np.sort(np.concatenate([ends, between])))
 
 

@@ -39,7 +39,7 @@ def change_of_velocity(system: System, p: np.ndarray, given: np.ndarray, v: np.n
     """Return a sentence on how conditions change a given velocity p' (n,), nothing if by round-off only."""
     change = v - given
     size, fastest = (np.max(np.abs(each) * np.where(system.positions, 1.0, system.extent)) for each in (change, given))
-    if size <= _MET * fastest:
+    if fastest == 0.0 or size <= _MET * fastest:
         return ""
     lost, before = (_momentum(system, p, each) @ each for each in (change, given))
     items, second = system.connectors.items, system.model.unit("s")

@@ -486,3 +486,23 @@ def test_an_initial_velocity_that_a_joint_prevents_is_lost_by_its_impulses(joint
     lost = bf.simulate(apart, 1e-6, 1e-6, start=stopped)
     energies = [motion.energy().kinetic[0] for motion in (before, after, lost)]
     assert energies[0] - energies[1] == pytest.approx(energies[2], rel=1e-10)
+
+
+@pytest.mark.parametrize("offset", [(0.0, 0.0), (0.2, -0.1)])
+def test_a_pendulum_with_a_mass_at_its_tip_swings_as_a_rigid_body(offset):
+    """A stiff rod falls from the horizontal to the other side; integrated independently."""
+    thick, stiff = bf.Rectangle(0.05, 0.05), bf.Material(2.1e13, 0.3, 7850.0)
+    rod = bf.Beam(bf.Line((0, 0), (1, 0)), 1, bf.CRBF(3), thick, stiff)
+    inertia = 0.5 if any(offset) else 0.0
+    part = bf.RigidBody(rod.end, 30.0, inertia, offset) if inertia else bf.PointMass(rod.end, 30.0)
+    model = bf.Model([rod], [bf.Pin(rod.start)], [bf.Gravity((0, -9.81))], masses=[part])
+    motion = bf.simulate(model, 1.0, 0.02, integrator=bf.Radau(3))
+    own, centre = 7850.0 * 0.05**2, np.array([1.0, 0.0]) + offset
+    about = own * (1.0 / 3.0 + 0.05**2 / 12.0) + inertia + 30.0 * centre @ centre
+    x, y = own * np.array([0.5, 0.0]) + 30.0 * centre
+
+    def rate(_, state):
+        return [state[1], -9.81 * (np.cos(state[0]) * x - np.sin(state[0]) * y) / about]
+
+    exact = solve_ivp(rate, (0.0, 1.0), [0.0, 0.0], rtol=1e-11, atol=1e-12, t_eval=motion.at).y[0]
+    assert motion.rotation(rod.start) == pytest.approx(exact, abs=1e-5)

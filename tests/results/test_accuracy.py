@@ -261,6 +261,56 @@ def falling(**mesh):
     return arm, bf.Model([arm], [bf.Pin(arm.start)], [bf.Gravity((0, -9.81))])
 
 
+@pytest.mark.parametrize(
+    ("element", "accuracy"),
+    [
+        (bf.ANCF(bf.Structural()), 1e-4),
+        (bf.ANCFCRBF(bf.Structural()), 1e-4),
+        (bf.ShearRigid(), 1e-2),
+        (bf.CRBF(1), 1e-2),
+    ],
+)
+def test_elements_between_nodes_that_do_not_turn_are_refined(element, accuracy):
+    """Neither one element nor its halves bend where both ends and, by symmetry, the middle keep their direction."""
+
+    def deflection(elements, element):
+        beam = bf.Beam(bf.Line((0, 0), (1, 0)), elements, element, SECTION, STEEL)
+        load = bf.DistributedLoad(beam, (0.0, -300.0 * EI))
+        model = bf.Model([beam], [bf.Clamp(beam.start), bf.Clamp(beam.end)], [load])
+        found = bf.solve_static(model, accuracy=accuracy) if elements == 1 else bf.solve_static(model)
+        return found.displacement(beam.at(0.5))[-1, 1]
+
+    assert deflection(1, element) == pytest.approx(deflection(32, bf.CRBF(8)), abs=accuracy)
+
+
+@pytest.mark.parametrize(("element", "elements"), [(bf.CRBF(5), "auto"), (bf.ANCF(bf.Structural()), 8)])
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-4])
+def test_all_rows_are_as_accurate_as_asked_for(element, elements, accuracy):
+    """A cantilever that is rolled up to a circle and back ends without a load; its middle row was off by 0.17 m."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), elements, element, SECTION, STEEL)
+    moment = bf.PointMoment(beam.end, 2.0 * np.pi * EI, amplitude=bf.Interpolated([(0, 0), (0.5, 1), (1, 0)]))
+    solution = bf.solve_static(
+        bf.Model([beam], [bf.Clamp(beam.start)], [moment]), at=[0.0, 0.5, 1.0], accuracy=accuracy
+    )
+    position = solution.position(beam.end)[solution.load_factor == 0.5]
+    np.testing.assert_allclose(position, [[0.0, 0.0]], atol=accuracy)
+
+
+def test_references_of_fine_meshes_are_in_equilibrium():
+    """Modes of a frame were refused on its last mesh, where round-off of three rows is above the others."""
+
+    def frequencies(elements, element, accuracy):
+        lines = ((0, 0), (0, 1)), ((0, 1), (1, 1)), ((1, 0), (1, 1))
+        left, top, right = (bf.Beam(bf.Line(*ends), elements, element, SECTION, STEEL) for ends in lines)
+        load = bf.DistributedLoad(top, (0.0, -8.0 * EI))
+        joints = [bf.Rigid(left.end, top.start), bf.Rigid(top.end, right.end)]
+        frame = bf.Model([left, top, right], [bf.Clamp(left.start), bf.Clamp(right.start)], [load], joints)
+        return bf.solve_modes(frame, 3, accuracy=accuracy).frequencies
+
+    found, exact = frequencies("auto", bf.ANCF(bf.Structural()), 1e-4), frequencies(4, bf.CRBF(8), None)
+    np.testing.assert_allclose(found, exact, rtol=1e-4)
+
+
 def test_motions_have_short_elements_where_they_bend():
     """On a foundation only the loaded end moves; meshes that were refined evenly had twelve elements."""
 

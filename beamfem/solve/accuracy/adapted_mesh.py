@@ -33,6 +33,7 @@ from beamfem.solve.accuracy.error_estimate import (
     of_order,
     position_shares,
     remeshed,
+    shares_of_rows,
     with_elements,
 )
 from beamfem.solve.accuracy.narrow_features import profiles_of, resolved
@@ -190,9 +191,9 @@ def require_unlocked(findings: Iterable[Finding]) -> None:
 class StaticAttempts:
     """Static solutions on one mesh after another, their estimated errors [-], and the shares of the elements in them.
 
-    Each but the first begins with the states of the one before, unless these do not tell its path. An error is that of
-    the last row, relative to the size of the model or, with a quantity, to its largest value. Raises InputError for
-    elements that lock.
+    Each but the first begins with the states of the one before, unless these do not tell its path. An error is the
+    largest of the rows, relative to the size of the model or, with a quantity, that of the last row, relative to its
+    largest value. Raises InputError for elements that lock.
     """
 
     def __init__(self, solve: Callable[[Model], Solution], quantity: Quantity, accuracy: float) -> None:
@@ -206,27 +207,32 @@ class StaticAttempts:
         carried = None if path is None else carried_path(path, finer, model)
         solution = self._solve(model) if carried is None else carried
         require_unlocked(solution.computed(locking))
-        if self._quantity is None and (coarse := self._too_coarse(solution)) is not None:
+        worst = len(solution) - 1 if self._quantity else _worst_row(solution)
+        if self._quantity is None and (coarse := self._too_coarse(solution, worst)) is not None:
             self._known = solution, None
             return coarse
         if carried is not None and finer is not None and model.tables.get("enriched") is finer.model:
             keep_enriched_row(solution, finer)
         try:
             last, finer = enriched_row_kept(solution, -1)
+            pairs = [(solution[last], finer)]
+            if worst != last:
+                pairs.append((solution[worst], enriched_row_kept(solution, worst)[1]))
         except ConvergenceError:  # too far from the finer mesh to say how far
             return solution, np.inf, None
-        state, extent = solution[last], system_of(model, static=True).extent
-        off = largest_position_error(state, finer) / extent
+        extent = system_of(model, static=True).extent
+        errors = np.array([largest_position_error(*pair) for pair in pairs]) / extent
+        off = float(errors.max())
         if off < NEAR:
             self._known = solution, finer
         if self._quantity is None:
-            return solution, off, lambda: position_shares(state, finer)
+            return solution, off, lambda: shares_of_rows(pairs, errors, position_shares)
         off = relative_change(solution[last:], finer, self._quantity, self._accuracy)
-        return solution, off, lambda: error_shares(state, finer)
+        return solution, off, lambda: error_shares(*pairs[0])
 
-    def _too_coarse(self, solution: Solution) -> tuple[Solution, float, Shares] | None:
+    def _too_coarse(self, solution: Solution, row: int) -> tuple[Solution, float, Shares] | None:
         """Return what the decay of coefficients tells of a mesh without an estimate, None if it may be fine enough."""
-        errors = decay_errors(solution[-1])
+        errors = decay_errors(solution[row])
         if errors is None:
             return None
         largest = max(float(each.max()) for each in errors)
@@ -234,6 +240,17 @@ class StaticAttempts:
         if largest <= self._accuracy:
             return None
         return solution, largest, [each / (elements * largest) for each in errors]
+
+
+def _worst_row(solution: Solution) -> int:
+    """Return the row that a mesh approximates worst: by its coefficients, or that with the largest strain energy."""
+    last = len(solution) - 1
+    if last <= 1:
+        return last
+    if decay_errors(solution[last]) is None:
+        return int(np.argmax(solution.energy().strain))
+    decay = [decay_errors(solution[row]) or [] for row in range(last + 1)]
+    return int(np.argmax([max(float(each.max()) for each in errors) for errors in decay]))
 
 
 def refined(

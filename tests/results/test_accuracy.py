@@ -296,6 +296,19 @@ def test_all_rows_are_as_accurate_as_asked_for(element, elements, accuracy):
     np.testing.assert_allclose(position, [[0.0, 0.0]], atol=accuracy)
 
 
+@pytest.mark.parametrize(("length", "stiffness", "force"), [(10.0, 1e9, 3e5), (100.0, 1e5, 3e3), (100.0, 1e7, 1e5)])
+def test_layers_much_thinner_than_elements_are_found(length, stiffness, force):
+    """Halved elements show but a quarter of the error there: deflections of 5e-4 of the length were off by 4e-4."""
+
+    def deflection(**mesh):
+        beam = bf.Beam(bf.Line((0, 0), (length, 0)), section=bf.Rectangle(0.01, 0.01), material=STEEL, **mesh)
+        load = bf.PointForce(beam.at(0.5), (0.0, -force))
+        solution = bf.solve_static(bf.Model([beam], [bf.Foundation(beam, (stiffness, stiffness))], [load]))
+        return solution.displacement(beam.at(0.5))[-1, 1] / length
+
+    assert deflection() == pytest.approx(deflection(elements=256, element=bf.CRBF(8)), abs=1e-4)
+
+
 def test_references_of_fine_meshes_are_in_equilibrium():
     """Modes of a frame were refused on its last mesh, where round-off of three rows is above the others."""
 

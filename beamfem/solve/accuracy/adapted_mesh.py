@@ -51,6 +51,7 @@ _MOST_PARTS, _FEW_PARTS = 8.0, 2.0  # of an element from one mesh to the next, a
 _PACE = 0.5  # part of the promised decrease of errors, in digits, below which that is slow
 _ENOUGH = 1.3  # times the unknowns needed: if the enriched space has no more, it is the next mesh
 _BETTER = 0.1  # of an error: that of the space it is estimated by
+_ASYMPTOTIC = 0.2  # of the largest displacement: errors above it fall more slowly than orders promise
 _TRUST = 1.5  # how many times as large as its estimate an error may be
 _SLOWEST = 0.1  # part of the promised decrease of errors, in digits, that is believed at the least
 _SAFETY = 2.0  # by how much the next mesh is to fall below the accuracy
@@ -226,6 +227,9 @@ class StaticAttempts:
         if off < NEAR:
             self._known = solution, finer
         if self._quantity is None:
+            moved = max(_largest_displacement(finer) for _, finer in pairs) / extent
+            if off > _ASYMPTOTIC * moved > _ASYMPTOTIC**2 * self._accuracy:
+                off = np.inf  # where layers are much thinner than elements, finer ones show but a part of them
             return solution, off, lambda: shares_of_rows(pairs, errors, position_shares)
         off = relative_change(solution[last:], finer, self._quantity, self._accuracy)
         return solution, off, lambda: error_shares(*pairs[0])
@@ -240,6 +244,11 @@ class StaticAttempts:
         if largest <= self._accuracy:
             return None
         return solution, largest, [each / (elements * largest) for each in errors]
+
+
+def _largest_displacement(row: Solution) -> float:
+    system = system_of(row.model, static=True)
+    return float(np.abs((row.p[0] - system.reference)[system.positions]).max())
 
 
 def _worst_row(solution: Solution) -> int:

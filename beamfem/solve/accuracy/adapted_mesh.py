@@ -283,7 +283,7 @@ def refined(
     if not error < _LARGEST:
         error, most_parts = _LARGEST, _FEW_PARTS
     lowest = min(mesh.beam.element.field.degree for mesh in model.meshes)
-    target = error * max((target / error) ** (1.0 / pace), _REACH**lowest)
+    target = max(error * max((target / error) ** (1.0 / pace), _REACH**lowest), np.finfo(float).eps)
     errors = [np.minimum(elements * error * share, _LARGEST) for share in shares or even]
     parted = zip(model.meshes, errors, fixed, strict=True)
     result = remeshed(model, [_refined(*each, target, shares is None, most_parts) for each in parted])

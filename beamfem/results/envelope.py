@@ -1,6 +1,6 @@
 """Envelopes of several solutions, such as load cases: smallest and largest section forces and stresses along beams."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -79,19 +79,7 @@ class Envelope:
 
         Raises InputError for an unknown quantity or beam.
         """
-        values = quantity(name).values
-        meshes = [_mesh(solution, beam) for solution in self.cases.values()]
-        arcs = np.concatenate([stations(mesh).arc_length for mesh in meshes])
-        at = np.repeat(np.unique(np.round(arcs / beam.curve.length, _DIGITS)), 2)
-        beside = np.clip(at + np.where(np.arange(len(at)) % 2, _BESIDE, -_BESIDE), 0.0, 1.0).tolist()
-        curves = {}
-        for (case, solution), mesh in zip(self.cases.items(), meshes, strict=True):
-            near = AxisPoints.at(mesh, beside)
-            xi = np.where(near.xi < _END, 0.0, np.where(near.xi > 1.0 - _END, 1.0, near.xi))
-            found = values(AxisPoints(mesh, near.element, xi), solution, slice(None))
-            curves[case] = np.stack([found.min(axis=0), found.max(axis=0)])
-        low, high = (np.stack([curve[side] for curve in curves.values()]) for side in (0, 1))
-        return EnvelopeCurve(at * beam.curve.length, low.min(axis=0), high.max(axis=0), curves)
+        return along_with(self, beam, name)
 
     def table(self, quantities: Sequence[str] = _LISTED) -> tuple[list[str], list[list[Any]]]:
         """Return header and rows: beam, quantity, "smallest" or "largest", value, arc length and case.
@@ -190,6 +178,23 @@ def envelope(solutions: Sequence[Solution] | Mapping[str, Solution], every_row: 
     return Envelope(
         {name: solution[-1:] if solution.static and not every else solution for name, solution in cases.items()}
     )
+
+
+def along_with(envelope: Envelope, beam: Beam, name: str, fractions: Iterable[float] = ()) -> EnvelopeCurve:
+    """Return the envelope of a quantity at the stations of a beam and at further fractions of its length."""
+    values = quantity(name).values
+    meshes = [_mesh(solution, beam) for solution in envelope.cases.values()]
+    arcs = np.concatenate([stations(mesh).arc_length for mesh in meshes]) / beam.curve.length
+    at = np.repeat(np.unique(np.round([*arcs, *fractions], _DIGITS)), 2)
+    beside = np.clip(at + np.where(np.arange(len(at)) % 2, _BESIDE, -_BESIDE), 0.0, 1.0).tolist()
+    curves = {}
+    for (case, solution), mesh in zip(envelope.cases.items(), meshes, strict=True):
+        near = AxisPoints.at(mesh, beside)
+        xi = np.where(near.xi < _END, 0.0, np.where(near.xi > 1.0 - _END, 1.0, near.xi))
+        found = values(AxisPoints(mesh, near.element, xi), solution, slice(None))
+        curves[case] = np.stack([found.min(axis=0), found.max(axis=0)])
+    low, high = (np.stack([curve[side] for curve in curves.values()]) for side in (0, 1))
+    return EnvelopeCurve(at * beam.curve.length, low.min(axis=0), high.max(axis=0), curves)
 
 
 def _beams(model: Model) -> Sequence[Beam]:

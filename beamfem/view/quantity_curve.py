@@ -16,7 +16,7 @@ from beamfem.parts.motor import Motor
 from beamfem.results.axis_fields import AT_POINT, QUANTITIES, UNITS, Quantity, value_of
 from beamfem.results.axis_fields import quantity as quantity_along
 from beamfem.results.axis_points import AxisPoints
-from beamfem.results.envelope import Envelope
+from beamfem.results.envelope import Envelope, along_with
 from beamfem.results.path import Path, PathState
 from beamfem.results.reactions import force_of_load, tension
 from beamfem.results.solution import Solution
@@ -136,7 +136,8 @@ def plot_envelope(
     envelope: Envelope, beam: Beam, name: str, path: str | PathLike[str] | None = None, ax: Any = None
 ) -> Any:
     """Draw the envelope of a quantity along a beam and return the figure. See `Envelope.plot`."""
-    curve, model = envelope.along(beam, name), next(iter(envelope.cases.values())).model
+    model = next(iter(envelope.cases.values())).model
+    curve = along_with(envelope, beam, name, np.linspace(0.0, 1.0, _ALONG + 1))
     drawn = quantity_along(name)
     scale, unit = _readable(model, np.concatenate([curve.smallest, curve.largest]), drawn.unit)
     figure, axes = new_figure(ax=ax, pyplot=path is None)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import beamfem as bf
 
@@ -77,6 +78,16 @@ def test_beams_without_elements_have_envelopes_as_well():
     model = bf.Model([beam], [bf.Pin(beam.start), bf.Roller(beam.end)])
     _, rows = bf.envelope(small_cases(model, beam)).table(["moment"])
     assert [row[3] for row in rows] == pytest.approx([-40.0, 45.0], rel=1e-4)
+
+
+def test_a_picture_is_curved_between_the_stations_of_few_elements():
+    """The moment of a uniform load is a parabola, M = q x (L - x) / 2, on 2 elements as well."""
+    model, beam = simple_beam(elements=2, element=bf.CRBF(6))
+    solution = bf.solve_static(model.with_loads([bf.DistributedLoad(beam, (0.0, -10.0))]))
+    axes = bf.envelope([solution]).plot(beam, "moment", ax=Figure().subplots()).axes[0]
+    x, moment = axes.lines[1].get_data()
+    assert np.diff(x).max() < 6.0 / 399
+    assert moment == pytest.approx(5.0 * x * (6.0 - x), abs=1e-4 * 45)
 
 
 def test_rows_that_count_pandas_and_pictures(tmp_path):

@@ -26,6 +26,7 @@ def section_forces(points: AxisPoints, solution: Solution, rows: slice | np.ndar
 
 
 Values = Callable[[AxisPoints, Solution, slice | np.ndarray], np.ndarray]
+_SAME = 1e-9  # relative difference of the stresses of both faces that round-off makes
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,9 @@ def _of_stress(label: str, name: str, unit: str = "Pa", unknown: str = "", over_
 
 def _outer(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:
     stress = stress_at(solution, points, rows)
-    return np.where(np.abs(stress["upper"]) >= np.abs(stress["lower"]), stress["upper"], stress["lower"])
+    # pure bending: round-off must not choose the face, and with it the sign
+    below = np.abs(stress["lower"]) > (1.0 + _SAME) * np.abs(stress["upper"])
+    return np.where(below, stress["lower"], stress["upper"])
 
 
 def _error_share(points: AxisPoints, solution: Solution, rows: slice | np.ndarray) -> np.ndarray:

@@ -610,11 +610,11 @@ class Solution:
         along the beams, whose extreme value is marked: "moment" [N m], "normal", "shear" [N], "rotation" [rad],
         "displacement" [m], "speed" [m/s], "axial_strain" [-] (Green strain xx of the axis), "shear_angle" [rad],
         "error_share" [-], see `error_shares`; of the stress [Pa] "stress" or "von_mises" (von Mises stress over the
-        height), of each section "upper", "lower" (faces), "outer" (the larger of both), "tension", "compression",
-        "shear_stress" (extremes); or "utilisation" [-] of the strength, over the height. shapes: number of steps, one
-        of them the last; by default the last alone, of motions and paths 9. undeformed, supports, loads: whether to
-        draw the reference axes dashed, and symbols, each load on the shape at which it is largest. ax: axes of
-        matplotlib to draw in; by default a new figure, which `plt.show()` opens where there is a display, and which
+        height), of each section "upper", "lower" (faces), "outer" (the larger of both, "upper" if equal), "tension",
+        "compression", "shear_stress" (extremes); or "utilisation" [-] of the strength, over the height. shapes: number
+        of steps, one of them the last; by default the last alone, of motions and paths 9. undeformed, supports, loads:
+        whether to draw the reference axes dashed, and symbols, each load on the shape at which it is largest. ax: axes
+        of matplotlib to draw in; by default a new figure, which `plt.show()` opens where there is a display, and which
         notebooks display, if no path is given. Raises InputError for an unknown option or value, MissingPackageError
         without matplotlib.
 

@@ -120,6 +120,14 @@ def test_large_stresses_are_drawn_in_megapascals():
     assert bar.get_ylim()[1] == pytest.approx(1e-6 * peak.value, rel=0.05)
 
 
+@pytest.mark.parametrize("moment", [0.02, -0.02])
+def test_the_outer_stress_of_pure_bending_keeps_its_sign(moment):
+    """M / W at the upper face, where both faces have the same size up to round-off."""
+    bent = bf.solve_static(bf.Model([OWN], [bf.Clamp(OWN.start)], [bf.PointMoment(OWN.end, moment)]))
+    stress = bent.plot_along(OWN, "outer").axes[0].lines[1].get_ydata()
+    assert stress == pytest.approx(1e-6 * -moment * 6.0 / 0.01**3, rel=1e-6)
+
+
 @pytest.mark.parametrize("follower", [False, True])
 def test_the_applied_force_is_drawn_over_a_displacement(follower):
     push = bf.PointForce(OWN.end, (0.0, -30.0), amplitude=lambda at: 4.0 * at * (1.0 - at), follower=follower)

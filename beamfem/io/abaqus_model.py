@@ -73,7 +73,9 @@ class AbaqusModel:
     __repr__ = brief
 
 
-def read_abaqus_model(path: str | PathLike[str], elements: int = 1, element: Element | None = None) -> AbaqusModel:
+def read_abaqus_model(
+    path: str | PathLike[str], elements: int = 1, element: Element | None = None, units: str | None = None
+) -> AbaqusModel:
     """Return the planar model of an Abaqus input file, in its units.
 
     It reads beams in one plane (B21, B22, B31, B32 and the like; the x and y of the model are x and z of a file whose
@@ -92,6 +94,9 @@ def read_abaqus_model(path: str | PathLike[str], elements: int = 1, element: Ele
         Finite elements for each element of the file.
     element : Element, optional
         Element of the beams, by default `CRBF(order=2)`.
+    units : str, optional
+        Units that the numbers of the file have, such as "N, mm", for labels and tables as in `Model`, by default
+        "N, m, s". Nothing is converted.
 
     Returns
     -------
@@ -103,8 +108,8 @@ def read_abaqus_model(path: str | PathLike[str], elements: int = 1, element: Ele
     FileError
         If the system refuses to read the file; FileNotFoundError if there is none.
     InputError
-        For a file that cannot be read, an element without section or material, a section that is not read, and for
-        anything that `read_mesh` refuses.
+        For a file that cannot be read, an element without section or material, a section that is not read, for unknown
+        units, and for anything that `read_mesh` refuses.
 
     Warns
     -----
@@ -126,7 +131,7 @@ def read_abaqus_model(path: str | PathLike[str], elements: int = 1, element: Ele
         reading.take(keyword)
     try:
         frame = reading.frame(line_mesh(content, False), elements, CRBF(order=2) if element is None else element)
-        model = reading.model(frame)
+        model = reading.model(frame, "N, m, s" if units is None else units)
     except InputError as error:
         raise InputError(f"{source}: {error}") from None
     if reading.notes:
@@ -286,7 +291,7 @@ class _Reading:
             self.note(f"loads and displacements in direction {direction}, out of the plane")
         return name
 
-    def model(self, frame: Frame) -> Model:
+    def model(self, frame: Frame, units: str) -> Model:
         """Return the model with supports and loads. Raises InputError for sets and numbers that the file lacks."""
         names = {name.upper(): name for name in frame.mesh.point_sets}
         turn = -1.0 if self.plane == (0, 2, 1) else 1.0  # from x to z is against y
@@ -306,7 +311,7 @@ class _Reading:
                 else:
                     vector = (value, 0.0) if way == "ux" else (0.0, value)
                     loads.append(PointForce(point, vector, follower=follower))
-        return Model(frame.beams, supports, [*loads, *self._along_beams(frame)], joints=frame.joints)
+        return Model(frame.beams, supports, [*loads, *self._along_beams(frame)], joints=frame.joints, units=units)
 
     def _along_beams(self, frame: Frame) -> Iterator[Load]:
         names = {name.upper(): name for name in frame.mesh.member_sets}

@@ -318,3 +318,16 @@ def test_what_cannot_be_read_is_refused_by_name_and_line(tmp_path, old, new, mes
     assert old in text
     with pytest.raises(bf.InputError, match=message):
         read(tmp_path, text.replace(old, new).replace("*Cload", "*Dload\nArm, P2, 1.\n*Cload"))
+
+
+def test_units_are_those_that_are_named(tmp_path):
+    """They name what numbers are and change none, as those of a Model; a steel of 2.1e11 N/mm^2 is warned of."""
+    assert read(tmp_path, NODES + SECTION + STEP).model.units == "N, m, s"
+    path = tmp_path / "millimetres.inp"
+    path.write_text((NODES + SECTION + STEP).replace("2.1e11", "2.1e5").replace("7850.", "7.85e-9"))
+    named = bf.read_abaqus_model(path, units="N, mm").model
+    assert (named.unit("Pa"), named.beams[0].material.youngs_modulus) == ("MPa", 2.1e5)
+    with pytest.warns(bf.UnitsWarning, match="youngs_modulus"):
+        bf.read_abaqus_model(tmp_path / "model.inp", units="N, mm")
+    with pytest.raises(bf.InputError, match="units"):
+        bf.read_abaqus_model(path, units="N, feet")

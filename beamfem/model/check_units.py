@@ -5,11 +5,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from beamfem.errors import InputError, UnitsWarning, warn
+from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.model.beam import Beam
 from beamfem.model.load_base import BodyLoad
-from beamfem.units import Units
+from beamfem.units import Units, units_of
+
+UNNAMED = "N, m, s"
 
 
 class _Kind(NamedTuple):
@@ -27,11 +29,10 @@ _DENSITY = _Kind("kg/m^3", (1, -4, 2), 0.1, 3e4, {"kg/m^3": 1.0, "t/m^3": 1e3, "
 _GRAVITY = _Kind("m/s^2", (0, 1, -2), 1e-3, 1e3, {"m/s^2": 1.0, "mm/s^2": 1e-3})
 
 
-def warn_of_units(beams: Sequence[Beam], loads: Iterable[Any], named: str, units: Units) -> None:
-    """Warn once of values that no material, section or planet has in the units that a model names."""
-    found = list(dict.fromkeys(_implausible(beams, loads, units)))
-    if found:
-        warn(f'units="{named}" are named, but {"; ".join(found)}', UnitsWarning)
+def doubts_of_units(beams: Sequence[Beam], loads: Iterable[Any], named: str) -> tuple[str, ...]:
+    """Return a sentence on values that no material, section or planet has in units that are named, if there are any."""
+    found = () if named == UNNAMED else tuple(dict.fromkeys(_implausible(beams, loads, units_of(named))))
+    return (f'units="{named}" are named, but {"; ".join(found)}',) if found else ()
 
 
 def _implausible(beams: Sequence[Beam], loads: Iterable[Any], units: Units) -> Iterator[str]:

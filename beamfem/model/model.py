@@ -11,9 +11,9 @@ import numpy as np
 from beamfem.cached_properties import cached_property
 from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
-from beamfem.errors import InputError, UnknownPointError
+from beamfem.errors import InputError, UnitsWarning, UnknownPointError, warn
 from beamfem.model.beam import Beam, Point, reference_positions, require_different_names
-from beamfem.model.check_units import warn_of_units
+from beamfem.model.check_units import UNNAMED, doubts_of_units
 from beamfem.model.contribution import Contribution, require_connector
 from beamfem.model.imposed_strains import ImposedStrain
 from beamfem.model.joint_base import Joint
@@ -76,7 +76,6 @@ def touching(one: Beam, other: Beam) -> str:
     return f"; {apart}, SliderOnBeam one with any place along the axis of the other beam"
 
 
-_UNNAMED = "N, m, s"
 _KINDS: dict[str, tuple[type, ...]] = {
     "beams": (Beam,),
     "supports": (PointSupport, LineSupport),
@@ -133,7 +132,7 @@ class Model:
     loads: Sequence[Load] = ()
     joints: Sequence[Joint | Contribution] = ()
     connectors: Sequence[Contribution] = ()
-    units: str = _UNNAMED
+    units: str = UNNAMED
     masses: Sequence[Contribution] = ()
     frame: RotatingFrame | None = None
     redundant_conditions: str = "error"
@@ -203,7 +202,7 @@ class Model:
         return f"Model({', '.join(counted)})"
 
     def __post_init__(self) -> None:
-        if self.units is not _UNNAMED:
+        if self.units is not UNNAMED:
             _ = self._units
         for name, kinds in _KINDS.items():
             members = listed(name, getattr(self, name), _KINDS)
@@ -248,8 +247,8 @@ class Model:
             for point in connector.points:
                 self._require(connector, point)
         self._require_touches()
-        if self.units != _UNNAMED:
-            warn_of_units(self.beams, self.loads, self.units, self._units)
+        for doubt in doubts_of_units(self.beams, self.loads, self.units):
+            warn(doubt, UnitsWarning)
 
     def _add_arms(self) -> None:
         """Add the arms of bodies on which parts act, with the joints that hold them. Raises InputError."""

@@ -10,7 +10,7 @@ import numpy as np
 from beamfem.curves import Line
 from beamfem.element.element import Element
 from beamfem.equations.system import System
-from beamfem.errors import CuspWarning, EnergyWarning, LargeStrainWarning, LockingWarning, warn
+from beamfem.errors import CuspWarning, EnergyWarning, LargeStrainWarning, LockingWarning, UnitsWarning, warn
 from beamfem.kernels.block import ELASTIC_LINE, GREEN_LAGRANGE, STRUCTURAL
 from beamfem.kernels.neighbouring_nodes import LOCKED, STRAINED, exceeds
 from beamfem.kernels.records import address_of
@@ -18,6 +18,7 @@ from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import energy_points, energy_stiffness_at, reference_axis
 from beamfem.mesh.section_stress import layers
 from beamfem.model.beam import beam_in_words
+from beamfem.model.check_units import doubts_of_units
 from beamfem.model.missing_joints import in_words, unjoined_ends
 from beamfem.model.model import Model
 from beamfem.results import locking
@@ -230,7 +231,9 @@ def findings(solution: Solution) -> tuple[Finding, ...]:
     """Return all that is found wrong with a solution, besides what its solver has found."""
     found = chain(*map(solution.computed, (locking.locking, large_strains, cusps, short_sections)))
     energy = [Finding(sentence, EnergyWarning) for sentence in solution.computed(energy_warnings)]
-    return (*found, *energy, *map(Finding, unjoined_warnings(solution)))
+    doubts = doubts_of_units(solution.model.beams, solution.model.loads, solution.model.units)
+    units = [Finding(sentence, UnitsWarning) for sentence in doubts]
+    return (*found, *energy, *units, *map(Finding, unjoined_warnings(solution)))
 
 
 def warned(solution: _Solution) -> _Solution:

@@ -30,6 +30,13 @@ def test_numbers_in_si_under_the_name_of_millimetres():
     assert warning.filename == __file__
 
 
+def test_the_warnings_of_a_solution_have_it_too():
+    with pytest.warns(bf.UnitsWarning) as caught:
+        named = model("N, mm", 2e11, 7.85e-9)
+    assert str(caught[0].message) in bf.solve_static(named).warnings
+    assert not bf.solve_static(model("N, mm", 2e5, 7.85e-9)).warnings
+
+
 @pytest.mark.parametrize(
     ("units", "modulus", "density", "gravity", "height", "length"),
     [

@@ -72,7 +72,11 @@ def plot_history(
         energy = solution.energy()
         label, unit, parts = "energy", "J", [{name: getattr(energy, name) for name in ENERGIES}]
     else:
-        require_known(f"there is no history of {shown(quantity)}", quantity, [*_HISTORIES, "energy"])
+        sentence = f"there is no history of {shown(quantity)}"
+        if isinstance(quantity, str) and quantity not in _HISTORIES and quantity in (*_LABELS, *OF_SECTION):
+            across = axis_of_rows(solution)[0].replace(" ", "_")
+            raise InputError(f'{sentence}; plot_curve("{across}", ("{quantity}", point)) draws it')
+        require_known(sentence, quantity, [*_HISTORIES, "energy"])
         label, names = _HISTORIES[quantity]
         unit = UNITS[names[0]]
         points = [point] if isinstance(point, Point) else [] if point is None else items("point", point)

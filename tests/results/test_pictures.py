@@ -315,6 +315,10 @@ def test_modes_carry_their_frequencies(tmp_path):
         (lambda s: s.plot(colour="torsion"), "no quantity 'torsion' along a beam; did you mean tension"),
         (lambda s: s.plot(shapes=0), "shapes must be at least 1"),
         (lambda s: s.plot_history(s.model.beams[0].end, "torsion"), "no history of 'torsion'"),
+        (
+            lambda s: s.plot_history(s.model.beams[0].end, "ay"),
+            r"""no history of 'ay'; plot_curve\("load_factor", \("ay", point\)\) draws it""",
+        ),
         (lambda s: s.plot_history(), "needs a point such as beam.end"),
         (lambda s: s.plot_load_displacement(s.model.beams[0].end, "ut"), '"ux", "uy" or "rotation"'),
     ],

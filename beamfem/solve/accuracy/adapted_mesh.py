@@ -56,7 +56,7 @@ _TRUST = 1.5  # how many times as large as its estimate an error may be
 _SLOWEST = 0.1  # part of the promised decrease of errors, in digits, that is believed at the least
 _SAFETY = 2.0  # by how much the next mesh is to fall below the accuracy
 _FALLS = 0.5  # what a mesh is to leave of the error of the one before; the shares are of no use otherwise
-_MOST_STALLED = 3  # meshes divided evenly whose error is not the smallest so far: it is round-off
+_MOST_STALLED = 3  # meshes divided evenly, or no finer, whose error is not the smallest so far: it is round-off
 # meshes that may have no solution, or end at limit points, before a finer one does not
 _MOST_LOST, _MOST_LIMITED = 2, 5
 _TINY = 1e-30  # error [-] of elements that have none
@@ -114,7 +114,7 @@ def refined_until(
     first = [_first(*each, accuracy) for each in zip(model.beams, needed, strict=True)]
     fixed = [ends for _, ends in first]
     model = remeshed(model, [beam for beam, _ in first])
-    iterations = elements = stalled = number = 0
+    iterations = elements = unknowns = stalled = number = 0
     pace, expected = 1.0, 0.0
     lost = list[ConvergenceError]()
     before = smallest = np.inf
@@ -132,6 +132,8 @@ def refined_until(
             result, error, shares = None, np.inf, None
         divided = sum(mesh.elements for mesh in model.meshes) > elements
         elements = sum(mesh.elements for mesh in model.meshes)
+        more = sum(map(_intervals, model.beams)) > unknowns
+        unknowns = sum(map(_intervals, model.beams))
         if isinstance(result, Solution):
             iterations += result.iterations
             mesh = f"mesh {number}, of {elements} elements"
@@ -141,7 +143,7 @@ def refined_until(
         if _TRUST * error <= accuracy:
             assert result is not None
             return result
-        stalled = stalled + 1 if evenly and divided and smallest <= error < np.inf else 0
+        stalled = stalled + 1 if ((evenly and divided) or not more) and smallest <= error < np.inf else 0
         # shares are those of stress resultants, which may be exact where the interpolated axis is not
         evenly = shares is None or (divided and error > _FALLS * before)
         if max(expected, error) < before < np.inf:

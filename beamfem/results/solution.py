@@ -67,12 +67,12 @@ class State:
     1.0
     """
 
-    p: np.ndarray
-    v: np.ndarray
-    a: np.ndarray
+    p: np.ndarray = field(repr=False)
+    v: np.ndarray = field(repr=False)
+    a: np.ndarray = field(repr=False)
     at: float
     model: Model
-    turned: np.ndarray | None = field(default=None, kw_only=True)
+    turned: np.ndarray | None = field(default=None, kw_only=True, repr=False)
 
     __repr__ = brief
 

@@ -1,7 +1,7 @@
 """Sections of common shapes."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -19,8 +19,8 @@ class ShapedSection(Section):
     outline: its shape, or strips of it from the bottom up; third_moment: integral of y^3 dA [m^5].
     """
 
-    outline: RectangleOutline | TubeOutline | tuple[StripOutline, ...] | None = None
-    third_moment: float = 0.0
+    outline: RectangleOutline | TubeOutline | tuple[StripOutline, ...] | None = field(default=None, repr=False)
+    third_moment: float = field(default=0.0, repr=False)
     name: str = ""
 
     def moments(self, material: Material | None) -> list[tuple[Material, np.ndarray]]:

@@ -166,3 +166,12 @@ def test_loaded_functions_are_shown_by_how_many_values_they_have(tmp_path):
     assert repr(model.beams[0].section).startswith("SampledSection(at=<")
     for one in (*model.loads, model.beams[0].section):
         assert len(repr(one)) < 300, repr(one)
+
+
+def test_sections_and_states_show_what_they_are_and_no_internals():
+    section = bf.Profile("IPE 200")
+    assert "name='IPE 200'" in repr(section)
+    assert "Outline" not in repr(section)
+    beam = bf.Beam(bf.Line((0.0, 0.0), (1.0, 0.0)), 1, bf.CRBF(3), section, bf.Material(2.1e11, 0.3, 7850.0))
+    state = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)]))[-1]
+    assert repr(state) == "State(at=1.0, model=Model(1 beam, 1 support))"

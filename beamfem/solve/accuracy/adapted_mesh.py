@@ -29,6 +29,7 @@ from beamfem.solve.accuracy.error_estimate import (
     enriched_row_kept,
     error_shares,
     keep_enriched_row,
+    largest_displacement,
     largest_position_error,
     of_order,
     position_shares,
@@ -194,9 +195,9 @@ def require_unlocked(findings: Iterable[Finding]) -> None:
 class StaticAttempts:
     """Static solutions on one mesh after another, their estimated errors [-], and the shares of the elements in them.
 
-    Each but the first begins with the states of the one before, unless these do not tell its path. An error is the
-    largest of the rows, relative to the size of the model or, with a quantity, that of the last row, relative to its
-    largest value. Raises InputError for elements that lock.
+    Each but the first begins with the states of the one before, unless these do not tell its path. An error is that of
+    the last row or, if it is larger, of the row that the mesh approximates worst, relative to the size of the model;
+    with a quantity, that of the last row, relative to its largest value. Raises InputError for elements that lock.
     """
 
     def __init__(self, solve: Callable[[Model], Solution], quantity: Quantity, accuracy: float) -> None:
@@ -229,7 +230,7 @@ class StaticAttempts:
         if off < NEAR:
             self._known = solution, finer
         if self._quantity is None:
-            moved = max(_largest_displacement(finer) for _, finer in pairs) / extent
+            moved = max(largest_displacement(finer.model, finer.p[0]) for _, finer in pairs) / extent
             if off > _ASYMPTOTIC * moved > _ASYMPTOTIC**2 * self._accuracy:
                 off = np.inf  # where layers are much thinner than elements, finer ones show but a part of them
             return solution, off, lambda: shares_of_rows(pairs, errors, position_shares)
@@ -246,11 +247,6 @@ class StaticAttempts:
         if largest <= self._accuracy:
             return None
         return solution, largest, [each / (elements * largest) for each in errors]
-
-
-def _largest_displacement(row: Solution) -> float:
-    system = system_of(row.model, static=True)
-    return float(np.abs((row.p[0] - system.reference)[system.positions]).max())
 
 
 def _worst_row(solution: Solution) -> int:

@@ -30,6 +30,7 @@ from beamfem.solve.accuracy.error_estimate import (
     enriched,
     enriched_row,
     error_shares,
+    largest_displacement,
     largest_displacement_error,
 )
 
@@ -171,7 +172,7 @@ def _found(solution: Solution) -> Finding | None:
     except InputError:  # a part of the user's own that takes no other mesh
         return None
     state = solution[last]
-    moved = max(_largest_displacement(model, p) for p in solution.p)  # the last row may be back where it began
+    moved = max(largest_displacement(model, p) for p in solution.p)  # the last row may be back where it began
     error = largest_displacement_error(state, finer) / moved if moved > 0.0 else 0.0
     if error <= WARNED:
         return None
@@ -198,7 +199,7 @@ def warned_of_coarse_motion(solution: Solution, solve: Callable[[Model], Solutio
         return solution
     rows = range(min(len(solution), len(finer)) if np.array_equal(solution.at, finer.at) else 0)
     rows = rows[:: max(len(rows) // _ROWS, 1)]
-    moved = max((_largest_displacement(model, p) for p in solution.p), default=0.0)
+    moved = max((largest_displacement(model, p) for p in solution.p), default=0.0)
     error = max((largest_displacement_error(solution[row], finer[row : row + 1]) for row in rows), default=0.0)
     if error <= WARNED * moved:
         return solution
@@ -221,12 +222,6 @@ def _told(solution: Solution, found: Finding) -> Solution:
     warn_of([found])
     statistics = replace(solution.statistics, warnings=(*solution.statistics.warnings, found.sentence))
     return replace(solution, statistics=statistics)
-
-
-def _largest_displacement(model: Model, p: np.ndarray) -> float:
-    return max(
-        float(np.linalg.norm(p[mesh.kinematics.dof[:, :2]] - mesh.position, axis=1).max()) for mesh in model.meshes
-    )
 
 
 def _rate(mesh: BeamMesh) -> int:

@@ -401,6 +401,13 @@ def _without_estimate(reason: str) -> ConvergenceError:
     )
 
 
+def largest_displacement(model: Model, p: np.ndarray) -> float:
+    """Return the largest displacement [m] of a node in a state p (n,)."""
+    return max(
+        float(np.linalg.norm(p[mesh.kinematics.dof[:, :2]] - mesh.position, axis=1).max()) for mesh in model.meshes
+    )
+
+
 def largest_position_error(state: State, finer: Solution) -> float:
     """Return the largest change [m] of a position along beams, at the nodes of the finer model and between them."""
     return max(float(np.abs(change).max()) for _, _, change in _position_changes(state, finer))

@@ -104,6 +104,15 @@ def loses_digits(system: System, p: np.ndarray, load_factor: float) -> bool:
     return bool(lost)
 
 
+def loses_digits_by_now(system: System, p: np.ndarray, load_factor: float) -> bool:
+    """Return whether a state p (n,) further on loses digits with the plain tangent, which was kept so far.
+
+    The softest stiffness vanishes at a critical point, so that round-off of the others grows beside it.
+    """
+    system.proven.discard(Proven.KEEPS_DIGITS)
+    return loses_digits(system, p, load_factor)
+
+
 def counts_with_stresses(system: System, p: np.ndarray, load_factor: float) -> bool:
     """Return whether negative eigenvalues in the state p (n,) are to be counted with stress resultants as unknowns.
 

@@ -19,9 +19,9 @@ def bar(start, end, extension, bending, shear, elements=8, element=None):
     return bf.Beam(curve, elements, element or bf.CRBF(3), section, material)
 
 
-def frame(points, loads, extension, bending, shear, clamped=False, elements=8):
+def frame(points, loads, extension, bending, shear, clamped=False, elements=8, element=None):
     """Bars in a chain, rigidly joined, on two supports, with forces at the inner corners."""
-    bars = [bar(a, b, extension, bending, shear, elements) for a, b in pairwise(points)]
+    bars = [bar(a, b, extension, bending, shear, elements, element) for a, b in pairwise(points)]
     support = bf.Clamp if clamped else bf.Pin
     supports = [support(bars[0].start), support(bars[-1].end)]
     joints = [bf.Rigid(a.end, b.start) for a, b in pairwise(bars)]
@@ -92,6 +92,18 @@ def test_random_frames_have_the_linear_buckling_load_of_euler_bernoulli_elements
 def test_300_random_frames_have_the_linear_buckling_load_of_euler_bernoulli_elements():
     for seed in range(300):
         compare(seed)
+
+
+@pytest.mark.parametrize(("seed", "element", "other"), [(72, bf.CRBF(4), bf.CRBF(5)), (228, bf.CRBF(2), bf.CRBF(3))])
+def test_limit_points_of_knee_frames_are_found_where_round_off_exceeds_the_softest_stiffness(seed, element, other):
+    """k G A L^2 / E I is 2e10 to 1e11; the loading path was lost beside its limit point, or passed it unseen."""
+    points, loads, extension, bending, shear, clamped = random_frame(seed)
+    found = [
+        bf.solve_buckling(frame(points, loads, extension, bending, shear, clamped, element=each))
+        for each in (element, other)
+    ]
+    assert [each.kinds for each in found] == [("limit point",)] * 2
+    assert found[0].load_factors[0] == pytest.approx(found[1].load_factors[0], rel=5e-4)
 
 
 @pytest.mark.parametrize("extension", [1e4, 1e6, 1e8])

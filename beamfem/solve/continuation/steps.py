@@ -10,6 +10,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.equations.equations import load_change, residual_at_rest
 from beamfem.errors import InputError
+from beamfem.precision.roundoff import loses_digits_by_now
 from beamfem.solve.continuation.bifurcations import Crossing, bifurcations
 from beamfem.solve.continuation.continuation import Continuation, Corrected, PathPoint
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
@@ -107,19 +108,28 @@ def too_small(line: Continuation, point: PathPoint, size: float) -> bool:
 
 
 def longest_accepted(
-    line: Continuation, point: PathPoint, size: float, attempt: Callable[[float], _Found | Refused]
+    line: Continuation, point: PathPoint, longest: float, attempt: Callable[[PathPoint, float], _Found | Refused]
 ) -> tuple[_Found | None, list[str], float]:
-    """Return what `attempt` finds with the longest step up to `size` that it accepts, None if none is.
+    """Return what `attempt` finds with the longest step up to `longest` that it accepts, None if none is.
 
-    Also return the reasons of all refusals, and the length of the last step.
+    Also return the reasons of all refusals, and the length of the last step. A tangent that has digits enough at the
+    start of a path may have too few for the softest mode beside a critical point; steps there are then tried once more.
     """
     reasons: list[str] = []
+    size = longest
     while True:
-        found = attempt(size)
+        found = attempt(point, size)
         if not isinstance(found, Refused):
             return found, reasons, size
         reasons.append(found.reason)
         size *= 0.5
+        if len(reasons) == 1 and loses_digits_by_now(line.system, point.y[:-1], point.load_factor):
+            pivots, size = point.negative_pivots, longest
+            with suppress(LinAlgError):
+                point = line.linearised(point.y, point.tangent)
+            if point.negative_pivots != pivots:
+                reasons.append("a critical point was passed unseen, as the tangent had lost its digits")
+                return None, reasons, size
         if too_small(line, point, size):
             return None, reasons, size
 

@@ -513,7 +513,7 @@ def _step(
     """
     to_kink = np.inf if kink is None else (kink - point.load_factor) / float(point.tangent[-1])
 
-    def attempt(size: float) -> tuple[Step, PathPoint | None] | Refused:
+    def attempt(point: PathPoint, size: float) -> tuple[Step, PathPoint | None] | Refused:
         reaches = size >= to_kink / _AHEAD
         outcome = take_step(line, point, to_kink, kink) if reaches else take_step(line, point, size)
         record.iterations += outcome.iterations

@@ -405,7 +405,7 @@ class _LoadingPath:
     def _step(self, point: PathPoint, size: float) -> tuple[Step, list[_Critical]] | str:
         """Return the longest accepted step from a point with its critical points, or why the last one was refused."""
 
-        def attempt(size: float) -> tuple[Step, list[_Critical]] | Refused:
+        def attempt(point: PathPoint, size: float) -> tuple[Step, list[_Critical]] | Refused:
             outcome = take_step(self.line, point, size, strict=False)
             if isinstance(outcome, Refused):
                 return outcome

@@ -147,7 +147,7 @@ class PathFollower:
         slope = float(point.tangent[-1])
         to_end = (end - point.load_factor) / slope if line.functions_of_time and slope > 0.0 else np.inf
 
-        def attempt(size: float) -> Step | Refused:
+        def attempt(point: PathPoint, size: float) -> Step | Refused:
             outcome = take_step(line, point, size, end if size >= to_end else None)
             self.done.iterations += outcome.iterations
             return outcome

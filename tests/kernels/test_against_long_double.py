@@ -172,10 +172,13 @@ def compared(element, slenderness, elements, state):
         assert relative_residual(rows, x, right, scale) < 16.0 * ROUND_OFF, name
     lapack = max(map(error, by_lapack(rows, right)))
     errors = {name: error(x) for name, x in solutions.items()}
-    if min(lapack, errors["statics"]) < NO_DIGITS:
-        assert count == negative == STATES[state]
+    lost = lost_digits(system, p, 1.0, STATICS)
+    if errors["statics"] < NO_DIGITS:
+        assert count == negative
+        # the rounded matrix itself may have another count than the exact one
+        assert lost > NO_DIGITS or count == STATES[state]
     else:
-        assert Proven.LOSES_DIGITS in system.proven or lost_digits(system, p, 1.0, STATICS) > LOSES
+        assert Proven.LOSES_DIGITS in system.proven or lost > LOSES
     return lapack, errors
 
 

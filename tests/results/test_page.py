@@ -171,7 +171,7 @@ CanvasRenderingContext2D.prototype.fillText = function (text, ...place) {
 const corner = view.getBoundingClientRect();
 const middle = [0.5 * (frame.left + frame.right), 0.5 * (frame.top + frame.bottom)];
 const send = (Kind, name, x, y, more) => view.dispatchEvent(
-  new Kind(name, {clientX: corner.left + view.clientLeft + x, clientY: corner.top + view.clientTop + y, // inside of the border
+  new Kind(name, {clientX: corner.left + view.clientLeft + x, clientY: corner.top + view.clientTop + y,
                   cancelable: true, pointerType: "touch", ...more}));
 // where the end of the beam is, when all is seen
 const end = [0, 1].map(axis => place(points, ((+slider.value + 1) * total - 1) * 2 * data.sides + axis));

@@ -2,10 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, ClassVar, SupportsIndex, overload
+from typing import TYPE_CHECKING, Any, ClassVar, SupportsIndex, overload
 
 import numpy as np
 
+from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.results.motion_state import StateWithResults
 from beamfem.results.postprocess import Fields, part_of
@@ -145,6 +146,26 @@ class Path(Solution):
             if sum(float(np.linalg.norm(point.p - end.p)) for end in (before, after)) <= _DETOUR * apart
         }
         return ways[min(ways)] if ways else after
+
+    def error(self, quantity: Any = None, row: int = -1) -> Any:
+        """Return an estimate of the discretisation error of a result, see `Solution.error`.
+
+        A limit point or bifurcation of the path as `quantity` gives that of its load factor [-]: its change on the
+        enriched space, where the critical point is located between the same rows. Raises also ConvergenceError if it
+        is not found there.
+
+        >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e6, 0.0))])
+        >>> path = bf.trace_equilibrium(column, until=1.0)
+        >>> abs(path.error(path.bifurcations[0])) < 1e-3
+        True
+        """
+        from beamfem.solve.paths.path_error import critical_error
+
+        if not isinstance(quantity, PathState):
+            return super().error(quantity, row)
+        if not any(quantity is point for point in (*self.limit_points, *self.bifurcations)):
+            raise InputError("a state whose error is estimated is one of the limit points or bifurcations of the path")
+        return critical_error(self, quantity)
 
     @overload
     def __getitem__(self, row: SupportsIndex) -> PathState: ...

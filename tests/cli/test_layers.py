@@ -75,6 +75,7 @@ LAYERS = (
 INSIDE_METHODS = ("mesh", "view", "io", "io/results_hdf5")
 ANALYSES = {
     "model/model.py": ("beamfem.results.imperfection", "beamfem.solve.accuracy.error_estimate"),
+    "results/path.py": ("beamfem.solve.paths.path_error",),
     "results/solution.py": (
         "beamfem.solve.stability.stability",
         "beamfem.solve.accuracy.error_estimate",

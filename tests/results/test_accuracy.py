@@ -216,6 +216,69 @@ def test_limits_of_a_deep_arch_are_as_accurate_as_asked_for(accuracy):
     assert deep_arches.crown(limit) == pytest.approx((0.61141465795, 1.13732063125), abs=2.0 * accuracy * size)
 
 
+def critical_loads(path):
+    return [point.load_factor for point in (*path.limit_points, *path.bifurcations)]
+
+
+def columns(**mesh):
+    """Straight columns between a clamp and a free or a guided end: until they buckle, any mesh is exact."""
+    for guided, force in ((False, 1e4), (True, 4e4)):
+        beam = bf.Beam(bf.Line((0, 0), (0, 1)), section=bf.Rectangle(0.01, 0.01), material=STEEL, **mesh)
+        guide = [bf.Prescribed(beam.end, ux=0.0, rotation=0.0)] if guided else []
+        yield bf.Model([beam], [bf.Clamp(beam.start), *guide], [bf.PointForce(beam.end, (0.0, -force))])
+
+
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-4, 1e-6])
+def test_critical_points_of_straight_columns_are_found_on_any_mesh(accuracy):
+    for fine, model in zip(columns(elements=12, element=bf.CRBF(8)), columns(), strict=True):
+        exact = critical_loads(bf.trace_equilibrium(fine, 1.0))
+        found = critical_loads(bf.trace_equilibrium(model, 1.0, accuracy=accuracy))
+        assert found == pytest.approx(exact, abs=accuracy * max(exact))
+
+
+@pytest.mark.parametrize("ends", [pytest.param(True, marks=pytest.mark.slow), False])
+@pytest.mark.parametrize("accuracy", [1e-4])
+def test_critical_points_of_shallow_arches_are_as_accurate_as_asked_for(accuracy, ends):
+    """A clamped bistable beam whose middle is moved down, or a pinned arch, against 12 elements of order 8."""
+    height = 0.01 if ends else 0.03
+
+    def rise(x):
+        return x, height * (1.0 - np.cos(2.0 * np.pi * x)) if ends else height * np.sin(np.pi * x)
+
+    found = []
+    for mesh in ({"elements": 12, "element": bf.CRBF(8)}, {}):
+        beam = bf.Beam(bf.Parametric(rise, 0, 1), section=bf.Rectangle(0.1, 0.002), material=STEEL, **mesh)
+        if ends:
+            moved = bf.Prescribed(beam.at(0.5), uy=-0.04, rotation=0)
+            model = bf.Model([beam], [bf.Clamp(beam.start), bf.Clamp(beam.end), moved])
+        else:
+            load = bf.PointForce(beam.at(0.5), (0.0, -100.0))
+            model = bf.Model([beam], [bf.Pin(beam.start), bf.Pin(beam.end)], [load])
+        found.append(critical_loads(bf.trace_equilibrium(model, 1.0, accuracy=None if mesh else accuracy)))
+    assert found[1] == pytest.approx(found[0], abs=accuracy * np.abs(found[0]).max())
+
+
+@pytest.mark.parametrize(
+    ("element", "elements", "expected"),
+    [(bf.CRBF(2), 16, 1.0), (bf.CRBF(3), 4, 0.97), (bf.ANCF(bf.Structural()), 16, 0.75)],
+)
+def test_the_effectivity_of_critical_load_factors_is_that_of_the_order(element, elements, expected):
+    """Limit points and bifurcations of a pinned sine arch that snaps through and back."""
+
+    def path(element, elements):
+        arch = bf.Parametric(lambda x: (x, 0.1 * np.sin(np.pi * x)), 0, 1)
+        beam = bf.Beam(arch, elements, element, bf.Rectangle(0.01, 0.005), STEEL)
+        load = bf.PointForce(beam.at(0.5), (0.0, -1e3))
+        return bf.trace_equilibrium(bf.Model([beam], [bf.Pin(beam.start), bf.Pin(beam.end)], [load]), 0.55)
+
+    coarse, fine = path(element, elements), path(bf.CRBF(8), 12)
+    points = (*coarse.limit_points, *coarse.bifurcations)
+    true = np.subtract(critical_loads(fine), critical_loads(coarse))
+    assert [coarse.error(point) for point in points] / true == pytest.approx(np.full(4, expected), abs=0.03)
+    with pytest.raises(bf.InputError, match="one of the limit points or bifurcations of the path"):
+        coarse.error(fine.limit_points[0])
+
+
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-6])
 def test_tips_of_cantilevers_are_as_accurate_as_asked_for(accuracy):
     """P L^2 = 5 E I and L / h = 100, by collocation of the Reissner beam."""

@@ -10,31 +10,20 @@ from scipy.linalg import LinAlgError
 
 from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
-from beamfem.model.beam import Point
 from beamfem.model.model import Model
 from beamfem.precision.roundoff import FEW_DIGITS, remainder
 from beamfem.progress import kept, progress
 from beamfem.results.full_turns import first_turns
-from beamfem.results.locking import locking
 from beamfem.results.path import Bifurcation, Path, PathState
-from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import advice, warned
 from beamfem.results.status import Statistics, Status
-from beamfem.solve.accuracy.adapted_mesh import Shares, prepared, refined_until, require_unlocked
-from beamfem.solve.accuracy.error_estimate import (
-    carried_coordinates,
-    carried_stresses,
-    enriched,
-    error_shares,
-    largest_position_error,
-    position_shares,
-    shares_of_rows,
-)
-from beamfem.solve.accuracy.quantity_change import LOST, Quantity, change_if_found
+from beamfem.solve.accuracy.adapted_mesh import prepared, refined_until
+from beamfem.solve.accuracy.quantity_change import Quantity
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 from beamfem.solve.continuation.steps import Refused, Step, longest_accepted, longest_step, take_step, too_small
 from beamfem.solve.newton.newton import Newton, require_newton
+from beamfem.solve.paths.path_error import path_attempt
 from beamfem.solve.start.functions_of_time import SAME, Jump, functions_of_time, jumps_between, kinks_between
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.start_checks import refuse_memory
@@ -119,51 +108,6 @@ class PathRecord:
             limit_points=tuple(self.limit_points),
             bifurcations=tuple(self.bifurcations),
         )
-
-
-_MOST_ROWS = 24  # of a path whose errors are estimated
-
-
-def path_attempt(path: Path, quantity: Quantity, trace: Callable[[Model], Path]) -> tuple[Path, float, Shares]:
-    """Return a path, its largest estimated error [-], and the shares of the elements in it.
-
-    The error is that of displacements relative to the size of the model, or that of load factors relative to the
-    largest one. Each of some rows is corrected in the plane across the path, so that limit points do not amplify it.
-    With a quantity it is that of a point at these rows, or of a function of the path, which is traced on finer elements
-    for it, relative to the largest value. Raises InputError for elements that lock.
-    """
-    require_unlocked(path.computed(locking))
-    model = enriched(path.model)
-    system, newton = system_of(model, static=True), Newton()
-    largest = float(np.abs(path.load_factor).max()) or 1.0
-    line = Continuation(system, newton, largest, largest)
-    rows = np.unique(np.linspace(0, len(path) - 1, _MOST_ROWS).round().astype(int)).tolist()
-    points = [np.append(carried_coordinates(path[row], model), path[row].at) for row in rows]
-    pairs, moved, off = list[tuple[PathState, Solution]](), list[float](), list[float]()
-    lost = False
-    for number in range(1, len(rows)):
-        chord = points[min(number + 1, len(rows) - 1)] - points[number - 1]
-        state = path[rows[number]]
-        corrected = line.correct(points[number], carried_stresses(state, model), chord / line.length(chord))
-        if not corrected.ended.good:
-            lost = True
-            continue
-        rest, at = np.zeros(model.size), float(corrected.y[-1])
-        finer = State(corrected.y[:-1], rest, rest.copy(), at, model).as_row(static=True)
-        change = largest_position_error(state, finer) / system.extent
-        moved.append(max(change, abs(at - state.at) / largest))
-        if isinstance(quantity, Point):
-            off.append(float(np.linalg.norm(finer.displacement(quantity)[-1] - state.displacement(quantity))))
-        pairs.append((state, finer))
-    if not pairs:
-        return path, np.inf, None
-    error = max(moved)
-    if isinstance(quantity, Point):
-        error = max(off) / (float(np.linalg.norm(path.displacement(quantity), axis=1).max()) or 1.0)
-    elif quantity is not None:
-        error = change_if_found(path, trace(model), quantity, LOST if lost else error)
-    shares = shares_of_rows(pairs, np.array(moved), position_shares if quantity is None else error_shares)
-    return path, max(error, LOST) if lost else error, shares
 
 
 _FIRST_MODE = 0.02  # distance along the mode of the first search: lengths of the model, radians
@@ -277,8 +221,9 @@ def trace_equilibrium(
         Tolerances of the iteration.
     accuracy : float, [-], optional
         Refine the mesh, as `solve_static` does, until displacements are off by at most this number times the size of
-        the model, and load factors by this number times the largest one, at every point of the path; or the quantity by
-        this number times its largest value.
+        the model, and load factors by this number times the largest one, at every point of the path, and those of limit
+        points and bifurcations by this number times the largest of them; or the quantity by this number times its
+        largest value.
     quantity : callable or Point, optional
         What is to be accurate: a function of the path that returns a number or numbers, such as the load factor of its
         first limit point, or a point for its displacements; by default all displacements and load factors.
@@ -329,7 +274,7 @@ def trace_equilibrium(
 
     if accuracy is None:
         return warned(trace(model))
-    return warned(refined_until(model, accuracy, lambda model: path_attempt(trace(model), quantity, trace)))
+    return warned(refined_until(model, accuracy, lambda model: path_attempt(trace(model), quantity, trace, accuracy)))
 
 
 def _traced(

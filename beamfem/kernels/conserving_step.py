@@ -16,7 +16,7 @@ from beamfem.kernels.compiler.value_types import signature_of
 from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.nodes import cosine_sine
 from beamfem.kernels.pointers import at, room
-from beamfem.kernels.records import Reals, Record, Table, Wholes, calls
+from beamfem.kernels.records import Reals, Record, Slots, Table, Wholes, calls
 
 BETWEEN = signature_of("rrrrdr")  # start and end (6,) of r', d and the third vector, stiffness, reference, weight, out
 
@@ -68,14 +68,22 @@ class Conserving(Record):
     left: Annotated[Reals, 2, "unknown"]
     p: Annotated[Reals, "coordinates"]
     v: Annotated[Reals, "coordinates"]
-    load: Annotated[Reals, "size"]
+    loads: Reals  # (steps or 1, size)
+    load: Reals  # (size,): in this step
     vectors: Annotated[Reals, 3, "size"]  # z: at the start, at the end, mean
     rates: Annotated[Reals, 3, "size"]  # w
     lost: Annotated[Reals, "size"]  # m
     force: Annotated[Reals, "size"]
     slopes: Annotated[Reals, 4, "size", 2]  # dz/dp in the mean and at the end, its rate at the end; turning by m
+    sizes: Annotated[Slots, 5]  # of the matrix for LAPACK, and its status
+    exchanged: Slots  # (2 unknown,)
+    right: Annotated[Reals, "unknown", 2]
     group_count: int
     groups: Table[Strained]
+    dgbsv = calls(signature_of("ssssrssrss"))
+    place_vectors = calls("conserving_step:place_vectors")
+    balance = calls("conserving_step:balance")
+    correct = calls("conserving_step:correct_band")
     add_strained = calls("conserving_step:add_strained")
     add_entries = calls("conserving_step:add_entries")
     add_turning = calls("conserving_step:add_turning")
@@ -284,3 +292,16 @@ def balance(own: Conserving) -> None:
                 left[unknown + number] += own.slopes[2 * row + a] * own.force[row]
     own.add_turning(own)
     own.add_entries(own)
+
+
+@routine()
+def correct_band(own: Conserving) -> float:
+    """Replace left-hand sides by the corrections (2, unknown) of p and p'; return 1, or 0 if the matrix is singular."""
+    left, right, unknown, sizes = own.left, own.right, own.unknown, own.sizes
+    for i in range(unknown):
+        right[2 * i], right[2 * i + 1] = -left[i], -left[unknown + i]
+    half, status = at(sizes, 1), at(sizes, 4)
+    own.dgbsv(sizes, half, half, at(sizes, 2), own.matrix, at(sizes, 3), own.exchanged, right, sizes, status)
+    for i in range(unknown):
+        left[i], left[unknown + i] = right[2 * i + 1], right[2 * i]
+    return 1.0 if status[0] == 0 else 0.0

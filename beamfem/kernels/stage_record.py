@@ -2,6 +2,7 @@
 
 from typing import Annotated
 
+from beamfem.kernels.conserving_step import Conserving
 from beamfem.kernels.motion_record import MotionRoutines
 from beamfem.kernels.records import Reals, Record, calls
 
@@ -34,6 +35,7 @@ class Stages(Record):
     """
 
     routines: StageRoutines
+    conserving: Conserving  # of steps that conserve energy and momenta
     stages: int  # s
     real: int  # number of real eigenvalues
     samples: int  # rows of loads and prescribed coordinates of a step: the stages, and its end unless it is the last

@@ -1,11 +1,13 @@
 """Factorisations by LAPACK and SuperLU."""
 
 from collections.abc import Callable
+from ctypes import c_char_p, c_void_p, py_object, pythonapi
 from functools import wraps
 from typing import Any
 
 import numpy as np
 import scipy.linalg
+import scipy.linalg.cython_lapack
 from scipy.linalg import LinAlgError
 from scipy.linalg.lapack import dsytrf, dsytrf_lwork
 from scipy.sparse import csc_array
@@ -39,6 +41,15 @@ qr = _told_apart(scipy.linalg.qr)
 solve_banded = _told_apart(scipy.linalg.solve_banded)
 solve_triangular = _told_apart(scipy.linalg.solve_triangular)
 svd = _told_apart(scipy.linalg.svd)
+
+
+def lapack_address(name: str) -> int:
+    """Return the address of a function of LAPACK, which takes pointers only."""
+    capsule = scipy.linalg.cython_lapack.__pyx_capi__[name]
+    name_of, pointer_of = pythonapi.PyCapsule_GetName, pythonapi.PyCapsule_GetPointer
+    name_of.argtypes, name_of.restype = [py_object], c_char_p
+    pointer_of.argtypes, pointer_of.restype = [py_object, c_char_p], c_void_p
+    return int(pointer_of(capsule, name_of(capsule)))
 
 
 def symmetric_factors(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -18,6 +18,7 @@ from beamfem.kernels.block import (
     Block,
 )
 from beamfem.kernels.conserving_step import Conserving, Strained
+from beamfem.linalg.lapack import lapack_address
 from beamfem.physics.connections import BODY, MASS
 from beamfem.physics.discrete_gradients import DISCRETE_GRADIENTS
 from beamfem.physics.stations import DEAD, FOLLOWING, GROUNDED, STRETCHING
@@ -69,7 +70,8 @@ class ConservingModel(NamedTuple):
 
     nodal (2 vectors, m): nodal vectors of each block from z; masses (m, 2) [kg]: of parts at points, on which gravity
     acts; fixed (m,): forces that depend on neither time nor state; others: equations of the forces that are not in z,
-    None if there are none; record: of steps; matrix: view of the derivative of both their equations by p and p'.
+    None if there are none; record: of steps; matrix: view of the derivative of both their equations by p and p', sparse
+    unless it is a band.
     """
 
     nodal: tuple[csr_array, ...]
@@ -78,6 +80,11 @@ class ConservingModel(NamedTuple):
     others: Equations | None
     record: Conserving
     matrix: csc_array | np.ndarray
+
+    @property
+    def banded(self) -> bool:
+        """Whether the matrix is a band as of LAPACK's dgbsv."""
+        return isinstance(self.matrix, np.ndarray)
 
     def forces(self, system: System, time: float) -> np.ndarray:
         """Return the forces (m,) on z at a time."""
@@ -358,6 +365,7 @@ def _record(
     for values, each in zip((mass, ground), given, strict=True):
         values[np.searchsorted(known, each.row.astype(np.int64) * size + each.col)] = each.data
     own = Conserving.usual(
+        dgbsv=lapack_address("dgbsv"),
         size=size,
         coordinates=system.model.size,
         angle_count=len(vectors.angles),
@@ -390,6 +398,8 @@ def _record(
             for block, (fields, numbers) in zip(system.blocks, groups, strict=True)
         ],
     )
-    names = "stiffness", "left", "p", "v", "load", "vectors", "rates", "lost", "force", "slopes"
+    names = "stiffness", "left", "p", "v", "vectors", "rates", "lost", "force", "slopes", "right"
     own.fill(**{name: np.zeros(shape) for name, shape in own.shapes(*names).items()})
+    sizes = [2 * unknown, half, 1, 3 * half + 1, 0]
+    own.fill(sizes=np.array(sizes, dtype=np.int32), exchanged=np.zeros(2 * unknown, dtype=np.int32))
     return own, stored.matrix

@@ -15,6 +15,7 @@ from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.results.solution_checks import advice
 from beamfem.solve.motion.compiled_steps import CompiledSteps, StepsInCalls
 from beamfem.solve.motion.energy_judgement import CHUNK, EnergyJudge
+from beamfem.solve.motion.energy_momentum import ConservingSteps, EnergyMomentum
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.generalized_alpha import Scheme, is_scheme
 from beamfem.solve.motion.marching_by_step import Memory, OwnSteps
@@ -282,6 +283,10 @@ def _steps(
         with motion_workspace(system) as space:
             begin, step = part.loads_from, part.step
             yield StageSteps(system, space, coefficients(integrator), begin, step, statistics)
+        return
+    if isinstance(integrator, EnergyMomentum):
+        with motion_workspace(system) as space:
+            yield ConservingSteps(system, space, part.loads_from, part.step, statistics)
         return
     if not is_scheme(integrator):
         solved = np.zeros(1, dtype=np.int64)

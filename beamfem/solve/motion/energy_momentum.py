@@ -1,27 +1,29 @@
 """Energy and momentum conserving steps: forces between two states with mean stresses."""
 
+from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p, cast
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import LinAlgError
-from scipy.linalg.lapack import dgbsv
 from scipy.sparse import coo_array, csc_array, csr_array
 
 from beamfem.equations.equations import linearise
-from beamfem.equations.system import system_of
+from beamfem.equations.motion_workspace import MotionWorkspace
+from beamfem.equations.system import System
 from beamfem.errors import ConvergenceError, InputError
-from beamfem.kernels.conserving_step import balance, place_vectors
+from beamfem.kernels import conserving_loop
+from beamfem.kernels.motion_record import MotionStatistics
+from beamfem.kernels.stage_record import Stages
 from beamfem.linalg.lapack import superlu
 from beamfem.linalg.tangent import UNROTATED
-from beamfem.results.solution import State
+from beamfem.solve.motion.collocation import Midpoint
 from beamfem.solve.motion.conserving_model import ConservingModel, conserving_model, not_conserved
+from beamfem.solve.motion.coupled_stages import PythonRoutines
 from beamfem.solve.motion.equations_of_motion import EquationsOfMotion
-from beamfem.solve.motion.time_marching import initial_acceleration
+from beamfem.solve.motion.marching_stages import StageSteps
+from beamfem.solve.motion.stage_coefficients import coefficients
+from beamfem.solve.motion.stored_states import Saving
 
-_TOLERANCE = 1e-13  # of the model: a correction that ends an iteration
-_NOISE = 1e-10  # of the model: smaller corrections that no longer decrease are round-off
-_ITERATIONS = 30
-_SINGULAR = "the tangent of a step is singular"
+_RULE = replace(coefficients(Midpoint()))  # times in a step, and accelerations at its end; a workspace of its own
 
 
 @dataclass(frozen=True)
@@ -55,81 +57,68 @@ class EnergyMomentum:
     True
     """
 
-    def run(self) -> "EnergyMomentumRun":
-        """Return the integrator of one motion, which keeps its tables."""
-        return EnergyMomentumRun()
 
+class ConservingSteps(StageSteps):
+    """Marches through steps of `EnergyMomentum`. Raises InputError for a model that is not conserved."""
 
-class EnergyMomentumRun:
-    """The steps of `EnergyMomentum` in one motion."""
+    def __init__(
+        self, system: System, space: MotionWorkspace, begin: float, step: float, statistics: MotionStatistics
+    ) -> None:
+        if (why := not_conserved(system)) is not None:
+            raise InputError(f"EnergyMomentum is not for {why}; use GeneralizedAlpha or Radau")
+        super().__init__(system, space, _RULE, begin, step, statistics)
+        self._model = model = conserving_model(system)
+        model.record.time_step = step
+        self._stages.fill(conserving=model.record, factored=1)
+        self._stages.routines.fill(
+            predict=conserving_loop.predict, iterate=conserving_loop.iterate, complete=conserving_loop.complete
+        )
+        if not model.banded:
+            self._in_python = (*self._in_python, _Corrections(system, space, model, self._stages))
 
-    def __init__(self) -> None:
-        self._model: ConservingModel | None = None
-        self._forces: np.ndarray | None = None
+    @property
+    def why(self) -> str:
+        """Why a step has failed."""
+        return f"{conserving_loop.ITERATIONS} iterations did not suffice"
 
-    def step(self, motion: EquationsOfMotion, begin: State, end: float) -> State:
-        """Return the state after a step. Raises ConvergenceError."""
-        system, h, middle = motion.system, end - begin.at, 0.5 * (begin.at + end)
-        if self._model is None:
-            if (why := not_conserved(system)) is not None:
-                raise InputError(f"EnergyMomentum is not for {why}; use GeneralizedAlpha or Radau")
-            self._model = conserving_model(system)
-        model = self._model
-        if self._forces is None or system.loads.varying:
-            self._forces = model.forces(system, middle)
-        own = model.record
-        own.fill(time_step=h, load=self._forces)
-        own.p[:], own.v[:] = begin.p, begin.v
-        place_vectors(own, 0)
-        for way in (1.0, 0.0):  # rates of vibrations that the step does not resolve mislead
-            own.p[:], own.v[:] = begin.p + way * h * begin.v, (2.0 * way - 1.0) * begin.v
-            if self._solved(motion, model, begin, middle):
-                state = np.array([own.p, own.v, np.zeros_like(own.p)])
-                a = initial_acceleration(system_of(begin.model, static=False), state, end)
-                return replace(begin, p=state[0], v=state[1], a=a, at=end)
-        raise ConvergenceError(f"{_ITERATIONS} iterations did not suffice")
+    def _advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
+        """Do what `advance` does in one compiled call."""
+        middles = 0.5 * (np.append(self._time, times[:-1]) + times)
+        acting = middles if self._system.loads.varying else middles[:1]
+        self._model.record.loads = np.array([self._model.forces(self._system, time) for time in acting.tolist()])
+        return super()._advance(state, prescribed, times, saving)
 
-    def _solved(self, motion: EquationsOfMotion, model: ConservingModel, begin: State, middle: float) -> bool:
-        """Find p and p' at the end of a step by Newton's method; return whether it converges."""
-        own, free, before = model.record, motion.free, np.inf
-        if not len(free):
-            return True
-        for _ in range(_ITERATIONS):
-            place_vectors(own, 1)
-            balance(own)
-            change = self._correction(motion, model, begin, middle)
-            motion.counted[0] += 1
-            own.p[free] += change[0]
-            own.v[free] += change[1]
-            size = float(np.max(np.abs(change[0]) / motion.scale))
-            if not np.isfinite(size):
-                return False
-            if size <= _TOLERANCE or (size <= _NOISE and size > 0.5 * before):
-                return True
-            before = size
+    def _solved_together(self, state: np.ndarray, step: int, begins: np.ndarray, ends: np.ndarray) -> bool:
+        """Return False: iterations have the tangent of each iterate already."""
         return False
 
-    def _correction(self, motion: EquationsOfMotion, model: ConservingModel, begin: State, middle: float) -> np.ndarray:
-        """Return the changes (2, unknown) of p and p'. Raises ConvergenceError."""
-        system, own, left, matrix = motion.system, model.record, model.record.left, model.matrix
+
+class _Corrections(PythonRoutines):
+    """Corrections of models whose matrix is no narrow band, or that have forces which are not in z."""
+
+    def __init__(self, system: System, space: MotionWorkspace, model: ConservingModel, stages: Stages) -> None:
+        super().__init__(model.record.left)
+        self._system, self._equations, self._model, self._stages = system, space.assembler.record, model, stages
+        self._function = CFUNCTYPE(c_double, c_int64)(self._guarded(self._correct))
+        model.record.correct = cast(self._function, c_void_p).value
+
+    def _correct(self, record: int) -> float:
+        """See `conserving_step.correct_band`."""
+        system, model, own, matrix = self._system, self._model, self._model.record, self._model.matrix
+        left, time, h = own.left, float(self._equations.time), own.time_step
+        motion = EquationsOfMotion(system, np.zeros(1, dtype=np.int64), time)
         if model.others is not None:
-            h = own.time_step
-            mean, rate, rest = 0.5 * (begin.p + own.p), (own.p - begin.p) / h, np.zeros_like(begin.p)
+            begin = self._stages.begin[0, : len(own.p)]
+            mean, rate, rest = 0.5 * (begin + own.p), (own.p - begin) / h, np.zeros_like(begin)
             weights = 0.5, 1.0 / h, 0.0
-            force, tangent = linearise(system, mean, rate, rest, middle, weights, equations=model.others, dt=0.5 * h)
+            force, tangent = linearise(system, mean, rate, rest, time, weights, equations=model.others, dt=0.5 * h)
             left[1] += force[motion.free]
             added = coo_array(tangent.sparse(UNROTATED))
             below = coo_array((added.data, (added.row + own.unknown, added.col)), shape=matrix.shape)
             matrix = csc_array(matrix + csc_array(below))
-        if isinstance(matrix, np.ndarray):
-            half = (matrix.shape[0] - 1) // 3
-            *_, found, failed = dgbsv(half, half, matrix, -left.T.ravel(), overwrite_ab=True, overwrite_b=True)
-            if failed:
-                raise ConvergenceError(_SINGULAR)
-            return found.reshape(-1, 2).T[::-1]
-        if system.inclined:
-            return motion.solver(csr_array(matrix))(-left.ravel()).reshape(left.shape)
         try:
-            return superlu(matrix, full_diagonal=True).solve(-left.ravel()).reshape(left.shape)
-        except LinAlgError as error:
-            raise ConvergenceError(_SINGULAR) from error
+            solve = motion.solver(csr_array(matrix)) if system.inclined else superlu(matrix, full_diagonal=True).solve
+        except ConvergenceError:
+            return 0.0
+        left[:] = solve(-left.ravel()).reshape(left.shape)
+        return 1.0

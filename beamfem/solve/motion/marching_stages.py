@@ -19,6 +19,7 @@ from beamfem.kernels.stage_record import StageRoutines, Stages
 from beamfem.kernels.stage_steps import march_stages, predict
 from beamfem.solve.motion.compiled_steps import StepsInCalls
 from beamfem.solve.motion.coupled_planes import CoupledPlanes, is_coupled
+from beamfem.solve.motion.coupled_stages import PythonRoutines
 from beamfem.solve.motion.equations_of_motion import EquationsOfMotion
 from beamfem.solve.motion.stage_coefficients import Coefficients
 from beamfem.solve.motion.stored_states import Saving
@@ -51,6 +52,7 @@ class StageSteps(StepsInCalls):
         if own.time_step != h:
             _fill_step(own, rule, h)
         self._coupled = CoupledPlanes(system, space, own) if is_coupled(system) else None
+        self._in_python: tuple[PythonRoutines, ...] = () if self._coupled is None else (self._coupled,)
         space.solver.fill(limits=MotionLimits(), statistics=statistics)
         space.assembler.weigh((1.0, 1.0, 1.0), h, moving=True)
         space.assembler.require("tangent")
@@ -76,7 +78,7 @@ class StageSteps(StepsInCalls):
         sampled = (begins[:, None] + np.outer(times - begins, rule.samples)).ravel()
         self._fill(state, self._prescribed(begins, times), sampled, saving)
         solver.fill(conditions=len(system.connectors.multipliers))
-        if self._coupled is None and not space.assembler.calls_python:
+        if not (self._in_python or space.assembler.calls_python):
             done = self._march(state, begins, times, lambda: self._routine(space.assembler.record, solver, own))
         else:
             with Deferred() as self._deferred:
@@ -91,7 +93,7 @@ class StageSteps(StepsInCalls):
             done = int(self._routine(space.assembler.record, space.solver, self._stages))
         else:
             done = coupled.march(self._routine, state, times, self._deferred or Deferred())
-        errors = () if coupled is None else (coupled.take_error(),)
+        errors = [each.take_error() for each in self._in_python]
         self._error = next((each for each in (*errors, space.assembler.take_error()) if each is not None), None)
         return done
 

@@ -107,7 +107,7 @@ def settings_of(
         raise InputError(f"step ({step:g}) must not exceed duration ({duration:g})")
     user_defined = not is_scheme(integrator) and not has_stages(integrator)
     steps = any(callable(getattr(integrator, name, None)) for name in ("step", "run"))
-    if isinstance(integrator, type) or (user_defined and not steps):
+    if isinstance(integrator, type) or not (steps or not user_defined or isinstance(integrator, EnergyMomentum)):
         raise InputError(
             "integrator must be a GeneralizedAlpha(rho_inf=...), an object with rule(step) as it has, or one with "
             f"step(motion, begin, end) as bf.Integrator describes it, got {shown(integrator)}"

@@ -10,6 +10,7 @@ from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.progress import progress
 from beamfem.solve.motion.cut_steps import Rows, StepCutter, keep_momentum
 from beamfem.solve.motion.energy_judgement import BROKEN, CHUNK, EnergyJudge
+from beamfem.solve.motion.energy_momentum import EnergyMomentum
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.generalized_alpha import GeneralizedAlpha, Scheme, is_scheme
 from beamfem.solve.motion.saved_rows import SavedRows
@@ -147,7 +148,7 @@ def cutter_of(
     first_chunk = _FIRST_CHUNK // 50 if calls_python else _FIRST_CHUNK
     size, end = 1, float(parts[-1].times[-1])
     judge, largest = None, 1
-    if is_scheme(integrator) or has_stages(integrator):
+    if is_scheme(integrator) or has_stages(integrator) or isinstance(integrator, EnergyMomentum):
         size, largest = max(first_chunk // system.model.size, 1), max(_LARGEST_CHUNK // system.model.size, 1)
         if any(actions.unit.any() for actions in system.loads.actions):
             size = min(size, _AFTER_JUMP)

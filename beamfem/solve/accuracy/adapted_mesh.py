@@ -1,6 +1,7 @@
 """Meshes refined until the estimated error of a result is small enough."""
 
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any, TypeVar
@@ -24,10 +25,10 @@ from beamfem.solve.accuracy.carried_start import tied_to_mesh
 from beamfem.solve.accuracy.error_estimate import (
     NEAR,
     carried_path,
-    decay_errors,
     enriched,
     enriched_row_kept,
     error_shares,
+    errors_of_orders,
     keep_enriched_row,
     largest_displacement,
     largest_position_error,
@@ -46,15 +47,12 @@ _MOST_MESHES = 16
 # orders of elements on the first mesh for a low accuracy, otherwise there are as many as digits
 _LOWEST, _LOWEST_CURVED = 2, 4
 _REACH = 1e-2  # to the power of an order: by how much an error falls as far as elements of this order can tell
-_FROM = 3  # order from which on an error of 1 / _FROM belongs to a solution that is singular at once, see `_distance`
 _LARGEST = 0.2  # error that is believed; beyond, all that is known is that the mesh is too coarse
 _MOST_PARTS, _FEW_PARTS = 8.0, 2.0  # of an element from one mesh to the next, and where little is known or gained
-_PACE = 0.5  # part of the promised decrease of errors, in digits, below which that is slow
 _ENOUGH = 1.3  # times the unknowns needed: if the enriched space has no more, it is the next mesh
-_BETTER = 0.1  # of an error: that of the space it is estimated by
+_BETTER = 0.2  # of an error: that of a mesh which tells it
 _ASYMPTOTIC = 0.2  # of the largest displacement: errors above it fall more slowly than orders promise
 _TRUST = 1.5  # how many times as large as its estimate an error may be
-_SLOWEST = 0.1  # part of the promised decrease of errors, in digits, that is believed at the least
 _SAFETY = 2.0  # by how much the next mesh is to fall below the accuracy
 _FALLS = 0.5  # what a mesh is to leave of the error of the one before; the shares are of no use otherwise
 _MOST_STALLED = 3  # meshes divided evenly, or no finer, whose error is not the smallest so far: it is round-off
@@ -100,23 +98,25 @@ def refined_until(
     accuracy: float,
     attempt: Callable[[Model], tuple[_Result | None, float, Callable[[], Shares] | Shares]],
     most: int = _MOST_MESHES,
+    first_order: int | None = None,
 ) -> _Result:
     """Return the result on the first mesh whose estimated error is well below an accuracy [-].
 
     attempt: returns the result on a mesh, None if it is far too coarse, its relative error, and the shares (ne,) of the
     elements of each beam in it or a function for them, see `error_shares`, or None for equal ones; most: number of
-    meshes to try. Raises ConvergenceError if none of them is fine enough, whose `solution` is the result with the
-    smallest error, or that of a solve that fails on finer meshes, too.
+    meshes to try; first_order: of elements that may have any, by default as many as the accuracy has digits. Raises
+    ConvergenceError if none of them is fine enough, whose `solution` is the result with the smallest error, or that of
+    a solve that fails on finer meshes, too.
     """
     # a result lists its elements, and has beams with numbers of them to be saved
     profiles = profiles_of(model)
     jumps = [() if profile is None else profile.jumps for profile in profiles]
     needed = [(*own, *others) for own, others in zip(model.nodes_needed.fractions, jumps, strict=True)]
-    first = [_first(*each, accuracy) for each in zip(model.beams, needed, strict=True)]
+    digits = int(np.rint(-np.log10(accuracy)))
+    first = [_first(*each, first_order or digits) for each in zip(model.beams, needed, strict=True)]
     fixed = [ends for _, ends in first]
     model = remeshed(model, [beam for beam, _ in first])
-    iterations = elements = unknowns = stalled = number = 0
-    pace, expected = 1.0, 0.0
+    iterations = unknowns = stalled = number = 0
     lost = list[ConvergenceError]()
     before = smallest = np.inf
     best: _Result | None = None
@@ -131,31 +131,25 @@ def refined_until(
             if len(lost) > (_MOST_LIMITED if isinstance(reason, LimitPointError) else _MOST_LOST) or _agree(lost):
                 raise
             result, error, shares = None, np.inf, None
-        divided = sum(mesh.elements for mesh in model.meshes) > elements
-        elements = sum(mesh.elements for mesh in model.meshes)
-        more = sum(map(_intervals, model.beams)) > unknowns
+        finer = sum(map(_intervals, model.beams)) > unknowns
         unknowns = sum(map(_intervals, model.beams))
         if isinstance(result, Solution):
             iterations += result.iterations
-            mesh = f"mesh {number}, of {elements} elements"
+            mesh = f"mesh {number}, of {sum(mesh.elements for mesh in result.model.meshes)} elements"
             ended = f"{result.statistics.ended}; the estimated error is {error:.2g} on {mesh}"
             statistics = replace(result.statistics, ended=ended, iterations=iterations)
             result = replace(result, statistics=statistics)
         if _TRUST * error <= accuracy:
             assert result is not None
             return result
-        stalled = stalled + 1 if ((evenly and divided) or not more) and smallest <= error < np.inf else 0
+        stalled = stalled + 1 if (evenly or not finer) and smallest <= error < np.inf else 0
         # shares are those of stress resultants, which may be exact where the interpolated axis is not
-        evenly = shares is None or (divided and error > _FALLS * before)
-        if max(expected, error) < before < np.inf:
-            # where functions are less smooth than believed, errors fall more slowly
-            pace = float(np.clip(np.log(before / error) / np.log(before / expected), _SLOWEST, 1.0))
+        evenly = shares is None or (finer and error > _FALLS * before)
         if error < smallest:
             smallest, best = error, result
         before = error
         own = None if evenly else shares() if callable(shares) else shares
-        most_parts = _MOST_PARTS if pace > _PACE else _FEW_PARTS
-        model, expected = refined(model, own, error, accuracy / _SAFETY, fixed, pace, most_parts)
+        model = refined(model, own, error, accuracy / _SAFETY, fixed)[0]
     falls = ", and falls no further" if stalled else ""
     raise ConvergenceError(
         f"the estimated error is at best {smallest:.2g} on {number} meshes{falls}; for an accuracy of {accuracy:g} it "
@@ -170,7 +164,7 @@ def _agree(lost: list[ConvergenceError]) -> bool:
     return len(loads) == 2 and abs(loads[1] - loads[0]) <= _SAME_LOAD * abs(loads[1])
 
 
-def _first(beam: Beam, fractions: Sequence[float], accuracy: float) -> tuple[Beam, np.ndarray]:
+def _first(beam: Beam, fractions: Sequence[float], order: int) -> tuple[Beam, np.ndarray]:
     """Return a beam with its first elements, and the arc lengths [m] at which elements end on every mesh.
 
     These are all ends of the user's own elements.
@@ -180,7 +174,7 @@ def _first(beam: Beam, fractions: Sequence[float], accuracy: float) -> tuple[Bea
         return beam if beam.elements == "knots" else with_elements(beam, ends / length), ends
     if _raisable(element):
         lowest = _LOWEST if isinstance(beam.curve, Line | Polyline) else _LOWEST_CURVED
-        element = of_order(element, int(np.clip(np.rint(-np.log10(accuracy)), lowest, HIGHEST_ORDER)))
+        element = of_order(element, int(np.clip(order, lowest, HIGHEST_ORDER)))
     kept = np.array([*np.multiply(fractions, length), *beam.curve.corners])
     return with_elements(beam, ends / length, element), kept
 
@@ -192,72 +186,135 @@ def require_unlocked(findings: Iterable[Finding]) -> None:
         raise InputError(f"an accuracy cannot be had with these elements: {found[0]}")
 
 
-class StaticAttempts:
+def refined_statically(
+    model: Model, accuracy: float, solve: Callable[[Model], Solution], quantity: Quantity
+) -> Solution:
+    """Return the static solution on a mesh with few unknowns whose estimated error is below an accuracy [-]."""
+    lowest = [1 if beam.elements == "auto" else beam.element.field.degree for beam in model.beams]
+    attempts = _StaticAttempts(solve, quantity, accuracy, lowest)
+    return refined_until(model, accuracy, attempts, first_order=HIGHEST_ORDER if quantity is None else None)
+
+
+class _StaticAttempts:
     """Static solutions on one mesh after another, their estimated errors [-], and the shares of the elements in them.
 
-    Each but the first begins with the states of the one before, unless these do not tell its path. An error is that of
-    the last row or, if it is larger, of the row that the mesh approximates worst, relative to the size of the model;
-    with a quantity, that of the last row, relative to its largest value. Raises InputError for elements that lock.
+    Each but the first begins with the states of the one before, unless these do not tell its path. An error is the
+    largest of all rows, or of the last and of that which the mesh approximates worst where coefficients do not tell
+    it, relative to the size of the model; with a quantity, that of the last row, relative to its largest value. Where
+    coefficients tell the errors of all orders, a fine mesh is found by them, which tells the error of the cheapest
+    one. Raises InputError for elements that lock.
     """
 
-    def __init__(self, solve: Callable[[Model], Solution], quantity: Quantity, accuracy: float) -> None:
-        self._solve, self._quantity, self._accuracy = solve, quantity, accuracy
+    def __init__(
+        self, solve: Callable[[Model], Solution], quantity: Quantity, accuracy: float, lowest: list[int]
+    ) -> None:
+        self._solve, self._quantity, self._accuracy, self._lowest = solve, quantity, accuracy, lowest
         # the last solution, and its last row on the enriched space
         self._known: tuple[Solution | None, Solution | None] = None, None
+        self._first = list[np.ndarray]()  # ends of the elements of the first mesh, which are those of all
 
     def __call__(self, model: Model) -> tuple[Solution, float, Callable[[], Shares] | Shares]:
         """See `refined_until`."""
+        self._first = self._first or [mesh.vertices for mesh in model.meshes]
         (path, finer), self._known = self._known, (None, None)
         carried = None if path is None else carried_path(path, finer, model)
         solution = self._solve(model) if carried is None else carried
         require_unlocked(solution.computed(locking))
-        worst = len(solution) - 1 if self._quantity else _worst_row(solution)
-        if self._quantity is None and (coarse := self._too_coarse(solution, worst)) is not None:
-            self._known = solution, None
-            return coarse
+        told = self._quantity is None and all(_raisable(mesh.beam.element) for mesh in model.meshes)
+        errors = _errors_of_rows(solution) if told else None
+        if errors is not None:
+            largest = max(float(each[:, -1].max()) for each in errors)
+            unseen = _unseen(largest, solution, self._accuracy)
+            if largest > _BETTER * self._accuracy or unseen:
+                self._known = solution, None
+                elements = sum(map(len, errors))
+                shares = [each[:, -1] / (elements * largest) for each in errors]
+                return solution, np.inf if unseen else largest / _BETTER, shares
+            cheaper = self._cheaper(path, solution, errors)
+            if cheaper is not None:
+                return *cheaper, None
         if carried is not None and finer is not None and model.tables.get("enriched") is finer.model:
             keep_enriched_row(solution, finer)
         try:
             last, finer = enriched_row_kept(solution, -1)
             pairs = [(solution[last], finer)]
+            worst = last if self._quantity or last <= 1 else _worst_row(solution)
             if worst != last:
                 pairs.append((solution[worst], enriched_row_kept(solution, worst)[1]))
         except ConvergenceError:  # too far from the finer mesh to say how far
             return solution, np.inf, None
-        extent = system_of(model, static=True).extent
-        errors = np.array([largest_position_error(*pair) for pair in pairs]) / extent
-        off = float(errors.max())
+        of_rows = np.array([largest_position_error(*pair) for pair in pairs]) / system_of(model, static=True).extent
+        off = float(of_rows.max())
         if off < NEAR:
             self._known = solution, finer
         if self._quantity is None:
-            moved = max(largest_displacement(finer.model, finer.p[0]) for _, finer in pairs) / extent
-            if off > _ASYMPTOTIC * moved > _ASYMPTOTIC**2 * self._accuracy:
-                off = np.inf  # where layers are much thinner than elements, finer ones show but a part of them
-            return solution, off, lambda: shares_of_rows(pairs, errors, position_shares)
+            if all(_unseen(off, row, self._accuracy) for _, row in pairs):
+                off = np.inf
+            return solution, off, lambda: shares_of_rows(pairs, of_rows, position_shares)
         off = relative_change(solution[last:], finer, self._quantity, self._accuracy)
         return solution, off, lambda: error_shares(*pairs[0])
 
-    def _too_coarse(self, solution: Solution, row: int) -> tuple[Solution, float, Shares] | None:
-        """Return what the decay of coefficients tells of a mesh without an estimate, None if it may be fine enough."""
-        errors = decay_errors(solution[row])
-        if errors is None:
-            return None
-        largest = max(float(each.max()) for each in errors)
-        elements = sum(map(len, errors))
-        if largest <= self._accuracy:
-            return None
-        return solution, largest, [each / (elements * largest) for each in errors]
+    def _cheaper(
+        self, coarser: Solution | None, solution: Solution, errors: list[np.ndarray]
+    ) -> tuple[Solution, float] | None:
+        """Return a solution that is accurate enough with fewer unknowns than one that is more than that, and its error.
+
+        It is a known coarser one, or that on the cheapest mesh; None if there is none. errors: see `errors_of_orders`.
+        """
+        model = solution.model
+        distances = [
+            {order: _distance(own[:, order - 1], order + 1) for order in range(low, own.shape[1] + 1)}
+            for own, low in zip(errors, self._lowest, strict=True)
+        ]
+        largest = max(float(each[:, -1].max()) for each in errors)
+        target, most, last = self._accuracy / _SAFETY, sum(map(_intervals, model.beams)), 0
+        while True:
+            if coarser is not None:
+                error = largest + _difference(coarser, solution)
+                if _TRUST * error <= self._accuracy:
+                    coarser.model.tables["enriched"] = model
+                    keep_enriched_row(coarser, solution[-1:])
+                    return coarser, error
+                coarser = None
+            parted = zip(model.meshes, distances, self._first, strict=True)
+            fewer = remeshed(model, [_cheapest(*each, target) for each in parted])
+            unknowns = sum(map(_intervals, fewer.beams))
+            if unknowns >= most:
+                return None
+            if unknowns > last:
+                last, coarser = unknowns, carried_path(solution, None, fewer)
+                with suppress(ConvergenceError):
+                    coarser = coarser or self._solve(fewer)
+            target /= _SAFETY
+
+
+def _difference(solution: Solution, finer: Solution) -> float:
+    """Return the largest distance [-] of the axis in two solutions, by the size of the model; of others the last."""
+    rows = range(len(solution)) if np.array_equal(solution.at, finer.at) else [-1]
+    extent = system_of(solution.model, static=True).extent
+    return max(largest_position_error(solution[row], finer[row:][:1]) for row in rows) / extent
+
+
+def _errors_of_rows(solution: Solution) -> list[np.ndarray] | None:
+    """Return the largest errors of any row, see `errors_of_orders`."""
+    found = [errors_of_orders(solution[row]) for row in range(len(solution))]
+    known = [each for each in found if each is not None]
+    return [np.max(own, axis=0) for own in zip(*known, strict=True)] if known else None
+
+
+def _unseen(error: float, solution: Solution, accuracy: float) -> bool:
+    """Return whether an error [-] may be much larger: where layers are thinner than elements, it is but a part."""
+    system = system_of(solution.model, static=True)
+    moved = max(largest_displacement(solution.model, p) for p in solution.p) / system.extent
+    return error > _ASYMPTOTIC * moved > _ASYMPTOTIC**2 * accuracy
 
 
 def _worst_row(solution: Solution) -> int:
     """Return the row that a mesh approximates worst: by its coefficients, or that with the largest strain energy."""
-    last = len(solution) - 1
-    if last <= 1:
-        return last
-    if decay_errors(solution[last]) is None:
+    found = [errors_of_orders(solution[row]) for row in range(len(solution))]
+    if any(errors is None for errors in found):
         return int(np.argmax(solution.energy().strain))
-    decay = [decay_errors(solution[row]) or [] for row in range(last + 1)]
-    return int(np.argmax([max(float(each.max()) for each in errors) for errors in decay]))
+    return int(np.argmax([max(float(each[:, -1].max()) for each in errors or []) for errors in found]))
 
 
 def refined(
@@ -266,27 +323,24 @@ def refined(
     error: float,
     target: float,
     fixed: list[np.ndarray],
-    pace: float = 1.0,
-    most_parts: float = _MOST_PARTS,
 ) -> tuple[Model, float]:
     """Return a model whose elements share a smaller error evenly, by higher orders or shorter elements, and that error.
 
     It has the fewest unknowns for it, or is the enriched one, which is there already. shares (ne,): of the elements of
     each beam in the error, see `error_shares`, None to divide all alike; fixed: arc lengths [m] of each beam at which
-    elements stay to end; pace: how many digits of the error go for one that the orders promise; most_parts: into how
-    many an element is divided.
+    elements stay to end.
     """
     elements = sum(mesh.elements for mesh in model.meshes)
     even = [np.full(mesh.elements, 1.0 / elements) for mesh in model.meshes]
-    if not error < _LARGEST:
-        error, most_parts = _LARGEST, _FEW_PARTS
+    most_parts = _MOST_PARTS if shares and error < _LARGEST else _FEW_PARTS
+    error = min(error, _LARGEST)
     lowest = min(mesh.beam.element.field.degree for mesh in model.meshes)
-    target = max(error * max((target / error) ** (1.0 / pace), _REACH**lowest), np.finfo(float).eps)
+    target = max(target, error * _REACH**lowest, np.finfo(float).eps)
     errors = [np.minimum(elements * error * share, _LARGEST) for share in shares or even]
     parted = zip(model.meshes, errors, fixed, strict=True)
     result = remeshed(model, [_refined(*each, target, shares is None, most_parts) for each in parted])
     finer = enriched(model)
-    known = [(mesh, _distances(mesh, own)) for mesh, own in zip(model.meshes, errors, strict=True)]
+    known = [(mesh, _distance(own, _rate(mesh.beam.element))) for mesh, own in zip(model.meshes, errors, strict=True)]
     expected, finest = (
         max(_error_on(*each, beam) for each, beam in zip(known, other.beams, strict=True)) for other in (result, finer)
     )
@@ -312,24 +366,20 @@ def _rate(element: Element) -> int:
     return element.field.degree + 1 if _raisable(element) else 2
 
 
-def _at_once(rate: int) -> float:
-    return 1.0 / min(rate - 1, _FROM)
-
-
 def _distance(error: Any, rate: int) -> Any:
     """Return how many half-lengths of an element away its solution is singular, to the side, by its error [-].
 
     An interpolated function that is analytic within the ellipse of Bernstein with the semi-axes (rho + 1 / rho) / 2 and
-    (rho - 1 / rho) / 2, which has both ends of the element as foci, has an error of C rho^-rate; C was fitted to random
-    models. Source: Trefethen, Approximation Theory and Approximation Practice, 2013, theorem 8.2.
+    (rho - 1 / rho) / 2, which has both ends of the element as foci, has an error of about rho^-rate. Source: Trefethen,
+    Approximation Theory and Approximation Practice, 2013, theorem 8.2.
     """
-    rho = (_at_once(rate) / error) ** (1.0 / rate)
+    rho = np.maximum(error, _TINY) ** (-1.0 / rate)
     return 0.5 * (rho - 1.0 / rho)
 
 
 def _error(distance: Any, rate: int) -> Any:
     """Return the error of an element by that distance, see `_distance`."""
-    return _at_once(rate) * (distance + np.hypot(distance, 1.0)) ** -float(rate)
+    return (distance + np.hypot(distance, 1.0)) ** -float(rate)
 
 
 def _error_on(mesh: BeamMesh, distance: np.ndarray, finer: Beam) -> float:
@@ -340,25 +390,43 @@ def _error_on(mesh: BeamMesh, distance: np.ndarray, finer: Beam) -> float:
     return float(_error((distance[parent] * parts).min(), _rate(finer.element)))
 
 
-def _distances(mesh: BeamMesh, errors: np.ndarray) -> np.ndarray:
-    return np.asarray(_distance(np.maximum(errors, _TINY), _rate(mesh.beam.element)))
-
-
 def _refined(
     mesh: BeamMesh, errors: np.ndarray, fixed: np.ndarray, target: float, evenly: bool, most_parts: float
 ) -> Beam:
     """Return a beam whose elements have errors of at most a target; errors (ne,): of those of its mesh."""
-    beam = best = mesh.beam
     if not (errors > target).any():
-        return beam
-    distance, lowest, least = _distances(mesh, errors), beam.element.field.degree, (np.inf, 0)
-    for order in range(lowest, HIGHEST_ORDER + 1 if _raisable(beam.element) else lowest + 1):
-        element = beam.element if order == lowest else of_order(beam.element, order)
-        parts = np.clip(_distance(target, _rate(element)) / distance, 1.0, most_parts)
-        finer = with_elements(beam, _ends(mesh, np.ceil(parts) if evenly else parts, fixed), element)
-        cost = max(_error_on(mesh, distance, finer), target), _intervals(finer)
+        return mesh.beam
+    element = mesh.beam.element
+    orders = range(element.field.degree, HIGHEST_ORDER + 1) if _raisable(element) else [0]
+    distance = _distance(errors, _rate(element))
+    return _cheapest(mesh, dict.fromkeys(orders, distance), fixed, target, evenly, 1.0, most_parts)
+
+
+def _cheapest(
+    mesh: BeamMesh,
+    distances: dict[int, np.ndarray],
+    fixed: np.ndarray,
+    target: float,
+    evenly: bool = False,
+    least_parts: float = 0.0,
+    most_parts: float = np.inf,
+) -> Beam:
+    """Return the beam with the fewest unknowns whose elements have errors of at most a target, or the smallest ones.
+
+    distances: those (ne,) of the elements of its mesh, see `_distance`, by their errors with each order; 0 as it is.
+    """
+    beam = best = mesh.beam
+    least = np.inf, 0
+    for order, distance in distances.items():
+        rate = order + 1 if order else _rate(beam.element)
+        parts = np.clip(_distance(target, rate) / distance, least_parts, most_parts)
+        if least[0] <= target and max(parts.sum(), 1.0) * order > least[1]:
+            continue
+        element = of_order(beam.element, order) if order else beam.element
+        other = with_elements(beam, _ends(mesh, np.ceil(parts) if evenly else parts, fixed), element)
+        cost = max(_error_on(mesh, distance, other), target), _intervals(other)
         if cost <= least:
-            least, best = cost, finer
+            least, best = cost, other
     return best
 
 

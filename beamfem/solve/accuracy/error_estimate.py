@@ -492,12 +492,13 @@ def shares_of_rows(
 _LOWEST = 3  # order of the axis whose coefficients tell its error
 
 
-def decay_errors(state: State) -> list[np.ndarray] | None:
-    """Return the error (ne,) [-] of the axis in each element of each beam, by the decay of its Legendre coefficients.
+def errors_of_orders(state: State) -> list[np.ndarray] | None:
+    """Return the errors (ne, k) [-] of the axis in each element of order k, if it were of order 1, 2, ..., k.
 
-    It is relative to the size of the model, and without another solve. The coefficients of analytic functions fall as
-    a_n = rho^-n, and the error of an element of order k as rho^-(k + 1); two of them count, as symmetric functions have
-    none of odd degree. On random models it is 0.2 to 2 times the error. None for elements whose nodes do not tell it.
+    They are relative to the size of the model, and those of the interpolation: the sizes of all Legendre coefficients
+    a_n that an order lacks. Those of analytic functions fall as rho^-n, beside the largest of degree 2 or more; the
+    first that is not known follows from the last two, as symmetric functions have none of odd degree. None for elements
+    whose nodes do not tell it.
     """
     extent, result = system_of(state.model, static=True).extent, []
     for mesh in state.model.meshes:
@@ -506,9 +507,12 @@ def decay_errors(state: State) -> list[np.ndarray] | None:
             return None
         order = field.order
         to_coefficients = np.linalg.inv(legvander(2.0 * np.asarray(field.nodes) - 1.0, order))
-        highest = to_coefficients[-2:] @ state.p[mesh.kinematics.dof[mesh.node][..., :2]]
-        sizes = np.linalg.norm(highest, axis=-1) / extent
-        result.append((sizes ** ((order + 1) / np.array([order - 1, order]))).max(axis=1))
+        coefficients = to_coefficients @ state.p[mesh.kinematics.dof[mesh.node][..., :2]]
+        sizes = np.linalg.norm(coefficients, axis=-1) / extent
+        bent = np.maximum(sizes[:, 2:].max(axis=1, keepdims=True), np.finfo(float).tiny)
+        beyond = (bent * (sizes[:, -2:] / bent) ** ((order + 1) / np.array([order - 1, order]))).max(axis=1)
+        lacking = np.column_stack([sizes[:, 2:], beyond])
+        result.append(np.cumsum(lacking[:, ::-1], axis=1)[:, ::-1])
     return result
 
 

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,14 +17,12 @@ from beamfem.model.imposed_strains import ImposedStrain
 from beamfem.model.jumps import find_jumps
 from beamfem.model.model import Model
 from beamfem.results.solution import Solution
-from beamfem.solve.accuracy.error_estimate import enriched, finer_beam, remeshed, with_elements
+from beamfem.solve.accuracy.error_estimate import enriched, remeshed, with_elements
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
 _SAMPLES = 128  # intervals of a beam: what is narrower is seen only if its function declares kinks
-# error of integration that is seen if the enriched space leaves so little of it, and that is never left to be seen
-_LEFT, _LARGE = 0.5, 0.1
 _UNSEEN = 0.02  # of an integral along a beam: what an estimate may miss
 _SHARE = 0.1  # of an accuracy that may be missed
 _LEAST = 1e-4  # smallest error of integration that the samples tell
@@ -132,7 +129,7 @@ def _flexibility_and_mass(beam: Beam, arc_lengths: Iterable[float]) -> np.ndarra
 def resolved(model: Model, profiles: Sequence[Profile | None], accuracy: float) -> Model:
     """Return the model, with elements halved that miss too much of what varies along them for an accuracy [-].
 
-    An estimate compares a mesh and its enriched one, and does not tell what both of them miss.
+    Neither an estimate nor the coefficients of a solution tell what lies between the integration points.
     """
     if not any(profiles):
         return model
@@ -144,15 +141,10 @@ def resolved(model: Model, profiles: Sequence[Profile | None], accuracy: float) 
 def _resolved(mesh: BeamMesh, profile: Profile | None, least: float) -> Beam:
     beam, ends = mesh.beam, mesh.vertices / mesh.vertices[-1]
     while profile is not None:
-        finer = finer_beam(beam, ends)
-        finer_ends = np.asarray(finer.elements, dtype=float)
-        missed = profile.missed(beam, ends)
-        left = np.add.reduceat(profile.missed(finer, finer_ends), np.searchsorted(finer_ends, ends[:-1]))
-        unseen = (missed > _LARGE) | ((missed > least) & (left > _LEFT * missed))
-        unseen &= np.diff(ends) > 1.0 / _SAMPLES
+        unseen = (profile.missed(beam, ends) > least) & (np.diff(ends) > 1.0 / _SAMPLES)
         if not unseen.any():
             break
-        ends = np.sort([*ends, *(0.5 * (a + b) for (a, b), each in zip(pairwise(ends), unseen, strict=True) if each)])
+        ends = np.sort([*ends, *(0.5 * (ends[1:] + ends[:-1]))[unseen]])
         beam = with_elements(beam, ends)
     return beam
 

@@ -20,7 +20,7 @@ from beamfem.progress import kept
 from beamfem.results.full_turns import start_rotations
 from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import warned
-from beamfem.solve.accuracy.adapted_mesh import DEFAULT, StaticAttempts, refined_until
+from beamfem.solve.accuracy.adapted_mesh import DEFAULT, refined_statically
 from beamfem.solve.accuracy.coarse_mesh import warned_of_coarse_mesh
 from beamfem.solve.accuracy.quantity_change import Quantity
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
@@ -140,7 +140,7 @@ def solve_static(
     if accuracy is None and not system_of(model, static=True).model.automatic:
         return warned_of_coarse_mesh(warned(solve(model)))
     wanted = positive("accuracy", DEFAULT if accuracy is None else accuracy)
-    refined = refined_until(model, wanted, StaticAttempts(solve, quantity, wanted))
+    refined = refined_statically(model, wanted, solve, quantity)
     return warned_of_coarse_mesh(warned(refined))
 
 

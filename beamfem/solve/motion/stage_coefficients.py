@@ -73,20 +73,25 @@ class Coefficients:
         return np.array(planes) if planes else np.zeros((len(self.nodes), 3))
 
     def moved(self, system: System, begin: float, end: float, step: float) -> np.ndarray:
-        """Return prescribed changes and their rates (samples, 3, nh) in a step [s] between two times [s]."""
-        at = begin + (end - begin) * self.points
-        return self.motion(system.prescribed_course(at), step).swapaxes(0, 1)
+        """Return prescribed changes u and their rates (samples, 3, nh) in a step [s] between two times [s].
 
-    def motion(self, changes: np.ndarray, step: float) -> np.ndarray:
-        """Return u, u' and u'' (3, samples, m) at the stages, and at the end, of values (points, m) in a step [s].
-
-        They are those of the polynomial through the `points`, whose u'' the method integrates without error.
+        They are those of the polynomial through the `points`, whose u'' the method integrates without error. Values of
+        conditions, as of a motor, are at the stages what the method itself makes of u'': with u there, accelerations
+        would be those of lower order that u as a sum over the stages asks for.
         """
-        points = self.points
+        points, stages = self.points, slice(len(self.nodes))
+        changes = system.prescribed_course(begin + (end - begin) * points)
         fitted = np.linalg.solve(chebyshev.chebvander(2.0 * points - 1.0, len(points) - 1), changes)
-        at = 2.0 * self.samples - 1.0
+        at = 2.0 * np.append(self.samples, 0.0) - 1.0
         rates = [chebyshev.chebder(fitted, order, scl=2.0 / step) if order else fitted for order in range(3)]
-        return np.array([chebyshev.chebval(at, each).T for each in rates])
+        result = np.array([chebyshev.chebval(at, each).T for each in rates])
+        result, start = result[:, :-1], result[:, -1]
+        own = system.prescribed_dofs >= system.model.coordinates
+        if own.any() and not self.explicit:
+            course = start[0] + step * self.nodes[:, None] * start[1]
+            course += step**2 * (self.of_p @ result[2, stages] + self.of_begin[:, :1] * start[2])
+            result[0, stages, own] = course[:, own].T
+        return result.swapaxes(0, 1)
 
 
 @cache

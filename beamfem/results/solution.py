@@ -1,10 +1,10 @@
 """A solution: states of a model over load factor or time, and the results derived from them."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Literal, Self, SupportsIndex, TypeVar, overload
 
 import numpy as np
 
@@ -436,6 +436,12 @@ class Solution:
     @cached_property
     def _computed(self) -> dict[Any, Any]:
         return {}
+
+    def retold(self, **told: Any) -> Self:
+        """Return the same solution with some other statistics; what has been computed of it is kept."""
+        other = replace(self, statistics=replace(self.statistics, **told))
+        vars(other)["_computed"] = self._computed
+        return other
 
     def computed(self, build: "Callable[[Solution], _Value]") -> _Value:
         """Return build(solution), computed once for each solution."""

@@ -2,8 +2,6 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from dataclasses import replace
-from itertools import pairwise
 from typing import Any, TypeVar
 
 import numpy as np
@@ -14,7 +12,8 @@ from beamfem.element.element import Element
 from beamfem.element.fields import HIGHEST_ORDER, Lagrange
 from beamfem.equations.system import system_of
 from beamfem.errors import ConvergenceError, InputError, LimitPointError, LockingWarning
-from beamfem.mesh.beam_grid import distances, element_ends
+from beamfem.mesh.beam_grid import distances as distances_of
+from beamfem.mesh.beam_grid import element_ends
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
@@ -58,7 +57,7 @@ _FALLS = 0.5  # what a mesh is to leave of the error of the one before; the shar
 _MOST_STALLED = 3  # meshes divided evenly, or no finer, whose error is not the smallest so far: it is round-off
 # meshes that may have no solution, or end at limit points, before a finer one does not
 _MOST_LOST, _MOST_LIMITED = 2, 5
-_TINY = 1e-30  # error [-] of elements that have none
+_TINY, _MOST = 1e-30, 0.9  # error [-] of elements that have none, and of those that are off by all they show
 _SAME = 1e-9  # of the length of a beam: tolerance between places
 _SAME_LOAD = 1e-2  # relative difference of limit points that two meshes agree on
 
@@ -137,8 +136,7 @@ def refined_until(
             iterations += result.iterations
             mesh = f"mesh {number}, of {sum(mesh.elements for mesh in result.model.meshes)} elements"
             ended = f"{result.statistics.ended}; the estimated error is {error:.2g} on {mesh}"
-            statistics = replace(result.statistics, ended=ended, iterations=iterations)
-            result = replace(result, statistics=statistics)
+            result = result.retold(ended=ended, iterations=iterations)
         if _TRUST * error <= accuracy:
             assert result is not None
             return result
@@ -221,8 +219,9 @@ class _StaticAttempts:
         solution = self._solve(model) if carried is None else carried
         require_unlocked(solution.computed(locking))
         told = self._quantity is None and all(_raisable(mesh.beam.element) for mesh in model.meshes)
-        errors = _errors_of_rows(solution) if told else None
-        if errors is not None:
+        of_rows = errors_of_orders(solution) if told else None
+        if of_rows is not None:
+            errors = [each.max(axis=0) for each in of_rows]
             largest = max(float(each[:, -1].max()) for each in errors)
             unseen = _unseen(largest, solution, self._accuracy)
             if largest > _BETTER * self._accuracy or unseen:
@@ -262,12 +261,10 @@ class _StaticAttempts:
         It is a known coarser one, or that on the cheapest mesh; None if there is none. errors: see `errors_of_orders`.
         """
         model = solution.model
-        distances = [
-            {order: _distance(own[:, order - 1], order + 1) for order in range(low, own.shape[1] + 1)}
-            for own, low in zip(errors, self._lowest, strict=True)
-        ]
+        orders = [np.arange(low, own.shape[1] + 1) for own, low in zip(errors, self._lowest, strict=True)]
+        known = [_distance(own.T[each - 1], each[:, None] + 1) for own, each in zip(errors, orders, strict=True)]
         largest = max(float(each[:, -1].max()) for each in errors)
-        target, most, last = self._accuracy / _SAFETY, sum(map(_intervals, model.beams)), 0
+        target, expected, most, last = self._accuracy / _SAFETY, np.inf, sum(map(_intervals, model.beams)), 0
         while True:
             if coarser is not None:
                 error = largest + _difference(coarser, solution)
@@ -275,31 +272,26 @@ class _StaticAttempts:
                     coarser.model.tables["enriched"] = model
                     keep_enriched_row(coarser, solution[-1:])
                     return coarser, error
+                # the errors of elements add up
+                target = min(target, expected * self._accuracy / error)
                 coarser = None
-            parted = zip(model.meshes, distances, self._first, strict=True)
-            fewer = remeshed(model, [_cheapest(*each, target) for each in parted])
+            parted = zip(model.meshes, orders, known, self._first, strict=True)
+            found = [_cheapest(*each, target) for each in parted]
+            expected, fewer = max(error for error, _ in found), remeshed(model, [beam for _, beam in found])
             unknowns = sum(map(_intervals, fewer.beams))
             if unknowns >= most:
                 return None
+            target /= _SAFETY
             if unknowns > last:
                 last, coarser = unknowns, carried_path(solution, None, fewer)
                 with suppress(ConvergenceError):
                     coarser = coarser or self._solve(fewer)
-            target /= _SAFETY
 
 
 def _difference(solution: Solution, finer: Solution) -> float:
     """Return the largest distance [-] of the axis in two solutions, by the size of the model; of others the last."""
-    rows = range(len(solution)) if np.array_equal(solution.at, finer.at) else [-1]
-    extent = system_of(solution.model, static=True).extent
-    return max(largest_position_error(solution[row], finer[row:][:1]) for row in rows) / extent
-
-
-def _errors_of_rows(solution: Solution) -> list[np.ndarray] | None:
-    """Return the largest errors of any row, see `errors_of_orders`."""
-    found = [errors_of_orders(solution[row]) for row in range(len(solution))]
-    known = [each for each in found if each is not None]
-    return [np.max(own, axis=0) for own in zip(*known, strict=True)] if known else None
+    pair = (solution, finer) if np.array_equal(solution.at, finer.at) else (solution[-1], finer[-1:])
+    return largest_position_error(*pair) / system_of(solution.model, static=True).extent
 
 
 def _unseen(error: float, solution: Solution, accuracy: float) -> bool:
@@ -311,10 +303,10 @@ def _unseen(error: float, solution: Solution, accuracy: float) -> bool:
 
 def _worst_row(solution: Solution) -> int:
     """Return the row that a mesh approximates worst: by its coefficients, or that with the largest strain energy."""
-    found = [errors_of_orders(solution[row]) for row in range(len(solution))]
-    if any(errors is None for errors in found):
+    found = errors_of_orders(solution)
+    if found is None:
         return int(np.argmax(solution.energy().strain))
-    return int(np.argmax([max(float(each[:, -1].max()) for each in errors or []) for errors in found]))
+    return int(np.argmax(np.max([each[..., -1].max(axis=1) for each in found], axis=0)))
 
 
 def refined(
@@ -366,20 +358,20 @@ def _rate(element: Element) -> int:
     return element.field.degree + 1 if _raisable(element) else 2
 
 
-def _distance(error: Any, rate: int) -> Any:
+def _distance(error: Any, rate: Any) -> Any:
     """Return how many half-lengths of an element away its solution is singular, to the side, by its error [-].
 
     An interpolated function that is analytic within the ellipse of Bernstein with the semi-axes (rho + 1 / rho) / 2 and
     (rho - 1 / rho) / 2, which has both ends of the element as foci, has an error of about rho^-rate. Source: Trefethen,
     Approximation Theory and Approximation Practice, 2013, theorem 8.2.
     """
-    rho = np.maximum(error, _TINY) ** (-1.0 / rate)
+    rho = np.clip(error, _TINY, _MOST) ** (-1.0 / rate)
     return 0.5 * (rho - 1.0 / rho)
 
 
-def _error(distance: Any, rate: int) -> Any:
+def _error(distance: Any, rate: Any) -> Any:
     """Return the error of an element by that distance, see `_distance`."""
-    return (distance + np.hypot(distance, 1.0)) ** -float(rate)
+    return (distance + np.hypot(distance, 1.0)) ** (-1.0 * rate)
 
 
 def _error_on(mesh: BeamMesh, distance: np.ndarray, finer: Beam) -> float:
@@ -397,49 +389,41 @@ def _refined(
     if not (errors > target).any():
         return mesh.beam
     element = mesh.beam.element
-    orders = range(element.field.degree, HIGHEST_ORDER + 1) if _raisable(element) else [0]
-    distance = _distance(errors, _rate(element))
-    return _cheapest(mesh, dict.fromkeys(orders, distance), fixed, target, evenly, 1.0, most_parts)
+    orders = np.arange(element.field.degree, HIGHEST_ORDER + 1) if _raisable(element) else np.zeros(1, dtype=int)
+    known = np.tile(_distance(errors, _rate(element)), (len(orders), 1))
+    return _cheapest(mesh, orders, known, fixed, target, evenly, 1.0, most_parts)[1]
 
 
 def _cheapest(
     mesh: BeamMesh,
-    distances: dict[int, np.ndarray],
+    orders: np.ndarray,
+    distances: np.ndarray,
     fixed: np.ndarray,
     target: float,
     evenly: bool = False,
     least_parts: float = 0.0,
     most_parts: float = np.inf,
-) -> Beam:
+) -> tuple[float, Beam]:
     """Return the beam with the fewest unknowns whose elements have errors of at most a target, or the smallest ones.
 
-    distances: those (ne,) of the elements of its mesh, see `_distance`, by their errors with each order; 0 as it is.
+    orders (m,): to choose from, 0 for elements that have one; distances (m, ne): of the elements of its mesh with each,
+    see `_distance`. Returns the largest error, too.
     """
-    beam = best = mesh.beam
-    least = np.inf, 0
-    for order, distance in distances.items():
-        rate = order + 1 if order else _rate(beam.element)
-        parts = np.clip(_distance(target, rate) / distance, least_parts, most_parts)
-        if least[0] <= target and max(parts.sum(), 1.0) * order > least[1]:
-            continue
-        element = of_order(beam.element, order) if order else beam.element
-        other = with_elements(beam, _ends(mesh, np.ceil(parts) if evenly else parts, fixed), element)
-        cost = max(_error_on(mesh, distance, other), target), _intervals(other)
-        if cost <= least:
-            least, best = cost, other
-    return best
-
-
-def _ends(mesh: BeamMesh, parts: np.ndarray, fixed: np.ndarray) -> tuple[float, ...]:
-    """Return the fractions at which new elements end, of which so many are needed instead of each element (ne,).
-
-    They are whole numbers between fixed ends: if 1.2 times as many do, halves of all would be far too many.
-    """
-    length = mesh.vertices[-1]
-    inner = 1 + np.flatnonzero(distances(mesh.vertices[1:-1], fixed) < _SAME * length)
+    beam, length = mesh.beam, mesh.vertices[-1]
+    rates = np.where(orders, orders + 1, _rate(beam.element))
+    parts = np.clip(_distance(target, rates)[:, None] / distances, least_parts, most_parts)
+    parts = np.ceil(parts) if evenly else parts
+    inner = 1 + np.flatnonzero(distances_of(mesh.vertices[1:-1], fixed) < _SAME * length)
+    pieces = [0, *inner.tolist()]
+    # elements are whole between fixed ends: if 1.2 times as many do, halves of all would be far too many
+    counts = np.ceil(np.add.reduceat(parts, pieces, axis=1) - _SAME).astype(int)
+    errors = _error((parts * distances).min(axis=1), rates)
+    best = np.lexsort((-orders, counts.sum(axis=1) * orders, np.maximum(errors, (1.0 + _SAME) * target)))[0]
     ends = [0.0]
-    for first, last in pairwise([0, *inner.tolist(), mesh.elements]):
-        along = np.append(0.0, np.cumsum(parts[first:last]))
-        wanted = np.linspace(0.0, along[-1], int(np.ceil(along[-1] - _SAME)) + 1)
-        ends += (np.interp(wanted[1:], along, mesh.vertices[first : last + 1]) / length).tolist()
-    return (*ends[:-1], 1.0)
+    for first, last, count in zip(pieces, [*pieces[1:], mesh.elements], counts[best].tolist(), strict=True):
+        along = np.append(0.0, np.cumsum(parts[best, first:last]))
+        wanted = np.linspace(0.0, along[-1], count + 1)[1:]
+        ends += (np.interp(wanted, along, mesh.vertices[first : last + 1]) / length).tolist()
+    element = of_order(beam.element, int(orders[best])) if orders[best] else beam.element
+    finer = with_elements(beam, (*ends[:-1], 1.0), element)
+    return _error_on(mesh, distances[best], finer), finer

@@ -1,7 +1,6 @@
 """Warning of a mesh that is too coarse for the displacements of a static solution, or of a motion that keeps it."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import lru_cache
 from math import comb
 from typing import Any
@@ -28,7 +27,7 @@ from beamfem.results.solution_checks import warn_of
 from beamfem.results.status import Finding
 from beamfem.solve.accuracy.error_estimate import (
     enriched,
-    enriched_row,
+    enriched_row_kept,
     error_shares,
     largest_displacement,
     largest_displacement_error,
@@ -166,7 +165,7 @@ def _found(solution: Solution) -> Finding | None:
     """Return a warning of the last row of a solution if its estimated error is large, or there is no estimate."""
     model, last = solution.model, len(solution) - 1
     try:
-        finer = enriched_row(solution, last)
+        finer = enriched_row_kept(solution, last)[1]
     except ConvergenceError as reason:
         return Finding(f"the mesh may be too coarse: {reason.reason}. Use more elements", CoarseMeshWarning)
     except InputError:  # a part of the user's own that takes no other mesh
@@ -220,8 +219,7 @@ def kept_coarse(what: str, remedy: str = "find that state with more elements") -
 
 def _told(solution: Solution, found: Finding) -> Solution:
     warn_of([found])
-    statistics = replace(solution.statistics, warnings=(*solution.statistics.warnings, found.sentence))
-    return replace(solution, statistics=statistics)
+    return solution.retold(warnings=(*solution.statistics.warnings, found.sentence))
 
 
 def _rate(mesh: BeamMesh) -> int:

@@ -1,8 +1,10 @@
 """Discretisation error of a static result, estimated by the equilibrium on an enriched space; shares of elements."""
 
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from copy import copy
 from dataclasses import dataclass, fields, replace
+from functools import lru_cache
 from itertools import chain
 from typing import Any, cast
 
@@ -19,7 +21,7 @@ from beamfem.equations.model_coordinates import set_coordinates
 from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.linalg.tangent import Stresses
-from beamfem.mesh.beam_mesh import BeamMesh
+from beamfem.mesh.beam_mesh import BeamMesh, join
 from beamfem.mesh.model_meshes import required_nodes
 from beamfem.mesh.reference import reference_axis, reference_position
 from beamfem.model.beam import Beam, Point
@@ -163,7 +165,7 @@ def carried_coordinates(state: State, target: Model) -> np.ndarray:
     """
     source, system = state.model, system_of(target, static=True)
     p = system.reference.copy()
-    for old, new in zip(source.meshes, target.meshes, strict=True):
+    for old, new in _joined(source, target):
         set_coordinates(new, _values_at_nodes(old, new, state), p)
     for item, same in same_connectors(system.connectors, system_of(source, True).connectors).items():
         p[item.own], p[item.amplitudes] = state.p[same.own], state.p[same.amplitudes]
@@ -219,16 +221,32 @@ def places(old: BeamMesh, new: BeamMesh, xi: np.ndarray) -> tuple[np.ndarray, np
 
     At ends of old elements, it is the one towards the middle of the new element.
     """
-    every = np.repeat(np.arange(new.elements), len(xi))
-    along, ends = new.arc_length(every, np.tile(xi, new.elements)).reshape(new.elements, -1), old.vertices
-    middle = 0.5 * (new.vertices[1:] + new.vertices[:-1])
+    every = np.arange(new.elements)
+    along = new.arc_length(np.repeat(every, len(xi)), np.tile(xi, new.elements)).reshape(new.elements, -1)
+    middle = 0.5 * np.add(*new.ends(every))
     inside = along + _INSIDE * (middle[:, None] - along)
-    element = np.clip(np.searchsorted(ends, inside, side="right") - 1, 0, old.elements - 1)
+    element, first, row = np.empty(along.shape, dtype=np.int64), 0, 0
+    for part, finer in zip(old.parts, new.parts, strict=True):
+        rows = slice(row, row + finer.elements)
+        element[rows] = first + np.searchsorted(part.vertices[1:-1], inside[rows], side="right")
+        first, row = first + part.elements, row + finer.elements
+    start, end = old.ends(element)
     if old.beam.elements == "knots":
         curve: Any = old.beam.curve
-        along, ends = curve.parameter(along.ravel()).reshape(along.shape), old.parameter
-    start, end = ends[element], ends[element + 1]
+        along = curve.parameter(along.ravel()).reshape(along.shape)
+        start, end = old.parameter[element], old.parameter[element + 1]
     return element, np.clip((along - start) / (end - start), 0.0, 1.0)
+
+
+def _joined(source: Model, target: Model) -> Iterator[tuple[BeamMesh, BeamMesh]]:
+    """Yield the meshes of like beams of a model, and of the same beams with other elements, as one each."""
+    like = {number: group for group, numbers in enumerate(source.numbered.joinable) for number in numbers}
+    beams: defaultdict[tuple[int, int], list[int]] = defaultdict(list)
+    for group, numbers in enumerate(target.numbered.joinable):
+        for number in numbers:
+            beams[like[number], group].append(number)
+    for numbers in beams.values():
+        yield join([source.meshes[number] for number in numbers]), join([target.meshes[number] for number in numbers])
 
 
 def _values_at_nodes(old: BeamMesh, new: BeamMesh, state: State) -> dict[str, np.ndarray]:
@@ -243,8 +261,8 @@ def _values_at_nodes(old: BeamMesh, new: BeamMesh, state: State) -> dict[str, np
     vectors = {"r": _complex(now.r[0]) + turned * offset, "r_x": r_x, "r_y": 1j * tangent * turned}
     # theta is the rotation of the director, whatever the section turns with
     angle = np.angle(turned)
-    indices = state.model.numbered.numbers_uncounted.get(old)
-    counted = None if indices is None or state.turned is None else state.turned[None, [indices]]
+    indices = [number for part, number in state.model.numbered.numbers_uncounted.items() if part in old.parts]
+    counted = None if not indices or state.turned is None else state.turned[None, indices]
     near = postprocess.section_rotation(old, state.p[None], now, element, xi, counted)[0]
     values = {"theta": angle + 2.0 * np.pi * np.round((near - angle) / (2.0 * np.pi))}
     values["s"] = np.real(r_x * np.conj(tangent * turned / np.abs(turned)))
@@ -408,21 +426,23 @@ def largest_displacement(model: Model, p: np.ndarray) -> float:
     )
 
 
-def largest_position_error(state: State, finer: Solution) -> float:
-    """Return the largest change [m] of a position along beams, at the nodes of the finer model and between them."""
-    return max(float(np.abs(change).max()) for _, _, change in _position_changes(state, finer))
+def largest_position_error(coarse: State | Solution, finer: Solution) -> float:
+    """Return the largest change [m] of a position along beams, of a state or any row, at the nodes of the finer one."""
+    pairs = _joined(coarse.model, finer.model)
+    return max(float(np.abs(_position_changes(*pair, coarse, finer)[2]).max()) for pair in pairs)
 
 
-def _position_changes(state: State, finer: Solution) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Yield for each beam old element, xi and change [m], as a complex number, of the nodes (elements, m) of the finer.
+def _position_changes(
+    old: BeamMesh, new: BeamMesh, coarse: State | Solution, finer: Solution
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return old element (ne,), xi (ne, m) and changes (rows, ne, m) [m], as complex numbers, of the nodes of a mesh.
 
     Elements have their own ends, so that nodes between two of them are there twice.
     """
-    for old, new in zip(state.model.meshes, finer.model.meshes, strict=True):
-        element, xi = places(old, new, new.beam.element.field.nodes)
-        before = axis_at(old, state.p[None], element.ravel(), xi.ravel()).r[0]
-        change = _complex(finer.p[0][new.kinematics.dof[new.node.ravel(), :2]] - before)
-        yield element[:, 0], xi, change.reshape(xi.shape)
+    element, xi = places(old, new, new.beam.element.field.nodes)
+    before = axis_at(old, np.atleast_2d(coarse.p), element.ravel(), xi.ravel()).r
+    change = _complex(finer.p[:, new.kinematics.dof[new.node.ravel(), :2]] - before)
+    return element[:, 0], xi, change.reshape(-1, *xi.shape)
 
 
 def largest_displacement_error(state: State, finer: Solution) -> float:
@@ -458,7 +478,8 @@ def position_shares(state: State, finer: Solution) -> list[np.ndarray]:
     the errors of all elements, in which they have `error_shares`. Their sum may exceed 1, as each is the larger of two.
     """
     within, at_ends = [], 0.0
-    for old, (parent, xi, change) in zip(state.model.meshes, _position_changes(state, finer), strict=True):
+    for old, new in zip(state.model.meshes, finer.model.meshes, strict=True):
+        parent, xi, (change,) = _position_changes(old, new, state, finer)
         every = np.arange(old.elements)
         start = change[np.searchsorted(parent, every), 0]
         end = change[np.searchsorted(parent, every, side="right") - 1, -1]
@@ -492,28 +513,33 @@ def shares_of_rows(
 _LOWEST = 3  # order of the axis whose coefficients tell its error
 
 
-def errors_of_orders(state: State) -> list[np.ndarray] | None:
-    """Return the errors (ne, k) [-] of the axis in each element of order k, if it were of order 1, 2, ..., k.
+def errors_of_orders(solution: Solution) -> list[np.ndarray] | None:
+    """Return the errors (rows, ne, k) [-] of the axis in each element of order k, if it were of order 1, 2, ..., k.
 
     They are relative to the size of the model, and those of the interpolation: the sizes of all Legendre coefficients
     a_n that an order lacks. Those of analytic functions fall as rho^-n, beside the largest of degree 2 or more; the
     first that is not known follows from the last two, as symmetric functions have none of odd degree. None for elements
     whose nodes do not tell it.
     """
-    extent, result = system_of(state.model, static=True).extent, []
-    for mesh in state.model.meshes:
+    extent, result = system_of(solution.model, static=True).extent, []
+    for mesh in solution.model.meshes:
         field = mesh.beam.element.field
         if type(field) is not Lagrange or field.order < _LOWEST:
             return None
         order = field.order
-        to_coefficients = np.linalg.inv(legvander(2.0 * np.asarray(field.nodes) - 1.0, order))
-        coefficients = to_coefficients @ state.p[mesh.kinematics.dof[mesh.node][..., :2]]
-        sizes = np.linalg.norm(coefficients, axis=-1) / extent
-        bent = np.maximum(sizes[:, 2:].max(axis=1, keepdims=True), np.finfo(float).tiny)
-        beyond = (bent * (sizes[:, -2:] / bent) ** ((order + 1) / np.array([order - 1, order]))).max(axis=1)
-        lacking = np.column_stack([sizes[:, 2:], beyond])
-        result.append(np.cumsum(lacking[:, ::-1], axis=1)[:, ::-1])
+        coefficients = _to_coefficients(order) @ solution.p[:, mesh.kinematics.dof[mesh.node][..., :2]]
+        sizes = np.linalg.norm(coefficients, axis=-1)[..., 2:] / extent
+        bent = np.maximum(sizes.max(axis=-1, keepdims=True), np.finfo(float).tiny)
+        beyond = bent * (sizes[..., -2:] / bent) ** ((order + 1) / np.array([order - 1, order]))
+        lacking = np.concatenate([sizes, beyond.max(axis=-1, keepdims=True)], axis=-1)
+        result.append(np.cumsum(lacking[..., ::-1], axis=-1)[..., ::-1])
     return result
+
+
+@lru_cache
+def _to_coefficients(order: int) -> np.ndarray:
+    """Return the Legendre coefficients (order + 1, order + 1) of the polynomials of an order through its nodes."""
+    return np.linalg.inv(legvander(2.0 * Lagrange(order).nodes - 1.0, order))
 
 
 def mode_shares(

@@ -239,7 +239,7 @@ def simulate(
         return warned(solution)
     sentences = detuned(solution, system, acting)
     if sentences:
-        solution = replace(solution, statistics=replace(solution.statistics, warnings=sentences))
+        solution = solution.retold(warnings=sentences)
     return _told(solution)
 
 

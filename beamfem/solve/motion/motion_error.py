@@ -37,8 +37,7 @@ def rows_of(motion: Solution, duration: float, events: Sequence[Event]) -> dict[
 
 def with_estimate_of(other: Solution, motion: Solution) -> Solution:
     """Return a motion that tells the estimated error of another one on the same mesh."""
-    told, statistics = other.statistics.ended.rpartition("; ")[2], motion.statistics
-    return replace(motion, statistics=replace(statistics, ended=f"{statistics.ended}; {told}"))
+    return motion.retold(ended=f"{motion.statistics.ended}; {other.statistics.ended.rpartition('; ')[2]}")
 
 
 def motion_attempt(

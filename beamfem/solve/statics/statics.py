@@ -228,8 +228,7 @@ def solve_through(
     solution = record.solution(complete=True)
     if resolved and functions:
         found = warn_between_rows(functions, np.unique([at for at, *_ in record.rows]), _SIDE)
-        statistics = replace(solution.statistics, warnings=(*solution.statistics.warnings, *found))
-        return replace(solution, statistics=statistics)
+        return solution.retold(warnings=(*solution.statistics.warnings, *found))
     return solution
 
 

@@ -87,6 +87,54 @@ def test_small_quantities_are_as_accurate_as_round_off_permits(place):
     assert solution.displacement(point)[-1, 0] == pytest.approx(exact, rel=2e-3)
 
 
+def loaded_span(**mesh):
+    """Simply supported under a uniform load: shear forces of both ends are equal, and of opposite sign."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), section=SECTION, material=STEEL, **mesh)
+    return beam, bf.Model(
+        [beam], [bf.Pin(beam.start), bf.Roller(beam.end)], [bf.DistributedLoad(beam, (0.0, -20.0 * EI))]
+    )
+
+
+@pytest.mark.parametrize(
+    ("accuracy", "of"),
+    [
+        *((accuracy, lambda s, b: s.section_forces(b).peak("shear").value) for accuracy in (1e-2, 1e-6, 1e-8)),
+        (1e-2, lambda s, b: s.section_forces(b).peak("normal").value),
+        (1e-2, lambda s, b: s.rotation(b.end)[-1]),
+    ],
+)
+def test_peaks_of_either_sign_and_of_one_coarse_element_are_as_accurate_as_asked_for(accuracy, of):
+    fine, model = loaded_span(elements=16, element=bf.CRBF(8))
+    exact = of(bf.solve_static(model), fine)
+    beam, model = loaded_span()
+    solution = bf.solve_static(model, accuracy=accuracy, quantity=lambda s: of(s, beam))
+    assert abs(of(solution, beam)) == pytest.approx(abs(exact), rel=accuracy)
+    assert abs(solution.error(lambda s: of(s, beam))) <= accuracy * abs(exact)
+
+
+def test_forces_and_moments_are_each_as_accurate_as_asked_for():
+    """A strut whose axial reaction is some 3000 times as large as the moment at its clamp."""
+    found = []
+    for mesh in ({"elements": 6, "element": bf.CRBF(8)}, {}):
+        beam = bf.Beam(bf.Line((0, 0), (1, 0)), section=SECTION, material=STEEL, **mesh)
+        loads = [bf.PointForce(beam.at(0.3), (1e5, 0.0)), bf.DistributedLoad(beam, lambda s: (0.0, np.exp(-30.0 * s)))]
+        model = bf.Model([beam], [bf.Clamp(beam.start), bf.Clamp(beam.end)], loads)
+        asked = {} if mesh else {"accuracy": 1e-2, "quantity": lambda s, beam=beam: s.reaction(beam.start)[-1]}
+        found.append(bf.solve_static(model, **asked).reaction(beam.start)[-1])
+    assert found[1] == pytest.approx(found[0], rel=1e-2)
+
+
+def test_entries_of_a_list_are_each_as_accurate_as_asked_for():
+    beam, model = loaded_span()
+
+    def both(solution):
+        return [1e6 * solution.section_forces(beam).peak("moment").value, solution.rotation(beam.end)[-1]]
+
+    fine, exact = loaded_span(elements=16, element=bf.CRBF(8))
+    solution = bf.solve_static(model, accuracy=1e-5, quantity=both)
+    assert both(solution)[1] == pytest.approx(bf.solve_static(exact).rotation(fine.end)[-1], rel=1e-5)
+
+
 def test_elements_are_short_only_where_it_is_needed():
     """On a stiff foundation only the loaded end bends."""
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(4), SECTION, STEEL)
@@ -457,13 +505,21 @@ def test_a_quantity_of_a_path_may_be_what_is_accurate():
         bf.trace_equilibrium(toggle.meshed("auto"), until=40.0, accuracy=1e-2, quantity=lambda path: limits(path)[2])
 
 
-@pytest.mark.parametrize("solve", [bf.trace_equilibrium, lambda *given, **asked: bf.simulate(*given, 0.01, **asked)])
+@pytest.mark.parametrize(
+    "solve",
+    [
+        bf.trace_equilibrium,
+        lambda *given, **asked: bf.simulate(*given, 0.01, **asked),
+        lambda model, _, **asked: bf.solve_static(model, **asked),
+    ],
+)
 def test_a_quantity_needs_an_accuracy(solve):
     beam, model = model_of(bf.CRBF(2), 2, bent)
     with pytest.raises(bf.InputError, match="a quantity is what is to be accurate, so it needs an accuracy"):
         solve(model, 1.0, quantity=beam.end)
-    with pytest.raises(bf.InputError, match="quantity is a function of a solution, such as"):
-        solve(model, 1.0, quantity="tip", accuracy=1e-3)
+    for wrong in ("tip", 3, beam):
+        with pytest.raises(bf.InputError, match="quantity is a function of a solution, such as"):
+            solve(model, 1.0, quantity=wrong, accuracy=1e-3)
 
 
 def test_motions_from_a_static_state_begin_in_it_on_a_finer_mesh():

@@ -121,13 +121,13 @@ def meshed(model: Model, like: State | Solution | str) -> Model:
 def _enriched(mesh: BeamMesh, required: Iterable[tuple[float, Any]]) -> Beam:
     """Return the beam of a mesh on the enriched space; required: fractions at which other parts need nodes.
 
-    An element alone between such nodes may be symmetric, so that a node in its middle would not turn either.
+    An element alone between such nodes may be symmetric, so that what an order adds is zero in its middle.
     """
-    ends, order = mesh.vertices / mesh.vertices[-1], mesh.beam.element.field.degree
+    ends = mesh.vertices / mesh.vertices[-1]
     fixed = np.isin(ends, [0.0, 1.0, *(fraction for fraction, _ in required)])
     alone = fixed[1:] & fixed[:-1]
     if _raised(mesh.beam):
-        return finer_beam(mesh.beam, ends, raised=2 if order == 1 and alone.any() else 1)
+        return finer_beam(mesh.beam, ends, raised=2 if alone.any() else 1)
     parts = np.where(alone & (len(mesh.beam.element.field.nodes) == 2), 3, 2)
     inside = [(number, part / of) for number, of in enumerate(parts) for part in range(1, of)]
     number, xi = np.array(inside).T

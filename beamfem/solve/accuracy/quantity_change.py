@@ -18,6 +18,7 @@ Quantity = Callable[[Any], Any] | Point | None
 
 LOST = 1.0  # relative error of what a finer mesh does not find again
 _COARSE = 1e-4  # relative error of positions above which a mesh may lack a quantity
+_ALIKE = 1e-2  # of a value: difference of sizes up to which another sign is that of an equal peak, not another value
 _NOISE = 10.0  # by how much a quantity is to exceed what round-off of the coordinates makes of it
 
 
@@ -39,9 +40,9 @@ def evaluated(
     """
     found = [each.displacement(quantity) if isinstance(quantity, Point) else quantity(each) for each in (before, after)]
     with suppress(TypeError, ValueError):
-        numbers = tuple(np.asarray(each, dtype=float) for each in found)
-        if numbers[0].shape == numbers[1].shape and all(np.isfinite(each).all() for each in numbers):
-            return numbers[0], numbers[1]
+        value, other = (np.asarray(each, dtype=float) for each in found)
+        if value.shape == other.shape and np.isfinite(value).all() and np.isfinite(other).all():
+            return value, np.where(np.abs(other + value) <= _ALIKE * np.abs(value), -other, other)
     raise InputError(
         "quantity must return a number, or numbers of which there are as many on every mesh, and finite ones, got "
         f"{shown(found[0])} and {shown(found[1])}"
@@ -53,25 +54,40 @@ def relative_change(
 ) -> float:
     """Return the largest change of a quantity over its largest value; 0 of one that is zero but for round-off.
 
+    Each entry of a list or tuple is a quantity of its own, and so are the moments of arrays (..., 3) of fx, fy and m.
     It is also 0 of one row whose change is above an accuracy [-], but is no more than round-off makes of its
     equilibrium, which is warned of. Raises InputError, see `evaluated`.
     """
     value, other = evaluated(quantity, before, after)
+    own = _quantities(value, quantity, before)
 
-    def largest(numbers: np.ndarray) -> float:
-        return float(np.abs(numbers).max(initial=0.0))
+    def largest(numbers: np.ndarray) -> np.ndarray:
+        result = np.zeros(int(own.max(initial=0)) + 1)
+        np.maximum.at(result, own, np.abs(numbers))
+        return result
 
-    def noise(rounded: Solution) -> float:
-        return _NOISE * largest(evaluated(quantity, rounded, after)[0] - value)
+    def noise(rounded: Solution) -> np.ndarray:
+        return _NOISE * largest(evaluated(quantity, before, rounded)[1] - value)
 
     size, change, rounded = largest(value), largest(other - value), _rounded(before)
-    if max(size, change) <= noise(rounded):
-        return 0.0
-    if change > accuracy * size and change <= (left := noise(_in_equilibrium(rounded))):
-        digits = np.log10(_NOISE * size / left) if size > 0.0 else 0.0
-        warn(f"round-off leaves about {max(digits, 0.0):.0f} digits of the quantity", RoundOffWarning)
-        return 0.0
-    return change / size if size > 0.0 else change
+    change[np.maximum(size, change) <= noise(rounded)] = 0.0
+    if (over := change / accuracy > size).any():
+        left = noise(_in_equilibrium(rounded))
+        if (lost := over & (change <= left)).any():
+            digits = np.log10(_NOISE * size[lost & (size > 0.0)] / left[lost & (size > 0.0)]).min(initial=np.inf)
+            warn(f"round-off leaves about {max(digits, 0.0):.0f} digits of the quantity", RoundOffWarning)
+            change[lost] = 0.0
+    return float(np.max(np.divide(change, size, out=change.copy(), where=size > 0.0)))
+
+
+def _quantities(values: np.ndarray, quantity: Callable[[Any], Any] | Point, solution: Solution) -> np.ndarray:
+    """Return to which quantity each number belongs: arrays may hold others than one, see `relative_change`."""
+    result = np.zeros(values.shape, dtype=int)
+    if values.ndim and values.shape[-1] == 3:
+        result[..., 2] = 1
+    if not isinstance(quantity, Point) and isinstance(quantity(solution), list | tuple):
+        result.T[...] += 2 * np.arange(len(values))
+    return result
 
 
 def change_if_found(before: Solution, after: Solution, quantity: Callable[[Any], Any] | Point, moved: float) -> float:

@@ -20,7 +20,7 @@ from beamfem.progress import kept
 from beamfem.results.full_turns import start_rotations
 from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import warned
-from beamfem.solve.accuracy.adapted_mesh import DEFAULT, refined_statically
+from beamfem.solve.accuracy.adapted_mesh import prepared, refined_statically
 from beamfem.solve.accuracy.coarse_mesh import warned_of_coarse_mesh
 from beamfem.solve.accuracy.quantity_change import Quantity
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
@@ -44,7 +44,7 @@ from beamfem.solve.start.start_checks import refuse_memory
 from beamfem.solve.statics.load_jumps import changing, cross_jump
 from beamfem.solve.statics.load_steps import SAME, Snap, Unstable, reach
 from beamfem.solve.statics.static_record import StaticRecord, is_unstable
-from beamfem.validation import count, finite, items, one_of, positive, shown
+from beamfem.validation import count, finite, items, one_of, shown
 
 _NEWTON = Newton()
 _SIDE = 1e-9  # of the load factor: distance from a row at which a function with declared kinks is evaluated
@@ -93,8 +93,9 @@ def solve_static(
         the quantity: by higher orders, and by shorter elements where most of it arises. The result belongs to a model
         with finer beams; points and beams of this model can be used with it.
     quantity : callable or Point, optional
-        Result that `accuracy` refers to, as for `Solution.error`; by default all displacements. A quantity that is zero
-        up to round-off, such as the moment at a free end, counts as exact.
+        Result that `accuracy` refers to, as for `Solution.error`; by default all displacements. A list may hold several
+        ones, and forces and moments of arrays (..., 3) are two. A quantity that is zero up to round-off, such as the
+        moment at a free end, counts as exact.
 
     Raises
     ------
@@ -137,10 +138,10 @@ def solve_static(
         through = solve_through(model, load_factors, steps, newton, snap=snap, unstable=unstable, end=load_factors[-1])
         return _rows_at(through, load_factors)
 
-    if accuracy is None and not system_of(model, static=True).model.automatic:
+    model, accuracy = prepared(model, accuracy, quantity=quantity)
+    if accuracy is None:
         return warned_of_coarse_mesh(warned(solve(model)))
-    wanted = positive("accuracy", DEFAULT if accuracy is None else accuracy)
-    refined = refined_statically(model, wanted, solve, quantity)
+    refined = refined_statically(model, accuracy, solve, quantity)
     return warned_of_coarse_mesh(warned(refined))
 
 

@@ -259,8 +259,8 @@ class Solution:
         """Return an estimate of the discretisation error of a result: its change with a much finer mesh.
 
         The equilibrium next to that of a row is found on an enriched space: elements of order k + 1 instead of k = 1
-        or 2, and halves of other ones; k + 2 or thirds where an element is alone between nodes that other parts need.
-        Newton's method starts from the state itself, so this is less work than a solve.
+        or 2, and halves of other ones; k + 2 for one element, and thirds for one or two cubic ones, between nodes that
+        other parts need. Newton's method starts from the state itself, so this is less work than a solve.
         An element of order k is off by about L (turn of an element / n)^2k at its nodes, with the power k + 1 between
         them, so that nearly all of the error disappears there; where the mesh is so coarse that it does not, the
         estimate is too small. Section laws and connectors with history are led through the rows before, with one load

@@ -394,6 +394,20 @@ def test_elements_between_nodes_that_do_not_turn_are_refined(element, accuracy):
     assert deflection(1, element) == pytest.approx(deflection(32, bf.CRBF(8)), abs=accuracy)
 
 
+@pytest.mark.parametrize("size", [4.0, 8.0])
+def test_two_cubic_elements_whose_halves_do_not_bend_either_are_refined(size):
+    """A clamped half circle, which four of them keep from bending as two do."""
+
+    def crown(elements, element, **asked):
+        arch = bf.Beam(bf.Arc((0, 0), 1.0, np.pi, 0.0), elements, element, SECTION, STEEL)
+        load = bf.DistributedLoad(arch, (0.0, -size * EI))
+        model = bf.Model([arch], [bf.Clamp(arch.start), bf.Clamp(arch.end)], [load])
+        return bf.solve_static(model, **asked).displacement(arch.at(0.5))[-1, 1]
+
+    found = crown(2, bf.ANCF(bf.Structural()), accuracy=1e-2)
+    assert found == pytest.approx(crown(8, bf.CRBF(8)), abs=1e-2 * np.pi)
+
+
 @pytest.mark.parametrize(("element", "elements"), [(bf.CRBF(5), "auto"), (bf.ANCF(bf.Structural()), 8)])
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-4])
 def test_all_rows_are_as_accurate_as_asked_for(element, elements, accuracy):

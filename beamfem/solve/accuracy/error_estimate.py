@@ -121,14 +121,15 @@ def meshed(model: Model, like: State | Solution | str) -> Model:
 def _enriched(mesh: BeamMesh, required: Iterable[tuple[float, Any]]) -> Beam:
     """Return the beam of a mesh on the enriched space; required: fractions at which other parts need nodes.
 
-    An element alone between such nodes may be symmetric, so that what an order adds is zero in its middle.
+    One or two elements between such nodes may be symmetric, so that what an order adds is zero in their middle, or
+    halves bend as little as they do.
     """
     ends = mesh.vertices / mesh.vertices[-1]
-    fixed = np.isin(ends, [0.0, 1.0, *(fraction for fraction, _ in required)])
-    alone = fixed[1:] & fixed[:-1]
+    between = np.diff(np.flatnonzero(np.isin(ends, [0.0, 1.0, *(fraction for fraction, _ in required)])))
     if _raised(mesh.beam):
-        return finer_beam(mesh.beam, ends, raised=2 if alone.any() else 1)
-    parts = np.where(alone & (len(mesh.beam.element.field.nodes) == 2), 3, 2)
+        return finer_beam(mesh.beam, ends, raised=2 if (between == 1).any() else 1)
+    few = np.repeat(between <= 2, between)
+    parts = np.where(few & (len(mesh.beam.element.field.nodes) == 2), 3, 2)
     inside = [(number, part / of) for number, of in enumerate(parts) for part in range(1, of)]
     number, xi = np.array(inside).T
     return finer_beam(mesh.beam, ends, mesh.arc_length(number.astype(int), xi) / mesh.vertices[-1])

@@ -188,6 +188,15 @@ def test_a_resumed_motion_is_the_same_bit_for_bit(name, short, tmp_path, monkeyp
         np.testing.assert_allclose(motion.p, plain.p, atol=2e-6 * np.abs(plain.p).max())
 
 
+def test_events_of_sections_that_are_written_together_count_once(monkeypatch, tmp_path):
+    """They were counted again with each section, so that a killed motion went on with events at time 0."""
+    monkeypatch.setattr(long_runs, "_STEPS", 32)
+    monkeypatch.setattr(long_runs, "_SECONDS", np.inf)
+    model = pendulum()
+    motion = bf.simulate(model, 1.5, 1e-3, events=[tip_event(model)], file=tmp_path / "motion.h5")
+    assert len(motion.events) == datasets(tmp_path / "motion.h5")["checkpoint/counts"][4] == 2
+
+
 @pytest.mark.parametrize("how", [{"step": 1e-3}, {"tolerance": 1e-4}], ids=["step", "tolerance"])
 def test_a_motion_is_extended_and_the_same_if_it_was_killed_before(how, short, tmp_path):
     """Also by the call that extends it: the first part is completed as it was begun."""

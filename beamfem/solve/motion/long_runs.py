@@ -204,7 +204,7 @@ def _go_on(file: MotionFile, plan: MotionPlan, checkpoint: Checkpoint) -> Soluti
 
 def _run(file: MotionFile, plan: MotionPlan, checkpoint: Checkpoint, saved: SavedRows) -> Solution:
     """Run a motion from a checkpoint to its end."""
-    end, before = float(plan.times[-1]), int(checkpoint.counts[3]) - len(saved.times)
+    end, before = float(plan.times[-1]), checkpoint.counts[3:] - saved.waiting
     failed: Failure | None = None
     begun: dict[str, Any] | None = _described(plan.settings, True)
     show = plan.live_view()
@@ -212,8 +212,8 @@ def _run(file: MotionFile, plan: MotionPlan, checkpoint: Checkpoint, saved: Save
 
     def commit() -> None:
         nonlocal before, begun, written
-        rows = saved.take_out(before)
-        before += len(rows[0])
+        added, rows = saved.waiting, saved.take_out(int(before[0]))
+        before = before + added
         file.commit(rows, _statistics(plan, checkpoint, False), checkpoint.arrays(), begun)
         begun, written = None, clock.monotonic()
 
@@ -222,7 +222,7 @@ def _run(file: MotionFile, plan: MotionPlan, checkpoint: Checkpoint, saved: Save
             commit()
         except FileError:
             return None
-        return _loaded(file) if before else None
+        return _loaded(file) if before[0] else None
 
     with kept(found), progress("time [s]", end) as report:
         commit()
@@ -239,16 +239,16 @@ def _run(file: MotionFile, plan: MotionPlan, checkpoint: Checkpoint, saved: Save
         raise ConvergenceError(failed.sentence(unit), solution)
     file.describe(plan.system.model)
     done = _described(plan.settings, False)
-    file.commit(saved.take_out(before), _statistics(plan, checkpoint, True), checkpoint.arrays(), done)
+    file.commit(saved.take_out(int(before[0])), _statistics(plan, checkpoint, True), checkpoint.arrays(), done)
     return warned(_loaded(file))
 
 
 def _section(
-    plan: MotionPlan, checkpoint: Checkpoint, saved: SavedRows, before: int
+    plan: MotionPlan, checkpoint: Checkpoint, saved: SavedRows, before: np.ndarray
 ) -> tuple[Failure | None, Checkpoint]:
     """Take the steps of a section; return where it failed, if it did, and where to go on, from the same place then.
 
-    before: number of rows that were written.
+    before (2,): numbers of rows and events that were written.
     """
     state, rotations = checkpoint.state.copy(), checkpoint.rotations.copy()
     cutter = _cutter(plan, state, checkpoint)
@@ -263,13 +263,7 @@ def _section(
     if failed is not None:
         return failed, checkpoint
     counts = np.array(
-        [
-            iterations + cutter.statistics.iterations,
-            cutter.cuts,
-            cutter.further,
-            before + len(saved.times),
-            checkpoint.counts[4] + len(saved.watch.found),
-        ]
+        [iterations + cutter.statistics.iterations, cutter.cuts, cutter.further, *(before + saved.waiting)]
     )
     memory = {} if cutter.memory is None else {"p": cutter.memory.p, **cutter.memory.kept}
     values = np.array(saved.watch.values)

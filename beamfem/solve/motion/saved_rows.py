@@ -32,6 +32,11 @@ class SavedRows:
     rotations: list[np.ndarray] = field(default_factory=list)
     stopped: bool = field(default=False, init=False)
 
+    @property
+    def waiting(self) -> np.ndarray:
+        """Numbers (2,) of rows and events that were not taken out."""
+        return np.array([len(self.times), len(self.watch.found)])
+
     def begin(self, state: np.ndarray, rotations: np.ndarray) -> None:
         """Take the beginning (3, n) of the motion."""
         self.watch.begin(0.0, state)

@@ -40,7 +40,7 @@ _MARGIN = 1.05  # of an indicator whose error is small: larger ones for which it
 _CHIEF = 0.8  # of the error: what the elements that a warning names account for
 
 _SMALLEST = np.finfo(float).tiny  # bending stiffness [N m^2]
-_SAMPLES = 128  # of a section that varies along a beam without jumps
+_SAMPLES, _PER_SAMPLE = 3, 8  # of a section without jumps: at the least, and elements for each
 _SAME = 1e-9  # of the length of a beam: tolerance between places
 
 # sum of the angles between the directors of an element of order k, with which a strip that is rolled up is off by 1 %
@@ -111,7 +111,8 @@ def _bending(mesh: BeamMesh) -> tuple[Any, Any]:
         return constant, constant
     sides = [mesh.section_arc_length(every, np.full(mesh.elements, xi)) for xi in (0.0, 1.0)]
     at = np.unique(sides)
-    at = at[:: 1 + len(at) // _SAMPLES] if not beam.jumps else at
+    if not beam.jumps:
+        at = at[np.linspace(0, len(at) - 1, max(len(at) // _PER_SAMPLE, _SAMPLES)).astype(int)]
     known = [max(beam.section_at(s).rigidity(beam.material).bending, _SMALLEST) for s in at.tolist()]
     return np.interp(sides[0], at, known), np.interp(sides[1], at, known)
 

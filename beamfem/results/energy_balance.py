@@ -219,8 +219,12 @@ def balance(solution: "Solution", accuracy: float = MotionLimits().tolerance) ->
     """Return the energy balance of the rows of a motion; accuracy: of coordinates, relative to the model."""
     system, energy = system_of(solution.model, static=False), solution.energy()
     known, driving = _resolved(solution, system), np.fmin(energy.recorded, 0.0)
-    forces = forces_without_potential(solution)
-    work, given, stored, lost = exchange(solution, forces)
+    works, none = driven(solution), np.zeros(len(solution) - 1)
+    (work, given, stored, lost), doubt = (none, none, none, none), np.zeros(len(solution))
+    if works or system.damped:
+        forces = forces_without_potential(solution)
+        work, given, stored, lost = exchange(solution, forces)
+        doubt = _doubt(solution, forces, work + given)
     change = np.diff(energy.total) - stored - work
     rise = _summed(change - np.maximum(given, 0.0) + np.diff(driving), known)
     loss = -_summed(change - given + np.maximum(lost, 0.0) + np.diff(energy.recorded), known)
@@ -228,8 +232,7 @@ def balance(solution: "Solution", accuracy: float = MotionLimits().tolerance) ->
     exchanged = max(*(np.ptp(part) for part in parts), energy.kinetic.max(), _SMALL * np.abs(energy.strain).max())
     unknown = _summed(np.abs(np.diff(energy.total) - stored), ~known)
     unsure = unknown + _inaccuracy(system, solution.p, energy.strain, accuracy)
-    doubt = _doubt(solution, forces, work + given)
-    return Balance(solution.at, energy, rise, loss, doubt, unsure, float(exchanged), driven(solution))
+    return Balance(solution.at, energy, rise, loss, doubt, unsure, float(exchanged), works)
 
 
 def _summed(change: np.ndarray, known: np.ndarray) -> np.ndarray:

@@ -127,7 +127,7 @@ class EnergyJudge:
         """Judge the chunk of steps between two rows of a balance, and take it into account if it is good."""
         energy, rows = found.energy, slice(first, last + 1)
         parts = _extremes(self._parts, energy.kinetic[rows], energy.strain[rows], energy.potential[rows])
-        exchanged = max(float(np.ptp(parts, axis=1).max()), float(parts[0, 1]))
+        exchanged = max(float((parts[:, 1] - parts[:, 0]).max()), float(parts[0, 1]))
         if self.conservative and not self._damps:
             self._drift = float(energy.total[first]) - self._total
         rises, losses = found.rise[rows] - found.rise[first], found.loss[rows] - found.loss[first]
@@ -141,9 +141,9 @@ class EnergyJudge:
         if self._damps:
             stored = float(energy.kinetic[first] + energy.strain[first])
             losses = losses - (1.0 - self._radius ** (2.0 * np.arange(last - first + 1))) * stored
-        change = float(rises[-1]) if rises[-1] > 0.0 else -max(float(np.nan_to_num(losses[-1])), 0.0)
+        change = float(rises[-1]) if rises[-1] > 0.0 else -float(np.fmax(losses[-1], 0.0))
         bound = max(1.5 * share, abs(self._drift) + 0.25 * share) + doubt
-        within = float(np.nanmax([rises + self._drift, losses - self._drift])) <= bound
+        within = float(max(np.fmax.reduce(rises) + self._drift, np.fmax.reduce(losses) - self._drift)) <= bound
         if not within or (abs(change) > allowed + doubt and abs(self._drift + change) > abs(self._drift)):
             return False
         self._drift += change

@@ -57,6 +57,7 @@ _FALLS = 0.5  # what a mesh is to leave of the error of the one before; the shar
 _MOST_STALLED = 3  # meshes divided evenly, or no finer, whose error is not the smallest so far: it is round-off
 # meshes that may have no solution, or end at limit points, before a finer one does not
 _MOST_LOST, _MOST_LIMITED = 2, 5
+_MOST_ROWS = 24  # whose errors are estimated
 _TINY, _MOST = 1e-30, 0.9  # error [-] of elements that have none, and of those that are off by all they show
 _SAME = 1e-9  # of the length of a beam: tolerance between places
 _SAME_LOAD = 1e-2  # relative difference of limit points that two meshes agree on
@@ -197,10 +198,10 @@ class _StaticAttempts:
     """Static solutions on one mesh after another, their estimated errors [-], and the shares of the elements in them.
 
     Each but the first begins with the states of the one before, unless these do not tell its path. An error is the
-    largest of all rows, or of the last and of that which the mesh approximates worst where coefficients do not tell
-    it, relative to the size of the model; with a quantity, that of the last row, relative to its largest value. Where
-    coefficients tell the errors of all orders, a fine mesh is found by them, which tells the error of the cheapest
-    one. Raises InputError for elements that lock.
+    largest of all rows, or of some where coefficients do not tell it, see `_rows_before`, relative to the size of the
+    model; with a quantity, that of the last row, relative to its largest value. Where coefficients tell the errors of
+    all orders, a fine mesh is found by them, which tells the error of the cheapest one. Raises InputError for elements
+    that lock.
     """
 
     def __init__(
@@ -237,9 +238,8 @@ class _StaticAttempts:
         try:
             last, finer = enriched_row_kept(solution, -1)
             pairs = [(solution[last], finer)]
-            worst = last if self._quantity or last <= 1 else _worst_row(solution)
-            if worst != last:
-                pairs.append((solution[worst], enriched_row_kept(solution, worst)[1]))
+            others = [] if self._quantity else _rows_before(solution)
+            pairs += [(solution[row], enriched_row_kept(solution, row)[1]) for row in others]
         except ConvergenceError:  # too far from the finer mesh to say how far
             return solution, np.inf, None
         of_rows = np.array([largest_position_error(*pair) for pair in pairs]) / system_of(model, static=True).extent
@@ -301,12 +301,20 @@ def _unseen(error: float, solution: Solution, accuracy: float) -> bool:
     return error > _ASYMPTOTIC * moved > _ASYMPTOTIC**2 * accuracy
 
 
-def _worst_row(solution: Solution) -> int:
-    """Return the row that a mesh approximates worst: by its coefficients, or that with the largest strain energy."""
-    found = errors_of_orders(solution)
-    if found is None:
-        return int(np.argmax(solution.energy().strain))
-    return int(np.argmax(np.max([each[..., -1].max(axis=1) for each in found], axis=0)))
+def _rows_before(solution: Solution) -> list[int]:
+    """Return the rows before the last whose errors are estimated: those that a mesh may approximate worse.
+
+    It is the worst one by its coefficients; where these do not tell it, some of all, as even the largest strain energy
+    does not, or that one if what remembers is led through the rows before each.
+    """
+    last = len(solution) - 1
+    if (found := errors_of_orders(solution)) is not None:
+        rows = [int(np.argmax(np.max([each[..., -1].max(axis=1) for each in found], axis=0)))]
+    elif len(system_of(solution.model, static=True).history.numbers):
+        rows = [int(np.argmax(solution.energy().strain))]
+    else:
+        rows = np.unique(np.linspace(1, last, _MOST_ROWS).round().astype(int)).tolist() if last else []
+    return [row for row in rows if row != last]
 
 
 def refined(

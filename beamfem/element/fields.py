@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
-from math import comb, factorial
+from math import factorial
 from typing import Any, ClassVar, NamedTuple, NoReturn, Protocol, runtime_checkable
 
 import numpy as np
@@ -149,22 +149,18 @@ def _lobatto(order: int) -> np.ndarray:
 @lru_cache(maxsize=128)
 def _table(order: int, points: bytes, shape: tuple[int, ...], derivative: int) -> np.ndarray:
     """Return the derivatives (*shape, order + 1) of the polynomials at points in [0, 1], given as bytes."""
-    factors = np.subtract.outer(np.frombuffer(points).reshape(shape), _lobatto(order))
-    kept, divisor = _kept_factors(order, derivative)
-    return np.asarray(factors[..., kept].prod(axis=-1).sum(axis=-1) / divisor)
-
-
-@lru_cache
-def _kept_factors(order: int, derivative: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the factors (order + 1, choices, kept) that derivatives of the polynomials keep, and their divisors.
-
-    The k-th derivative of a product is the sum over all ordered choices of k factors that are left out.
-    """
-    nodes, shape = _lobatto(order), (order + 1, comb(order, derivative), max(order - derivative, 0))
-    others = [[j for j in range(order + 1) if j != i] for i in range(order + 1)]
-    kept = [choice for own in others for choice in combinations(own, shape[2]) if shape[1]]
-    divisor = np.array([np.prod(node - nodes[own]) for node, own in zip(nodes, others, strict=True)])
-    return np.array(kept, dtype=np.int64).reshape(shape), divisor / factorial(derivative)
+    nodes = _lobatto(order)
+    factors = np.subtract.outer(np.frombuffer(points).reshape(shape), nodes)
+    columns = []
+    for i, node in enumerate(nodes):
+        others = np.delete(np.arange(len(nodes)), i)
+        # the k-th derivative of a product is the sum over all ordered choices of k factors that are left out
+        parts = [
+            factors[..., [j for j in others if j not in left_out]].prod(axis=-1)
+            for left_out in combinations(others, derivative)
+        ]
+        columns.append(factorial(derivative) * sum(parts) / np.prod(node - nodes[others]))
+    return np.stack(np.broadcast_arrays(*columns, factors[..., 0])[:-1], axis=-1)
 
 
 @dataclass(frozen=True)

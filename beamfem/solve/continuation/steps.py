@@ -37,6 +37,8 @@ _WANTED_ITERATIONS = 8
 # one that keeps the determinant away from zero, as two pivots can change their signs together.
 _PAIR = 1.0 / 64.0
 _LARGEST_INCREASE = 4.0
+# Not a half: of a step that is refused as it ends where paths cross, two halves end there again, and so on towards it.
+_CUT = 0.6
 _KINK = 1e-6  # shorter steps may cross a kink of the path, such as where a stop is hit
 _INTO = 2.0  # steps into a kink, and along the path behind it
 _BEHIND = 8.0
@@ -122,7 +124,7 @@ def longest_accepted(
         if not isinstance(found, Refused):
             return found, reasons, size
         reasons.append(found.reason)
-        size *= 0.5
+        size *= _CUT
         if len(reasons) == 1 and loses_digits_by_now(line.system, point.y[:-1], point.load_factor):
             pivots, size = point.negative_pivots, longest
             with suppress(LinAlgError):

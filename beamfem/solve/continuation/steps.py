@@ -61,10 +61,11 @@ class Step:
 
 @dataclass(frozen=True)
 class Refused:
-    """A rejected step: the reason, and the number of iterations."""
+    """A rejected step: the reason, the number of iterations, and whether another path may cross at its end."""
 
     reason: str
     iterations: int
+    crosses: bool = False
 
 
 def longest_step(line: Continuation, point: PathPoint, end: float | None = None) -> float:
@@ -124,7 +125,7 @@ def longest_accepted(
         if not isinstance(found, Refused):
             return found, reasons, size
         reasons.append(found.reason)
-        size *= _CUT
+        size *= _CUT if found.crosses else 0.5
         if len(reasons) == 1 and loses_digits_by_now(line.system, point.y[:-1], point.load_factor):
             pivots, size = point.negative_pivots, longest
             with suppress(LinAlgError):
@@ -171,7 +172,7 @@ def take_step(
     if hidden and size > _PAIR * longest_step(line, point):
         return Refused("the tangent may be singular at an even number of points within the step", corrected.iterations)
     if strict and _crosses_over(line, (point, new), corrected):
-        return Refused("another path lies between the start and the end of the step", corrected.iterations)
+        return Refused("another path lies between the start and the end of the step", corrected.iterations, True)
     turn = float(np.arccos(min(line.dot(new.tangent, point.tangent), 1.0)))
     if turn > _LARGEST_TURN:
         return Refused("the path turns too sharply", corrected.iterations)
@@ -184,7 +185,7 @@ def take_step(
         limits = segment.limit_points()
         crossings = bifurcations(segment, limits)
     except SegmentLostError as error:
-        return Refused(f"a critical point was not found: {error}", corrected.iterations + segment.iterations)
+        return Refused(f"a critical point was not found: {error}", corrected.iterations + segment.iterations, True)
     if point.tangent[-1] * smooth.tangent[-1] < 0.0:
         limits = [0.0, *limits]
     increase = min(_WANTED_TURN / max(turn, 1e-12), _WANTED_ITERATIONS / corrected.iterations, _LARGEST_INCREASE)

@@ -150,3 +150,19 @@ def test_random_meshes_warn_if_they_are_poor():
 @pytest.mark.parametrize("first", range(0, 1000, 100))
 def test_1000_random_meshes_warn_if_they_are_poor(first):
     require_right(range(first, first + 100))
+
+
+def test_one_element_of_order_two_that_is_too_coarse_warns():
+    """It has no neighbour to differ from, and its moments tell nothing of a section that varies within it."""
+    wavy = lambda s: bf.Rectangle(0.01, 0.02 * (1.0 + 0.5 * np.sin(6.0 * s + 3.0)))  # noqa: E731
+    tips = []
+    for elements, kind in ((1, bf.CRBF(2)), (16, bf.CRBF(6))):
+        beam = bf.Beam(bf.Line((0, 0), (1, 0)), elements, kind, wavy, bf.Material(2e11, 0.3, 7800.0))
+        model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 1e3))])
+        if elements == 1:
+            with pytest.warns(bf.CoarseMeshWarning, match="the mesh is too coarse"):
+                solution = bf.solve_static(model)
+        else:
+            solution = bf.solve_static(model)
+        tips.append(solution.displacement(beam.end)[-1, 1])
+    assert abs(tips[0] / tips[1] - 1.0) > 0.05

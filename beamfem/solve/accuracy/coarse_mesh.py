@@ -26,6 +26,7 @@ from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import warn_of
 from beamfem.results.status import Finding
 from beamfem.solve.accuracy.error_estimate import (
+    EnrichedModel,
     enriched,
     enriched_row_kept,
     error_shares,
@@ -39,6 +40,7 @@ _ENOUGH = 0.005  # of it: error that the advice leads to
 _MARGIN = 1.05  # of an indicator whose error is small: larger ones for which it is not estimated again
 _CHIEF = 0.8  # of the error: what the elements that a warning names account for
 
+_FEW = 4  # elements below which the error is always estimated
 _SMALLEST = np.finfo(float).tiny  # bending stiffness [N m^2]
 _SAMPLES, _PER_SAMPLE = 3, 8  # of a section without jumps: at the least, and elements for each
 _SAME = 1e-9  # of the length of a beam: tolerance between places
@@ -53,9 +55,10 @@ class _Table:
     """The data of `coarseness` of a model; fine: the largest indicator for which its error was found to be small."""
 
     def __init__(self, system: System) -> None:
-        self.fine = 1.0
         meshes, neighbours = system.model.meshes, system.table(pairs)
         elements, total = sum(mesh.elements for mesh in meshes), sum(float(mesh.vertices[-1]) for mesh in meshes)
+        # one element has no neighbour to differ from, and so few cost no more to estimate than to solve
+        self.fine = 0.0 if elements < _FEW and not isinstance(system.model, EnrichedModel) else 1.0
         whole, weights = np.empty((elements, ELEMENT), dtype=np.int64), np.zeros((elements, WEIGHTS))
         factors = np.empty((len(neighbours.length), FACTORS))
         factors[:, :4] = neighbours.at_rest[:, 1:].view(float)

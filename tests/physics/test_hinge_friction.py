@@ -86,8 +86,9 @@ def test_a_falling_rod_bounces_at_its_stop_as_an_independent_integration_says(da
 
 
 def test_a_weight_leans_on_an_end_stop():
-    model, rod = hinged(lambda a, b: bf.HingeStop(a, b, low=0.1, stiffness=1e3), 9.81)
-    rested = bf.solve_static(model)
+    """A weight that scaled would leave every angle beyond the stop in equilibrium at load factor 0."""
+    model, rod = hinged(lambda a, b: bf.HingeStop(a, b, low=0.1, stiffness=1e3))
+    rested = bf.solve_static(model.with_loads([bf.Gravity((0, -9.81), scale=False)]))
     turn, moment = rested.rotation(rod.start)[-1], rested.joint_force(model.connectors[0])[-1, 2]
     assert moment == pytest.approx(1e3 * (0.1 - turn), rel=1e-6)
     assert moment == pytest.approx(MASS * 9.81 * LENGTH / 2 * np.cos(turn), rel=1e-3)

@@ -136,7 +136,7 @@ def external(mesh, model: bf.Model, solution: bf.Solution, row: int, at: float, 
         elif isinstance(load, bf.PointForce | bf.PointMoment):
             if load.point.beam is not mesh.beam:
                 continue
-            element, xi = (np.array([value]) for value in mesh.locate(load.point.fraction))
+            element, xi = mesh.locate(np.array([load.point.fraction]))
             if isinstance(load, bf.PointMoment):
                 add(element, xi, np.zeros((1, 2)), None, np.array([weight * load.moment]))
             else:

@@ -218,8 +218,7 @@ class Built:
             points = [self.point((number, k / bar.elements)) for k in range(bar.elements + 1)]
             for beam in dict.fromkeys(point.beam for point in points):
                 mesh = self.model.mesh_of(beam.start)
-                where = [mesh.locate(point.fraction) for point in points if point.beam is beam]
-                element, xi = (np.array(values) for values in zip(*where, strict=True))
+                element, xi = mesh.locate(np.array([point.fraction for point in points if point.beam is beam]))
                 found.append(axis_at(mesh, p[None], element, xi).r[0])
         return self.view.back(np.concatenate(found))
 

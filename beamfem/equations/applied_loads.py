@@ -137,27 +137,17 @@ class Actions:
             unit[row] = cast("PointLoad", model.acting[self.source[row]]).value
         return replace(self, unit=unit)
 
-    def values(self, time: float, factors: np.ndarray) -> np.ndarray:
-        """Return forces and moments (nl, 3) at a time, with the factors (k,) of `model.acting`."""
-        result = self._at_rest(factors)
-        for moving in self.moving:
-            rows, shares = moving.at(time)
-            force = factors[moving.number] * np.array(moving.load.vector)
-            result[moving.first + rows, :2] = shares[:, None] * force
-        return result
-
-    def values_of_rows(self, times: Sequence[float] | np.ndarray, factors: np.ndarray) -> np.ndarray:
-        """Return forces and moments (rows, nl, 3) at times, with the factors (rows, k) of `model.acting`."""
-        if not self.moving:
-            return self._at_rest(factors)
-        rows = [self.values(time, own) for time, own in zip(times, factors, strict=True)]
-        return np.array(rows).reshape(len(rows), -1, 3)
-
-    def _at_rest(self, factors: np.ndarray) -> np.ndarray:
-        """Return forces and moments (..., nl, 3) of all loads but those that move, with factors (..., k)."""
+    def values(self, times: float | Sequence[float] | np.ndarray, factors: np.ndarray) -> np.ndarray:
+        """Return forces and moments (..., nl, 3) at times (...), with the factors (..., k) of `model.acting`."""
         sizes = np.ones((*factors.shape[:-1], factors.shape[-1] + 1))
         sizes[..., :-1] = factors
-        return np.asarray(self.unit * sizes[..., self.source, None])
+        result = np.asarray(self.unit * sizes[..., self.source, None])
+        for moving in self.moving:
+            rows = result.reshape(-1, *self.unit.shape)
+            row, stations, shares = moving.at(np.ravel(times))
+            sizes = np.ravel(factors[..., moving.number])[row]
+            rows[row[:, None], stations, :2] = (sizes[:, None] * shares)[..., None] * np.array(moving.load.vector)
+        return result
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,7 +200,7 @@ class Loads:
     def of_rows(self, times: Sequence[float] | np.ndarray) -> LoadsAt:
         """Return the loads at times, which are the first axis of its arrays."""
         factors = np.array([self.factors(time) for time in times]).reshape(len(times), -1)
-        points = tuple(actions.values_of_rows(times, factors) for actions in self.actions)
+        points = tuple(actions.values(times, factors) for actions in self.actions)
         return LoadsAt(even_loads(self.model, factors), points, factors[:, self.imposes])
 
     @cached_property
@@ -252,14 +242,14 @@ class _Moving:
     mesh: BeamMesh
     first: int
 
-    def at(self, time: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return rows (n,) and shares (n,) of the load at a time, none off the beam."""
-        fraction = self.load.place_at(time) / self.mesh.beam.curve.length
-        if not 0.0 <= fraction <= 1.0:
-            return np.empty(0, dtype=np.int64), np.empty(0)
-        element, xi = self.mesh.locate(fraction)
+    def at(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the numbers (n,) of the times (m,) when it is on the beam, and its stations and shares (n, k)."""
+        place = np.array([self.load.place_at(time) for time in times.tolist()]) / self.mesh.beam.curve.length
+        row = np.flatnonzero((place >= 0.0) & (place <= 1.0))
+        element, xi = self.mesh.locate(place[row])
         points = length_rule(self.mesh.beam.element.field)[0]
-        return element * len(points) + np.arange(len(points)), interpolation_weights(points, xi)
+        stations = self.first + element[:, None] * len(points) + np.arange(len(points))
+        return row, stations, interpolation_weights(points, xi)
 
 
 def build_actions(model: Model, block: int) -> Actions:
@@ -274,9 +264,8 @@ def build_actions(model: Model, block: int) -> Actions:
         if mesh is None:
             continue
         if isinstance(load, PointLoad):
-            element, at = mesh.locate(load.point.fraction)
-            unit = np.array([load.value], dtype=float)
-            parts.append(_part(mesh, np.array([element]), np.array([at]), _KINDS[load.axes], unit, number, rule=0))
+            where, xi = mesh.locate(np.array([load.point.fraction]))
+            parts.append(_part(mesh, where, xi, _KINDS[load.axes], np.array([load.value], dtype=float), number, rule=0))
             continue
         where, xi, weight = length_points(mesh)
         if isinstance(load, MovingLoad):

@@ -85,21 +85,21 @@ class Grid:
         """Whether the axis is a straight line."""
         return type(self.beam.curve) is Line and not self.moved
 
-    def locate(self, fraction: float) -> tuple[int, float]:
-        """Return the element at a fraction [-] of the beam's arc length, and xi in [0, 1] in it."""
-        along = fraction * float(self.vertices[-1])
+    def locate(self, fraction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the elements (n,) at fractions (n,) [-] of the beam's arc length, and xi (n,) in [0, 1] in them."""
+        along = fraction * self.vertices[-1]
         if self.beam.elements == "knots":
             assert isinstance(self.beam.curve, BSpline)
-            along = float(self.beam.curve.parameter(np.array([along]))[0])
-        element = min(max(int(self.parameter.searchsorted(along, side="right")) - 1, 0), self.elements - 1)
-        start, end = self.parameter[element : element + 2].tolist()
-        return element, min(max((along - start) / (end - start), 0.0), 1.0)
+            along = self.beam.curve.parameter(along)
+        element = np.searchsorted(self.parameter[1:-1], along, side="right")
+        start, end = self.parameter[element], self.parameter[element + 1]
+        return element, np.minimum(np.maximum((along - start) / (end - start), 0.0), 1.0)
 
     def node_near(self, fraction: float) -> int | None:
         """Return the node at a fraction [-], None if there is none."""
         if fraction in (0.0, 1.0) and self.beam.elements != "knots":
             return self.node_at(fraction)
-        element, xi = self.locate(fraction)
+        (element,), (xi,) = self.locate(np.array([fraction]))
         nodes = self.beam.element.field.nodes.tolist()
         return int(self.node[element, nodes.index(xi)]) if xi in nodes else None
 

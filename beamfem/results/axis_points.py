@@ -98,8 +98,7 @@ class AxisPoints:
     @classmethod
     def at(cls, mesh: BeamMesh, fractions: Sequence[float]) -> "AxisPoints":
         """Return the points at fractions of the length of a beam."""
-        element, xi = map(np.array, zip(*map(mesh.locate, fractions), strict=True))
-        return cls(mesh, element, xi)
+        return cls(mesh, *mesh.locate(np.array(fractions)))
 
     def by_element(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return values (rows, points) on each element as (rows, elements, k), and xi (k,), see `on_each`."""

@@ -256,7 +256,7 @@ def output_row(model: Model, p: np.ndarray, quantity: Any) -> csr_array:
     name, point = quantity
     require_known(f"{shown(name)} is no quantity of a linear model", name, QUANTITIES)
     mesh = model.mesh_of(point)
-    element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
+    element, xi = mesh.locate(np.array([point.fraction]))
     dofs = np.unique(mesh.kinematics.dof[mesh.node[element[0]]])
     dofs = dofs[dofs >= 0]
     rates = np.zeros((len(dofs), len(p)))

@@ -24,7 +24,6 @@ from beamfem.solve.accuracy.carried_start import tied_to_mesh
 from beamfem.solve.accuracy.error_estimate import (
     NEAR,
     carried_path,
-    enriched,
     enriched_row_kept,
     error_shares,
     errors_of_orders,
@@ -48,7 +47,6 @@ _LOWEST, _LOWEST_CURVED = 2, 4
 _REACH = 1e-2  # to the power of an order: by how much an error falls as far as elements of this order can tell
 _LARGEST = 0.2  # error that is believed; beyond, all that is known is that the mesh is too coarse
 _MOST_PARTS, _FEW_PARTS = 8.0, 2.0  # of an element from one mesh to the next, and where little is known or gained
-_ENOUGH = 1.3  # times the unknowns needed: if the enriched space has no more, it is the next mesh
 _BETTER = 0.2  # of an error: that of a mesh which tells it
 _ASYMPTOTIC = 0.2  # of the largest displacement: errors above it fall more slowly than orders promise
 _TRUST = 1.5  # how many times as large as its estimate an error may be
@@ -148,7 +146,7 @@ def refined_until(
             smallest, best = error, result
         before = error
         own = None if evenly else shares() if callable(shares) else shares
-        model = refined(model, own, error, accuracy / _SAFETY, fixed)[0]
+        model = refined(model, own, error, accuracy / _SAFETY, fixed)
     falls = ", and falls no further" if stalled else ""
     raise ConvergenceError(
         f"the estimated error is at best {smallest:.2g} on {number} meshes{falls}; for an accuracy of {accuracy:g} it "
@@ -233,8 +231,6 @@ class _StaticAttempts:
             cheaper = self._cheaper(path, solution, errors)
             if cheaper is not None:
                 return *cheaper, None
-        if carried is not None and finer is not None and model.tables.get("enriched") is finer.model:
-            keep_enriched_row(solution, finer)
         try:
             last, finer = enriched_row_kept(solution, -1)
             pairs = [(solution[last], finer)]
@@ -317,18 +313,11 @@ def _rows_before(solution: Solution) -> list[int]:
     return [row for row in rows if row != last]
 
 
-def refined(
-    model: Model,
-    shares: Shares,
-    error: float,
-    target: float,
-    fixed: list[np.ndarray],
-) -> tuple[Model, float]:
-    """Return a model whose elements share a smaller error evenly, by higher orders or shorter elements, and that error.
+def refined(model: Model, shares: Shares, error: float, target: float, fixed: list[np.ndarray]) -> Model:
+    """Return a model with the fewest unknowns whose elements share a smaller error evenly.
 
-    It has the fewest unknowns for it, or is the enriched one, which is there already. shares (ne,): of the elements of
-    each beam in the error, see `error_shares`, None to divide all alike; fixed: arc lengths [m] of each beam at which
-    elements stay to end.
+    They are of higher orders or shorter. shares (ne,): of the elements of each beam in the error, see `error_shares`,
+    None to divide all alike; fixed: arc lengths [m] of each beam at which elements stay to end.
     """
     elements = sum(mesh.elements for mesh in model.meshes)
     even = [np.full(mesh.elements, 1.0 / elements) for mesh in model.meshes]
@@ -336,20 +325,14 @@ def refined(
     error = min(error, _LARGEST)
     lowest = min(mesh.beam.element.field.degree for mesh in model.meshes)
     target = max(target, error * _REACH**lowest, np.finfo(float).eps)
-    errors = [np.minimum(elements * error * share, _LARGEST) for share in shares or even]
-    parted = zip(model.meshes, errors, fixed, strict=True)
-    result = remeshed(model, [_refined(*each, target, shares is None, most_parts) for each in parted])
-    finer = enriched(model)
-    known = [(mesh, _distance(own, _rate(mesh.beam.element))) for mesh, own in zip(model.meshes, errors, strict=True)]
-    expected, finest = (
-        max(_error_on(*each, beam) for each, beam in zip(known, other.beams, strict=True)) for other in (result, finer)
-    )
-    needed, most = (sum(map(_intervals, other.beams)) for other in (result, finer))
-    if finest <= target and most <= _ENOUGH * needed:
-        return finer, finest
-    if finest <= _BETTER * expected and needed < most:
-        result.tables["enriched"] = finer
-    return result, expected
+    beams = []
+    for mesh, share, ends in zip(model.meshes, shares or even, fixed, strict=True):
+        errors, element = np.minimum(elements * error * share, _LARGEST), mesh.beam.element
+        orders = np.arange(element.field.degree, HIGHEST_ORDER + 1) if _raisable(element) else np.zeros(1, dtype=int)
+        known = np.tile(_distance(errors, _rate(element)), (len(orders), 1))
+        parted = mesh, orders, known, ends, target, shares is None, 1.0, most_parts
+        beams.append(_cheapest(*parted)[1] if (errors > target).any() else mesh.beam)
+    return remeshed(model, beams)
 
 
 def _raisable(element: Element) -> bool:
@@ -388,18 +371,6 @@ def _error_on(mesh: BeamMesh, distance: np.ndarray, finer: Beam) -> float:
     parent = np.searchsorted(mesh.vertices[1:-1], 0.5 * (ends[1:] + ends[:-1]))
     parts = mesh.lengths[parent] / np.diff(ends)
     return float(_error((distance[parent] * parts).min(), _rate(finer.element)))
-
-
-def _refined(
-    mesh: BeamMesh, errors: np.ndarray, fixed: np.ndarray, target: float, evenly: bool, most_parts: float
-) -> Beam:
-    """Return a beam whose elements have errors of at most a target; errors (ne,): of those of its mesh."""
-    if not (errors > target).any():
-        return mesh.beam
-    element = mesh.beam.element
-    orders = np.arange(element.field.degree, HIGHEST_ORDER + 1) if _raisable(element) else np.zeros(1, dtype=int)
-    known = np.tile(_distance(errors, _rate(element)), (len(orders), 1))
-    return _cheapest(mesh, orders, known, fixed, target, evenly, 1.0, most_parts)[1]
 
 
 def _cheapest(

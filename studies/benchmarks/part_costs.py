@@ -1,6 +1,7 @@
-"""What parts beside the package, those of `tests/trials`, and ten of the package add to an iteration on 12 elements.
+"""What parts, those of `tests/trials` and of the package, add to an iteration and to a step on 12 elements.
 
-An iteration of Newton's method in statics has a tangent; most of those of motions do not.
+An iteration of Newton's method in statics has a tangent; most of those of motions do not. A step also changes by the
+iterations that it takes with the part.
 """
 
 from collections.abc import Callable, Sequence
@@ -24,7 +25,7 @@ from tests.trials.test_rope import Rope
 from tests.trials.test_rough_stop import OwnStop
 
 OUT = Path("out/bench")
-HEADER = ("part", "places", "statics, us", "with it", "each place", "motion, us", "with it", "each place")
+HEADER = ("part", "places", "statics, us", "with it", "each place", "motion, us", "with it", "each place", "each step")
 ITERATIONS, STEPS = (2, 4), (200, 1200)  # the difference of two solves leaves out what they do once
 STIFF, STEP = 2.0, 1e-3
 
@@ -55,6 +56,13 @@ def across(one: bf.Beam, two: bf.Beam) -> list[bf.SpringDamper]:
     return [bf.SpringDamper(one.at(k / 12), two.at(k / 12), STIFF / 10, 0.01) for k in range(1, 11)]
 
 
+def within(one: bf.Beam) -> tuple[bf.Point, bf.Point]:
+    """Return nodes of an element, so that what couples them is within the band."""
+    return one.at(5 / 12), one.at(6 / 12)
+
+
+TORSION, BUSHING = (0.1, 1e-3), ((STIFF, STIFF, 0.1), (0.01, 0.01, 1e-3))
+
 CASES = (
     Case("ten point forces", 10, lambda a, b: [bf.PointForce(a.at(k / 12), (0.0, -1e-3)) for k in range(1, 11)]),
     Case("drag along a beam", 25, lambda a, b: [Fluid(a, 0.1)]),
@@ -68,6 +76,17 @@ CASES = (
     Case("plastic section, Python", 24, lambda a, b: [], section=Hinging(2e3, 7e2, 0.07, 0.44, 1e-5, 0.0, 0.05, 0.01)),
     Case("ten springs to the ground", 10, springs),
     Case("ten springs across", 10, across, alone=False),
+    Case("PointMass", 1, lambda a, b: [bf.PointMass(a.end, 0.05, 1e-5)]),
+    Case("RigidBody", 1, lambda a, b: [bf.RigidBody(a.end, 0.05, 1e-5, (0.02, 0.01))]),
+    Case("SpringDamper within the band", 1, lambda a, b: [bf.SpringDamper(*within(a), STIFF, 0.01)]),
+    Case("TorsionSpring within the band", 1, lambda a, b: [bf.TorsionSpring(*within(a), *TORSION)]),
+    Case("Bushing within the band", 1, lambda a, b: [bf.Bushing(*within(a), *BUSHING)]),
+    Case("SpringDamper far away", 1, lambda a, b: [bf.SpringDamper(a.end, b.end, STIFF, 0.01)], alone=False),
+    Case("TorsionSpring far away", 1, lambda a, b: [bf.TorsionSpring(a.end, b.end, *TORSION)], alone=False),
+    Case("Bushing far away", 1, lambda a, b: [bf.Bushing(a.end, b.end, *BUSHING)], alone=False),
+    Case("Link", 1, lambda a, b: [bf.Link(a.end, b.end)], alone=False),
+    Case("Slider", 1, lambda a, b: [bf.Slider(a.end, b.end, (0.0, 1.0))], alone=False),
+    Case("Gear", 1, lambda a, b: [bf.Gear(a.end, b.end, -2.0)], alone=False),
 )
 
 
@@ -121,8 +140,9 @@ def main(rounds: int = 8, folder: Path = OUT, parts: tuple[str, ...] = ()) -> li
             before = (times[first + 1] - times[first]) / without
             after = (times[first + 5] - times[first + 4]) / with_it
             row += [round(before, 2), round(after, 2), round((after - before) / case.places, 2)]
-        rows.append(tuple(row))
-    print(as_text(HEADER, rows, "what parts add to an iteration, CPU time"))
+        per_step = 1.0 / (case.places * (STEPS[1] - STEPS[0]))
+        rows.append((*row, round(per_step * (times[7] - times[6] - times[3] + times[2]), 2)))
+    print(as_text(HEADER, rows, "what parts add to an iteration and to a step, CPU time"))
     write_csv(folder / "part_costs.csv", HEADER, rows)
     return rows
 

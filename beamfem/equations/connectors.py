@@ -29,7 +29,7 @@ from beamfem.model.load_base import factor
 from beamfem.model.model import Model
 from beamfem.parts.at_points import AxisRows, OnElements, PartAlongBeam, PartAtPoints, Station
 from beamfem.physics.compiled_connections import passes_of
-from beamfem.physics.connections import Connection
+from beamfem.physics.connections import TURNING, Connection
 from beamfem.physics.stations import GENERATED
 from beamfem.validation import called, finite, items, of_package
 
@@ -131,6 +131,13 @@ class Connector:
             elements = zip(self.item.coordinates, self.item.data_of(self.reference), strict=True)
             return [Row(self.all[own], data) for own, data in elements]
         return [Row(self.all, self.data if self.compiled is not None else _NOTHING)]
+
+    @property
+    def coupled(self) -> list[np.ndarray]:
+        """Numbers (u,) that each row couples; a rotation is in place of x and y of its point too where they are not."""
+        if self.compiled in TURNING:
+            return [np.append(np.repeat(self.dofs[2::3], 3), self.own)]
+        return [row.numbers for row in self.rows]
 
     @property
     def dissipated(self) -> np.ndarray:

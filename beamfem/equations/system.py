@@ -277,7 +277,7 @@ class System:
     def unknowns(self) -> Unknowns:
         """The order of the coordinates that are not prescribed."""
         connectors, joined = self.connectors, bool(self.model.shared_joints)
-        coupled = [row.numbers for item in connectors.items for row in item.rows]
+        coupled = [numbers for item in connectors.items for numbers in item.coupled]
         multipliers = connectors.multipliers.tolist()
         border: int | None = layout.WIDEST_BORDER
         if self.inclined:

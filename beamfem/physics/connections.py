@@ -392,6 +392,8 @@ HINGE_FRICTION = _with_friction(
 )
 _SIDES = ("low_deepest", "high_deepest")
 HINGE_STOP, BOUNCING_HINGE_STOP = _barrier("hinge_stop", 2, 3, ("low", "high"), _turn, _SIDES)
+# they depend on rotations alone, so that x and y are not coupled
+TURNING = TORSION_SPRING, GEAR, MOTOR, HINGE_FRICTION, HINGE_STOP, BOUNCING_HINGE_STOP
 SLIDER_STOP, BOUNCING_SLIDER_STOP = _barrier("slider_stop", 2, 3, ("low", "high", "ax", "ay"), _slide, _SIDES)
 
 

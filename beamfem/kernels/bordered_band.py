@@ -4,21 +4,14 @@ With the band B, unit vectors E of the t coupled unknowns x_t, and the border D 
 x + Z (D_t x_t + D_l l) = y with Z = B^-1 E and y = B^-1 r; the rows t of it and the conditions are a small system.
 """
 
-from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.compiling import routine
 from beamfem.kernels.motion_record import MotionSolver
-from beamfem.kernels.pointers import at, small_code
-
-
-@inlined
-def _exchange(count, one, other):
-    for j in range(count):
-        one[j], other[j] = other[j], one[j]
+from beamfem.kernels.pointers import at
 
 
 @routine()
 def factor_bordered(solver: MotionSolver) -> float:
     """Factor the band and the small system; return the smallest ratio of a pivot of the band, 0 if one is singular."""
-    small_code()
     edge, k, half, rows, call = solver.edge, solver.conditions, solver.half, solver.rows, solver.routines
     n, m, numbers, border = solver.unknown - k, edge + k, solver.edge_numbers, solver.border
     columns, small = solver.edge_columns, solver.edge_factors
@@ -45,13 +38,16 @@ def factor_bordered(solver: MotionSolver) -> float:
                 chosen = i
         row = at(small, pivot * (m + 1))
         if chosen != pivot:
-            _exchange(m, row, at(small, chosen * (m + 1)))
+            other = at(small, chosen * (m + 1))
+            for j in range(m):
+                row[j], other[j] = other[j], row[j]
         row[m] = chosen
         if row[pivot] == 0.0:
             return 0.0
+        row[pivot] = 1.0 / row[pivot]
         for i in range(pivot + 1, m):
             other = at(small, i * (m + 1))
-            other[pivot] /= row[pivot]
+            other[pivot] *= row[pivot]
             for j in range(pivot + 1, m):
                 other[j] -= other[pivot] * row[j]
     return ratio
@@ -60,7 +56,6 @@ def factor_bordered(solver: MotionSolver) -> float:
 @routine()
 def solve_bordered(solver: MotionSolver) -> None:
     """Replace the right-hand side by the solution, multipliers last."""
-    small_code()
     edge, k, right = solver.edge, solver.conditions, solver.right
     n, m, numbers, border = solver.unknown - k, edge + k, solver.edge_numbers, solver.border
     columns, small, coupled = solver.edge_columns, solver.edge_factors, solver.step
@@ -78,7 +73,7 @@ def solve_bordered(solver: MotionSolver) -> None:
     for i in range(m - 1, -1, -1):
         for j in range(i + 1, m):
             coupled[i] -= small[i * (m + 1) + j] * coupled[j]
-        coupled[i] /= small[i * (m + 1) + i]
+        coupled[i] *= small[i * (m + 1) + i]
     for column in range(edge):
         force, x = 0.0, at(columns, column * n)
         for j in range(m):

@@ -231,10 +231,6 @@ def _gear_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Numbe
     return (q[1][2] - data[0] * q[0][2],)
 
 
-def _motor_conditions(q: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
-    return (_turn(q, data, f),)
-
-
 def _slide(q: list[Vector], data: Vector, f: Functions) -> Number:
     """Return r_b - r_a along an axis that turns with a."""
     along, across = _in_frame(q, f)
@@ -383,7 +379,7 @@ SLIDER = Connection("slider", 2, 3, ("nx", "ny", "offset"), None, None, None, _s
 ROUGH_SLIDER = _with_friction(SLIDER, ("friction", "stiffness", "start", "least"), _slid, _slider_limit)
 WELD = Connection("weld", 2, 3, ("x", "y"), None, None, None, _weld_conditions, 3)
 GEAR = Connection("gear", 2, 3, ("ratio",), None, None, None, _gear_conditions, 1)
-MOTOR = Connection("motor", 2, 3, (), None, None, None, _motor_conditions, 1, prescribed=1)
+MOTOR = Connection("motor", 2, 3, (), None, None, None, lambda q, data, f: (_turn(q, data, f),), 1, prescribed=1)
 _STOP = ("friction", "x", "y", "nx", "ny", "x0", "y0")
 STOP, BOUNCING_STOP = _barrier("stop", 1, 2, _STOP, _penetration, ("deepest",))
 ROUGH_STOP = _with_friction(STOP, (), _along_wall, _stop_limit)

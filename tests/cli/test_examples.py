@@ -157,7 +157,7 @@ def test_the_portal_sways_as_slope_and_deflection_say(printed):
     ]
     sway = 1e3 * np.linalg.solve(matrix, [0.5 * force, 0.0])[0]
     assert lines[0] == "member sets: columns, beam - point sets: feet, corners, midspan"
-    assert numbers(lines[1])[0] == pytest.approx(sway, rel=3e-3)
+    assert numbers(lines[1])[0] == pytest.approx(sway, rel=2.5e-3)
 
 
 def test_the_guide_is_as_stiff_as_two_leaf_springs(printed):
@@ -166,8 +166,8 @@ def test_the_guide_is_as_stiff_as_two_leaf_springs(printed):
     rigidity = bf.Rectangle(10.0, 0.2).rigidity(bf.Material(2.0e5, 0.3, 7.85e-9))
     softer = 1.0 + 12.0 * rigidity.bending / (rigidity.shear * 50.0**2)
     # in parts of the stage's stiffness, which bends a little: (50 + 10 mm)^-1 of 125,000 times as much
-    assert numbers(lines[0])[0] == pytest.approx(2.0 * 12.0 * rigidity.bending / 50.0**3 / softer, rel=1e-3)
-    assert numbers(lines[1])[0] == pytest.approx(0.6 * 1.0**2 / 50.0, rel=1e-3)
+    assert numbers(lines[0])[0] == pytest.approx(2.0 * 12.0 * rigidity.bending / 50.0**3 / softer, rel=5e-4)
+    assert numbers(lines[1])[0] == pytest.approx(0.6 * 1.0**2 / 50.0, rel=1e-4)
     assert abs(numbers(lines[2])[0]) < 1e-5
     # normal forces of the leaves add 0.9 %: their stress, and their moment by the deflection
     assert numbers(lines[3])[0] == pytest.approx(1200.0 / (3.0 * 2.0e5 * 0.2 / 50.0**2), rel=1e-2)
@@ -213,7 +213,7 @@ def test_the_leaf_pack_shares_its_load_as_linear_beams_do(printed):
     tip = 300.0 * flexibility(600.0, 600.0) - forces[0] * flexibility(600.0, 450.0)
     assert numbers(lines[0])[0] == pytest.approx(tip, rel=3e-4)
     # shear, left out here, takes 0.23 % from the force on the shortest leaf
-    assert numbers(lines[1]) == pytest.approx(forces, rel=3e-3)
+    assert numbers(lines[1]) == pytest.approx(forces, rel=2.5e-3)
 
 
 def test_the_arch_takes_what_its_snaps_release(printed):
@@ -299,8 +299,9 @@ def test_the_thermostat_is_timoshenkos(printed):
     lines, _ = printed("thermostat")
     ratio = 2.1e11 / 1.05e11
     curvature = 24.0 * (19e-6 - 12e-6) * 100.0 / (1e-3 * (14.0 + ratio + 1.0 / ratio))
-    assert numbers(lines[0])[0] == pytest.approx(1.0 / curvature, rel=2e-3)  # strains of 1e-3 lengthen the strip
-    assert numbers(lines[1])[0] == pytest.approx(1e3 * (1.0 - np.cos(0.1 * curvature)) / curvature, rel=3e-3)
+    assert numbers(lines[0])[0] == pytest.approx(1.0 / curvature, rel=1e-5)
+    # strains of 1.5e-3 lengthen the strip
+    assert numbers(lines[1])[0] == pytest.approx(1e3 * (1.0 - np.cos(0.1 * curvature)) / curvature, rel=2e-3)
 
 
 def test_the_fishing_rod_is_an_elastica_and_keeps_its_energy(printed):
@@ -331,5 +332,8 @@ def test_the_mast_sways_as_a_beam_column_with_the_stiffness_of_its_guys(printed)
     total = bent + 2.0 * (stiffness * c**2 + tension / length * s**2)
     frequency = np.sqrt(total / (300.0 + 33.0 / 140.0 * mass * height)) / (2.0 * np.pi)
     assert numbers(lines[0]) == pytest.approx([frequency], abs=2e-4)
-    share = 150.0 / total * stiffness * c
-    assert numbers(lines[1]) == pytest.approx([tension + share, tension - share], abs=0.2)
+    moved = 150.0 / total
+    share = stiffness * c * moved
+    # of second order: guys turn, and the bent mast is lower
+    both = stiffness * (0.5 * (s * moved) ** 2 / length - 0.6 * s * moved**2 / height)
+    assert numbers(lines[1]) == pytest.approx([tension + share + both, tension - share + both], abs=0.01)

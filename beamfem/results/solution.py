@@ -437,7 +437,7 @@ class Solution:
     def _computed(self) -> dict[Any, Any]:
         return {}
 
-    def retold(self, **told: Any) -> Self:
+    def with_statistics(self, **told: Any) -> Self:
         """Return the same solution with some other statistics; what has been computed of it is kept."""
         other = replace(self, statistics=replace(self.statistics, **told))
         vars(other)["_computed"] = self._computed

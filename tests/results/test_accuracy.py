@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.special import ellipk
 
 import beamfem as bf
 from beamfem.solve.accuracy.adapted_mesh import refined
@@ -282,6 +283,23 @@ def test_critical_points_of_straight_columns_are_found_on_any_mesh(accuracy):
         exact = critical_loads(bf.trace_equilibrium(fine, 1.0))
         found = critical_loads(bf.trace_equilibrium(model, 1.0, accuracy=accuracy))
         assert found == pytest.approx(exact, abs=accuracy * max(exact))
+
+
+def test_a_branch_starts_at_a_bifurcation_of_a_model_without_elements():
+    """Tip of the elastica: 2 sin(a / 2) sqrt(EI / P), P = K(sin^2(a / 2))^2 EI / L^2; strains of 4e-5 are left out."""
+    column = next(columns())
+    path = bf.trace_equilibrium(column, 1.0, accuracy=1e-4)
+    start, turn, stiffness = path.bifurcations[0], 1.5, 2e11 * 0.01**4 / 12.0
+    squared = np.sin(0.5 * turn) ** 2
+    end = ellipk(squared) ** 2 * stiffness / 1e4
+    branch = bf.trace_equilibrium(column, end, start=start)
+    tip = branch.displacement(column.beams[0].end)[-1, 0]
+    assert abs(tip) == pytest.approx(2.0 * np.sqrt(squared * stiffness / (1e4 * end)), rel=2e-4)
+    with pytest.raises(bf.InputError, match="a branch has the mesh of the path that it leaves"):
+        bf.trace_equilibrium(column, end, start=start, accuracy=1e-4)
+    pressed = column.with_loads([bf.PointForce(column.beams[0].end, (0.0, -2e4))])
+    with pytest.raises(bf.InputError, match="start is a bifurcation of another model"):
+        bf.trace_equilibrium(pressed, end, start=start)
 
 
 @pytest.mark.parametrize("ends", [pytest.param(True, marks=pytest.mark.slow), False])

@@ -135,7 +135,7 @@ def refined_until(
             iterations += result.iterations
             mesh = f"mesh {number}, of {sum(mesh.elements for mesh in result.model.meshes)} elements"
             ended = f"{result.statistics.ended}; the estimated error is {error:.2g} on {mesh}"
-            result = result.retold(ended=ended, iterations=iterations)
+            result = result.with_statistics(ended=ended, iterations=iterations)
         if _TRUST * error <= accuracy:
             assert result is not None
             return result

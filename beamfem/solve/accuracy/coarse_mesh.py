@@ -223,7 +223,7 @@ def kept_coarse(what: str, remedy: str = "find that state with more elements") -
 
 def _told(solution: Solution, found: Finding) -> Solution:
     warn_of([found])
-    return solution.retold(warnings=(*solution.statistics.warnings, found.sentence))
+    return solution.with_statistics(warnings=(*solution.statistics.warnings, found.sentence))
 
 
 def _rate(mesh: BeamMesh) -> int:

@@ -239,7 +239,7 @@ def simulate(
         return warned(solution)
     sentences = detuned(solution, system, acting)
     if sentences:
-        solution = solution.retold(warnings=sentences)
+        solution = solution.with_statistics(warnings=sentences)
     return _told(solution)
 
 

@@ -37,7 +37,7 @@ def rows_of(motion: Solution, duration: float, events: Sequence[Event]) -> dict[
 
 def with_estimate_of(other: Solution, motion: Solution) -> Solution:
     """Return a motion that tells the estimated error of another one on the same mesh."""
-    return motion.retold(ended=f"{motion.statistics.ended}; {other.statistics.ended.rpartition('; ')[2]}")
+    return motion.with_statistics(ended=f"{motion.statistics.ended}; {other.statistics.ended.rpartition('; ')[2]}")
 
 
 def motion_attempt(

@@ -26,7 +26,7 @@ from beamfem.solve.newton.newton import Newton, require_newton
 from beamfem.solve.paths.path_error import path_attempt
 from beamfem.solve.start.functions_of_time import SAME, Jump, functions_of_time, jumps_between, kinks_between
 from beamfem.solve.start.mechanisms import require_support
-from beamfem.solve.start.start_checks import refuse_memory
+from beamfem.solve.start.start_checks import left_over, refuse_memory
 from beamfem.solve.statics.statics import first_equilibrium, nothing_acts
 from beamfem.validation import count, finite, function_of_one, optional, positive, shown
 
@@ -208,7 +208,7 @@ def trace_equilibrium(
         Final load factor, or a function of a state that returns True at the end of the path; without it the path ends
         after `points` points.
     start : Bifurcation, optional
-        A bifurcation of a path of this model; the crossing branch is followed.
+        A bifurcation of a path of this model; the crossing branch is followed, on the mesh of that path.
     direction : {1, -1}, optional
         1 to start towards larger load factors, -1 towards negative ones; by default towards `until`. From a
         bifurcation: to the side of its mode (1, the default) or to the other side (-1); if the mode is along a branch
@@ -267,7 +267,9 @@ def trace_equilibrium(
     if direction is None:
         direction = -1 if start is None and isinstance(until, float) and until < 0.0 else 1
     newton = require_newton(newton, Newton(iterations=_ITERATIONS))
-    model, accuracy = prepared(model, accuracy, start, quantity)
+    if isinstance(start, Bifurcation):
+        model, start = _on_mesh_of(start, model, accuracy)
+    model, accuracy = prepared(model, accuracy, quantity=quantity)
 
     def trace(model: Model) -> Path:
         return _traced(model, until, start, direction, step, points, newton)
@@ -275,6 +277,24 @@ def trace_equilibrium(
     if accuracy is None:
         return warned(trace(model))
     return warned(refined_until(model, accuracy, lambda model: path_attempt(trace(model), quantity, trace, accuracy)))
+
+
+def _on_mesh_of(start: Bifurcation, model: Model, accuracy: float | None) -> tuple[Model, Bifurcation]:
+    """Return a model whose elements follow from an accuracy on the mesh of a bifurcation of it, and that in this model.
+
+    Raises InputError for an accuracy of the branch, and for a bifurcation of another model.
+    """
+    if accuracy is not None:
+        raise InputError("a branch has the mesh of the path that it leaves; ask for the accuracy of that path")
+    if model.automatic:
+        model = model.meshed(start)
+        start = replace(start, model=model)
+        if left_over(system_of(model, static=True), start.p, start.at) > 0.0:
+            raise InputError(_OTHER_MODEL)
+    return model, start
+
+
+_OTHER_MODEL = "start is a bifurcation of another model; trace the path of this one first"
 
 
 def _traced(
@@ -296,7 +316,7 @@ def _traced(
     if not isinstance(start, Bifurcation | None):
         raise InputError(f"start must be a bifurcation, such as path.bifurcations[0], got a {type(start).__name__}")
     if start is not None and start.model is not model:
-        raise InputError("start is a bifurcation of another model; trace the path of this one first")
+        raise InputError(_OTHER_MODEL)
     record = PathRecord(model)
     with kept(lambda: record.path() if record.rows else None), progress("points of the path", points) as report:
         line, point = _first(system, newton, record, direction)

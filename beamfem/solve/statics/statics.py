@@ -229,7 +229,7 @@ def solve_through(
     solution = record.solution(complete=True)
     if resolved and functions:
         found = warn_between_rows(functions, np.unique([at for at, *_ in record.rows]), _SIDE)
-        return solution.retold(warnings=(*solution.statistics.warnings, *found))
+        return solution.with_statistics(warnings=(*solution.statistics.warnings, *found))
     return solution
 
 

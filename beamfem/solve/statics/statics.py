@@ -88,10 +88,11 @@ def solve_static(
         structure does, at limit points by a jump. There is a row at the critical point. At a symmetric bifurcation
         either side is taken; `statistics.ended` names it, and a small imperfection chooses it.
     accuracy : float, [-], optional
-        Refine the mesh until the estimated error of the last row and of that which the mesh approximates worst, see
-        `Solution.error`, is at most this number times the size of the model, or that of the last row this number times
-        the quantity: by higher orders, and by shorter elements where most of it arises. The result belongs to a model
-        with finer beams; points and beams of this model can be used with it.
+        Refine the mesh until the estimated error of all rows, see `Solution.error`, is at most this number times the
+        size of the model, or that of the last row this number times the quantity: by higher orders, and by shorter
+        elements where most of it arises. Of cubic elements 24 rows count, with history the last and that of the largest
+        strain energy. The result belongs to a model with finer beams; points and beams of this model can be used with
+        it.
     quantity : callable or Point, optional
         Result that `accuracy` refers to, as for `Solution.error`; by default all displacements. A list may hold several
         ones, and forces and moments of arrays (..., 3) are two. A quantity that is zero up to round-off, such as the

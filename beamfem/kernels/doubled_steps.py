@@ -201,9 +201,11 @@ def march_doubled(system: System, solver: MotionSolver, doubled: Doubled) -> Non
         for k in range(solver.rotation_count):
             doubled.turned[k] = solver.rotated_by[k]
         found = doubled.routines.take_pair(system, solver, doubled, h)
-        ratio = found / doubled.divisor / max(2.0 * h * doubled.rate, _ROUND_OFF)
+        error, allowed = found / doubled.divisor, max(2.0 * h * doubled.rate, _ROUND_OFF)
+        ratio = error / allowed
         best = _SAFETY * h / max(ratio, 1e-6) ** doubled.power
-        if not 0.0 <= ratio <= 1.0:
+        # a stiff vibration that a step damps is an error once: resolved, it would keep all further steps as short
+        if not 0.0 <= error <= allowed + doubled.saved:
             for k in range(4 * n):
                 solver.state[k] = doubled.at_begin[k]
             for k in range(solver.rotation_count):
@@ -215,9 +217,11 @@ def march_doubled(system: System, solver: MotionSolver, doubled: Doubled) -> Non
                 doubled.failed = 1
                 return
             continue
+        doubled.saved = min(doubled.saved + allowed - error, doubled.most_saved)
         doubled.filled, doubled.before = doubled.filled + 2, h
         doubled.time = doubled.end if last != 0 else doubled.time + 2.0 * h
         doubled.ends[doubled.filled] = doubled.time
         if best > _SAME * h or best < h:
-            doubled.step = min(best, min(growth, max(math.sqrt(_FAST / max(fine.rate, 1e-4)), 1.0)) * h)
+            most = min(growth, max(math.sqrt(_FAST / max(fine.rate, 1e-4)), 1.0)) * h
+            doubled.step = min(max(best, _SMALLEST * h), most)
         growth = min(_RECOVERED * growth, _LARGEST)

@@ -123,6 +123,8 @@ class Doubled(Record):
     shortest: float
     longest: float
     rate: float  # error of positions per time, of the model, that is allowed
+    saved: float  # error of earlier steps that was allowed and not made, which one step may make at once
+    most_saved: float
     divisor: float  # of the difference, for the error of the pair
     power: float  # of the step that the error per time is proportional to
     refused: int

@@ -169,3 +169,19 @@ def test_an_integrator_without_an_order_has_no_estimate(pendulum):
 
     with pytest.raises(bf.InputError, match="needs an attribute order"):
         bf.simulate(pendulum[1], 1.0, tolerance=1e-3, integrator=Plain())
+
+
+def test_steps_grow_over_stiff_vibrations_that_are_far_smaller_than_the_tolerance():
+    """Errors were allowed per time: once a step of 4 us resolved a vibration of 1e-10 m, all further ones had to."""
+    section = bf.Section.from_stiffness(1e9, 1e9, 1e8, 1.0, 0.01)
+    elbow, end, fixed = (-0.9024575, 0.6728536), (-1.7050933, 1.2318363), (1.7376761, -1.1326931)
+    arm, rod = (bf.Beam(bf.Line(*ends), 1, bf.CRBF(2), section) for ends in (((0.0, 0.0), elbow), (elbow, end)))
+    slider = bf.Slider(arm.end, rod.start, axis=(2.9996087, 0.0484551))
+    springs = [
+        bf.SpringDamper(arm.end, rod.end, 39.684156, damping=1.0),
+        bf.SpringDamper(arm.end, fixed, 87.614030, damping=1.971753, length=0.919466),
+    ]
+    model = bf.Model([arm, rod], [bf.Pin(arm.start)], [bf.Gravity((1.0, -9.81))], connectors=[slider, *springs])
+    coarse, fine = (bf.simulate(model, 1.0, save_at=[1.0], tolerance=each) for each in (1e-6, 3e-8))
+    assert fine.statistics.steps < 400
+    assert fine.position(rod.end)[-1] == pytest.approx(coarse.position(rod.end)[-1], abs=1e-6)

@@ -24,17 +24,22 @@ _ROUND_OFF = 2e-14  # of the model: error of a step that may be round-off
 _MEAN = 16  # steps whose errors are added
 _CANCELLED = 4.0  # times the tolerance that the estimates add up to: errors turn with the motion, and partly cancel
 _SUM = 2.0  # times the tolerance that the same of methods of stages add up to
+_SAVED = 0.1  # times the tolerance: error that one step may make of what earlier ones have not
 _LONGEST = 64  # steps of equal size, at the end of which the error is judged
 _SHORTEST = 1e-12  # of the motion: a step that fails however short it is
 
 
 @dataclass
 class Reached:
-    """Where a motion is: its time [s], the size [s] of the next steps and how many of them to judge together."""
+    """Where a motion is: its time [s], the size [s] of the next steps and how many of them to judge together.
+
+    saved: error that earlier steps were allowed and have not made, as far as it counts.
+    """
 
     time: float = 0.0
     step: float = 0.0
     count: int = CHUNK
+    saved: float = np.inf
 
 
 def march_to_tolerance(
@@ -139,7 +144,8 @@ def _march_pairs(
         motion = DoubledSteps(system, space, coefficients(method), method.order, cutter.statistics)
         own = motion.record
         own.fill(time=reached.time, step=reached.step, rate=_SUM * tolerance / cutter.end)
-        own.shortest = _SHORTEST * cutter.end
+        own.shortest, own.most_saved = _SHORTEST * cutter.end, _SAVED * tolerance
+        own.saved = min(reached.saved, own.most_saved)
         for number, part in enumerate(parts):
             end = float(part.times[-1])
             if own.time == part.times[0]:
@@ -163,7 +169,7 @@ def _march_pairs(
                     return Failure(own.time, own.time + own.step, why)
                 report(own.time)
                 record.show(own.time, state[:3])
-                reached.time, reached.step = own.time, own.step
+                reached.time, reached.step, reached.saved = own.time, own.step, own.saved
                 if saved.stopped:
                     return None
     return None

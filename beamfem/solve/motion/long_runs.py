@@ -66,7 +66,7 @@ class Checkpoint:
         """Return everything as arrays by name."""
         where = self.reached
         return {
-            "reached": np.array([where.time, where.step, where.count, self.ended], dtype=float),
+            "reached": np.array([where.time, where.step, where.count, where.saved, self.ended], dtype=float),
             **{name: getattr(self, name) for name in ("state", "rotations", "values", "counts")},
             **{f"judge_{name}": np.asarray(values) for name, values in self.judge.items()},
             **{f"memory_{name}": np.asarray(values) for name, values in self.memory.items()},
@@ -75,13 +75,15 @@ class Checkpoint:
     @classmethod
     def of(cls, arrays: Mapping[str, np.ndarray]) -> "Checkpoint":
         """Return the checkpoint of `arrays`."""
-        time, step, many, ended = arrays["reached"].tolist()
+        time, step, many, allowed, ended = arrays["reached"].tolist()
         judge, memory = (
             {name.removeprefix(prefix): values for name, values in arrays.items() if name.startswith(prefix)}
             for prefix in ("judge_", "memory_")
         )
         state, rotations, values, counts = (arrays[name] for name in ("state", "rotations", "values", "counts"))
-        return cls(Reached(time, step, int(many)), state, rotations, values, counts, bool(ended), judge, memory)
+        return cls(
+            Reached(time, step, int(many), allowed), state, rotations, values, counts, bool(ended), judge, memory
+        )
 
 
 def into_file(plan: MotionPlan, state: np.ndarray, rotations: np.ndarray, file: str | PathLike[str]) -> Solution:

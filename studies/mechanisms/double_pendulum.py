@@ -48,5 +48,6 @@ def difference(motion: bf.Solution) -> float:
 
 
 def draw(motion: bf.Solution, folder: Path) -> Path:
-    """Animate the motion."""
-    return motion.animate(folder / "motion.gif", seconds=3.0, loads=False)
+    """Draw the bars as they fall."""
+    motion.plot(folder / "shapes.svg", shapes=9, loads=False)
+    return folder / "shapes.svg"

@@ -16,7 +16,7 @@ FINGER, APART, STIFFNESS, TURN = 0.1, 0.06, 60.0, 0.5  # [m], [m], [N/m], [rad]
 SECTION, PLASTIC = bf.Rectangle(0.01, 0.002), bf.Material(1e9, 0.35, 1200.0)
 
 
-def main(rows: int = 11) -> tuple[bf.Solution, bf.Motor]:
+def main(rows: int = 31) -> tuple[bf.Solution, bf.Motor]:
     """Return the equilibria while the motor closes the gripper."""
     left, right = (
         bf.Beam(bf.Line((x, 0), (x, FINGER)), 4, bf.CRBF(4), SECTION, PLASTIC) for x in (-APART / 2, APART / 2)

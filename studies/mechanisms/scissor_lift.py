@@ -28,7 +28,7 @@ def lift(stages: int = STAGES) -> bf.Model:
     return bf.Model(bars, feet, tops, hinges)
 
 
-def main(rows: int = 7) -> bf.Solution:
+def main(rows: int = 19) -> bf.Solution:
     """Return the equilibria while it rises."""
     return bf.solve_static(lift(), at=np.linspace(0.0, 1.0, rows))
 

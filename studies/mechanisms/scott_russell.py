@@ -41,7 +41,7 @@ def main(force: float = FORCE) -> tuple[bf.Solution, list[bf.Motor]]:
         [*hinges, *heads],
         connectors=[bf.Slider(rods[0].end, rods[1].end, axis=(1, 0))],
     )
-    return bf.solve_static(model, at=np.linspace(0.0, 1.0, 11)), motors
+    return bf.solve_static(model, at=np.linspace(0.0, 1.0, 31)), motors
 
 
 def differences(lifted: bf.Solution, unloaded: bf.Solution, motors: list[bf.Motor]) -> dict[str, float]:

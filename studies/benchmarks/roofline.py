@@ -57,7 +57,7 @@ def seconds(form: str, elements: int) -> dict[str, float]:
 
     def balanced() -> None:
         for _ in range(times):
-            balance(one.equations.address)
+            balance(one.equations.record.address)
 
     def copied() -> None:
         for _ in range(times):

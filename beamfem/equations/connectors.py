@@ -27,7 +27,7 @@ from beamfem.model.contribution import (
 )
 from beamfem.model.load_base import factor
 from beamfem.model.model import Model
-from beamfem.parts.at_points import AxisRows, OnElements, PartAlongBeam, PartAtPoints, Station
+from beamfem.parts.at_points import ANALYTIC, AxisRows, OnElements, PartAlongBeam, PartAtPoints, Station
 from beamfem.physics.compiled_connections import passes_of
 from beamfem.physics.connections import TURNING, Connection
 from beamfem.physics.stations import GENERATED
@@ -144,6 +144,18 @@ class Connector:
         """Number (1,) of the history variable with the energy [J] that it has dissipated, if it has one (0,)."""
         names = self.compiled.memory if self.compiled is not None else ()
         return self.memory[[name == "dissipated" for name in names]] if names else self.memory[:0]
+
+    @property
+    def lets_go(self) -> bool:
+        """Whether it is open in some states: its conditions come and go, or its force is one of f.positive alone."""
+        part, item = self.compiled, self.alone
+        p, v, _ = somewhere_near(item)
+        data = (*self.data, *remembered(self.item)) if part is not None else ()
+        if part is not None and part.potential is not None:
+            return not part.potential(part.split(p[item.dofs]), data, gravity_of(item), _OPEN)
+        if part is not None and part.along is not None and part.force is not None:
+            return not part.force(part.split(p[item.dofs]), part.split(v[item.dofs]), data, _OPEN)
+        return is_one_sided(self.item)
 
     @cached_property
     def data(self) -> np.ndarray:
@@ -441,6 +453,7 @@ _FORWARD = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0  # functions of tim
 _ROUND_OFF = 1e-13  # relative to the largest stiffness of a contribution
 _COORDINATES = ("r^x", "r^y", "theta")
 _TURNED = np.array([0.0, 0.0, 0.1])  # arbitrary
+_OPEN = ANALYTIC._replace(positive=lambda x: 0.0 * x)
 _NO_NUMBERS, _NOTHING = np.empty(0, dtype=np.int64), np.empty(0)
 
 

@@ -7,6 +7,7 @@ import pytest
 from connectors import SpringDamper
 
 import beamfem as bf
+from beamfem.equations.system import system_of
 from beamfem.model.missing_joints import unjoined_ends
 
 SECTION, STEEL = bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0)
@@ -130,3 +131,24 @@ def test_an_end_that_comes_back_to_its_own_beam_is_found():
     assert (end, other.beam, other.fraction) == (six.end, six, pytest.approx(2.0 / 6.0, abs=1e-5))
     fine = bf.Beam(six.curve, bf.graded(40, 1e9), bf.CRBF(1), SECTION, STEEL)
     assert len({other.fraction for _, other in unjoined_ends(bf.Model([fine], [bf.Clamp(fine.start)]))}) == 1
+
+
+@pytest.mark.parametrize(
+    ("make", "opens"),
+    [
+        (lambda a, b: bf.HingeFriction(a, b, 0.5, 1e4), False),
+        (lambda a, b: bf.TorsionSpring(a, b, 1e3), False),
+        (lambda a, b: bf.SpringDamper(a, b, lambda e, f: 1e3 * (f.positive(e) + e)), False),
+        (lambda a, b: bf.PointMass(a, 2.0), False),
+        (lambda a, b: bf.HingeStop(a, b, 0.1, stiffness=1e3, restitution=0.5), True),
+        (lambda a, b: bf.Stop(a, (0, 0), (0, 1), 1e3, friction=0.3), True),
+        (lambda a, b: bf.Cable(a, b, 1e3, pretension=5.0), True),
+        (lambda a, b: bf.SpringDamper(a, b, lambda e, f: 1e3 * f.positive(e)), True),
+    ],
+)
+def test_parts_that_let_go(make, opens):
+    square, steel = bf.Rectangle(0.01, 0.01), bf.Material(2.1e11, 0.3, 7850.0)
+    one, two = (bf.Beam(bf.Line((x, 0), (x, 1)), 1, bf.CRBF(2), square, steel) for x in (0.0, 0.5))
+    part = make(one.end, two.end)
+    (item,) = system_of(bf.Model([one, two], connectors=[part]), static=True).connectors.items
+    assert item.lets_go is opens

@@ -94,6 +94,28 @@ def test_a_weight_leans_on_an_end_stop():
     assert moment == pytest.approx(MASS * 9.81 * LENGTH / 2 * np.cos(turn), rel=1e-3)
 
 
+STOPS = {
+    "stop that is pressed": lambda a, b: bf.HingeStop(a, b, low=0.1, stiffness=1e3),
+    "wall that is pressed": lambda a, b: bf.Stop(b.beam.end, (0.0, 1e-3), (0, 1), 1e5),
+    "stop that touches": lambda a, b: bf.HingeStop(a, b, low=0.0, stiffness=1e3),
+    "stop apart": lambda a, b: bf.HingeStop(a, b, -0.1, 0.1, stiffness=1e3),
+    "slack stay": lambda a, b: bf.Cable(b.beam.end, (LENGTH, 1.0), 1e5),
+    "law that only pulls": lambda a, b: bf.SpringDamper(b.beam.end, (LENGTH, 1.0), lambda e, f: 1e5 * f.positive(e)),
+}
+
+
+@pytest.mark.parametrize("name", STOPS)
+def test_a_weight_that_scales_leaves_what_holds_one_way_open_at_load_factor_0(name):
+    """Every angle beyond the stop is in equilibrium there."""
+    model, _ = hinged(STOPS[name], 9.81)
+    part = type(model.connectors[0]).__name__
+    with pytest.raises((bf.ConvergenceError, bf.FreeMotionError), match=r"turns about \(0, 0\).*scale=False") as caught:
+        bf.solve_static(model)
+    assert f"{part} at " in str(caught.value)
+    with pytest.raises(type(caught.value), match=r"turns about \(0, 0\).*scale=False"):
+        bf.trace_equilibrium(model, until=1.0)
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [

@@ -25,7 +25,7 @@ from beamfem.solve.continuation.steps import Refused, Step, longest_accepted, lo
 from beamfem.solve.newton.newton import Newton, require_newton
 from beamfem.solve.paths.path_error import path_attempt
 from beamfem.solve.start.functions_of_time import SAME, Jump, functions_of_time, jumps_between, kinks_between
-from beamfem.solve.start.mechanisms import require_support
+from beamfem.solve.start.mechanisms import free_when_open, no_equilibrium_at_start, require_support
 from beamfem.solve.start.start_checks import left_over, refuse_memory
 from beamfem.solve.statics.statics import first_equilibrium, nothing_acts
 from beamfem.validation import count, finite, function_of_one, optional, positive, shown
@@ -443,7 +443,7 @@ def _first(system: System, newton: Newton, record: PathRecord, direction: int) -
     record.iterations += first.iterations
     if not first.ended.good:
         record.add(np.append(system.reference, 0.0), stable=False)
-        raise ConvergenceError(f"no equilibrium under the loads that do not scale: {first.ended.value}")
+        raise ConvergenceError(no_equilibrium_at_start(system, first.ended.value))
     try:
         return begin(system, first.state, 0.0, newton, piece)
     except LinAlgError:
@@ -498,7 +498,8 @@ def _step(
         record.ended = max(reasons, key=reasons.count)
         raise ConvergenceError(
             f"the path ends at load factor {point.load_factor:.6g} after {len(record.rows)} points: "
-            f"{record.ended}, with steps along it down to {size:.1e}{advice(record.model, point.y[:-1])}",
+            f"{record.ended}, with steps along it down to {size:.1e}{advice(record.model, point.y[:-1])}"
+            + free_when_open(line.system),
             record.path(),
         )
     step, landing = found

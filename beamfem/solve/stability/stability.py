@@ -10,6 +10,7 @@ from beamfem.precision.roundoff import counts_with_stresses
 from beamfem.results.solution import Solution, State
 from beamfem.solve.modes.modes import solve_modes
 from beamfem.solve.newton.newton import Newton, solve_equilibrium
+from beamfem.solve.start.mechanisms import no_equilibrium_at_start
 from beamfem.solve.start.start_checks import left_over
 from beamfem.solve.start.start_state import resting_state
 from beamfem.solve.statics.statics import first_equilibrium
@@ -47,12 +48,14 @@ def stable_start(system: System, about: State | Solution | None) -> tuple[np.nda
     p, load_factor = resting_state(system, about)
     if left_over(system, p, load_factor) > 0.0:
         if about is None:
-            equilibrium, description = first_equilibrium(system, Newton()), "under the loads that do not scale"
+            equilibrium = first_equilibrium(system, Newton())
         else:
             equilibrium = solve_equilibrium(system, p, load_factor, Newton())
-            description = f"at load factor {load_factor:g} to start from"
         if not equilibrium.ended.good:
-            raise ConvergenceError(f"no equilibrium {description}: {equilibrium.ended.value}")
+            why = equilibrium.ended.value
+            if about is None:
+                raise ConvergenceError(no_equilibrium_at_start(system, why))
+            raise ConvergenceError(f"no equilibrium at load factor {load_factor:g} to start from: {why}")
         p = equilibrium.state
     # imposed strains, as of heat, may load a beam between its supports without moving it
     imposed = any(block.imposed is not None for block in system.blocks)

@@ -15,7 +15,6 @@ from beamfem.equations.rigid_velocity import RigidVelocity, set_rigid_rates
 from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, FreeMotionError, InputError
 from beamfem.model.beam import Point, beam_in_words
-from beamfem.model.contribution import is_one_sided
 from beamfem.model.missing_joints import Pair, in_words, unjoined_ends
 from beamfem.model.model import Model
 
@@ -164,12 +163,25 @@ def require_support(system: System) -> None:
 
 
 def free_when_open(system: System) -> str:
-    """Return "; with its one-sided conditions open, ..." if they alone hold a model, nothing otherwise."""
-    if not len(system.connectors.one_sided):
+    """Return "; where ... are open, ..." if parts that hold one way only alone hold a model, nothing otherwise."""
+    opening = [item for item in system.connectors.items if item.lets_go]
+    given = {id(item.given) for item in opening}
+    others = [connector for connector in system.model.connectors if id(connector) not in given]
+    found = free_motion(system_of(system.model.with_(connectors=others), static=True)) if opening else None
+    if found is None:
         return ""
-    others = [connector for connector in system.model.connectors if not is_one_sided(connector)]
-    found = free_motion(system_of(system.model.with_(connectors=others), static=True))
-    return "" if found is None else f"; with its one-sided conditions open, {found.error.reason}: add a support"
+    return (
+        f"; where parts that hold one way only are open ({in_words_of(opening)}), {found.error.reason}: add a support, "
+        "or let the loads that close them act from the start, with scale=False"
+    )
+
+
+def no_equilibrium_at_start(system: System, why: str) -> str:
+    """Return the message that there is no equilibrium at load factor 0."""
+    loaded, opened = system.loads.at(0.0).any, free_when_open(system)
+    if opened and not loaded:
+        return f"no unique equilibrium at load factor 0{opened}"
+    return f"no equilibrium {'under the loads that do not scale' if loaded else 'at load factor 0'}: {why}{opened}"
 
 
 def free_motion(system: System) -> FreeMotion | None:
@@ -202,10 +214,12 @@ def free_motion(system: System) -> FreeMotion | None:
     x, y = farthest.reference
     unjoined = next((pair for pair in unjoined_ends(model) if _parts(rows, free, pair)), None)
     missing = f"{in_words(model, unjoined)}: add a Rigid or a Hinge. Otherwise a" if unjoined else "A"
+    opening = [item for item in system.connectors.items if item.lets_go]
+    closing = f", or loads with scale=False that close {in_words_of(opening)} from the start" if opening else ""
     error = FreeMotionError(
         f"{beam_in_words(model.beams, number)} can move freely: {', '.join(described)}; its point ({x:g}, {y:g}) moves",
         remedy=f"{missing} static solve needs supports that hold it (a Clamp, or a Pin and a Roller) or joints that "
-        "stiffen it (Rigid instead of Hinge); without them, use simulate",
+        f"stiffen it (Rigid instead of Hinge){closing}; without them, use simulate",
     )
     return FreeMotion(rows, free, error)
 

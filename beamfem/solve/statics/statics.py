@@ -39,7 +39,13 @@ from beamfem.solve.start.functions_of_time import (
     kinks_and_turning_points,
     warn_between_rows,
 )
-from beamfem.solve.start.mechanisms import FreeMotion, free_motion, require_independent, require_support
+from beamfem.solve.start.mechanisms import (
+    FreeMotion,
+    free_motion,
+    no_equilibrium_at_start,
+    require_independent,
+    require_support,
+)
 from beamfem.solve.start.start_checks import refuse_memory
 from beamfem.solve.statics.load_jumps import changing, cross_jump
 from beamfem.solve.statics.load_steps import SAME, Snap, Unstable, reach
@@ -202,9 +208,7 @@ def solve_through(
     record.iterations += first.iterations
     if not first.ended.good:
         record.add(0.0, system.reference, 0, first.ended)
-        raise ConvergenceError(
-            f"no equilibrium under the loads that do not scale: {first.ended.value}", record.solution()
-        )
+        raise ConvergenceError(no_equilibrium_at_start(system, first.ended.value), record.solution())
     state = system.history.in_equilibrium(first.state, 0.0)
     record.add(0.0, state, first.negative_pivots, first.ended, first.digits)
     if unstable == "leave" and is_unstable(system.symmetric, first.negative_pivots):

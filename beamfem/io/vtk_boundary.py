@@ -6,10 +6,10 @@ from functools import partial
 
 import numpy as np
 
+from beamfem.equations.connectors import connectors_of
 from beamfem.io.vtk_cells import VERTEX, Content, legend_of_beams
 from beamfem.mesh.reference import length_points
 from beamfem.model.beam import Beam, Point
-from beamfem.model.contribution import Contribution
 from beamfem.model.joint_base import Joint
 from beamfem.model.load_base import Load, factor
 from beamfem.model.model import Model
@@ -18,7 +18,7 @@ from beamfem.model.supports import DIRECTIONS, LineSupport, PointSupport
 from beamfem.parts.at_points import PartAlongBeam
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.full_turns import StationsOfRows
-from beamfem.results.reactions import is_determined, joint_force, reaction_of
+from beamfem.results.reactions import connector_force, is_determined, joint_force, reaction_of
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
 from beamfem.validation import require_known
@@ -126,13 +126,18 @@ def _of_load(load: Load, acting: Mapping[str, np.ndarray], points: AxisPoints, p
 def _connectors(model: Model) -> Iterator[_Vertices]:
     of_loads = {id(part): load for load in model.loads for part in load.parts}
     for connector in model.at_points:
-        kind = type(of_loads.get(id(connector), connector)).__name__
-        along = isinstance(connector, PartAlongBeam)  # of one that slides along a beam, what acts on its point
-        points = list(enumerate(connector.points))
-        for number, point in points[1 if connector.unknowns else 2 :] if along else points:
+        kind, points = type(of_loads.get(id(connector), connector)).__name__, list(enumerate(connector.points))
+        if isinstance(connector, PartAlongBeam):  # what acts on its nodes, or on the point that slides along the beam
+            items = (item.item for item in connectors_of(model, static=True).items if item.given is connector)
+            nodes = (point for item in items for point in item.points)
+            points = points[1:] if connector.unknowns else list(enumerate(nodes))
+        acting = partial(connector_force, connector=connector)
+        for number, point in points:
 
-            def force(part: Solution, connector: Contribution = connector, number: int = number) -> np.ndarray:
-                return part.connector_force(connector)[:, number]
+            def force(
+                part: Solution, acting: Callable[[Solution], np.ndarray] = acting, at: int = number
+            ) -> np.ndarray:
+                return part.computed(acting)[:, at]
 
             yield _Vertices(kind, _CONNECTOR, _ACTION, _at(model, point), partial(_acting, force, {}))
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from beamfem.model.beam import Beam, Point, require_beam
+from beamfem.model.load_shapes import Bar
 from beamfem.model.part_units import UNIT
 from beamfem.parts.at_points import AtPoint, PartAlongBeam, PartAtPoints
 from beamfem.physics.connections import DRAG
@@ -56,3 +57,7 @@ class Drag(PartAlongBeam):
     def at_nodes(self, points: Sequence[Point], lengths: np.ndarray) -> tuple[PartAtPoints, ...]:
         """Return the parts at the nodes of the beam, with their tributary lengths (n,) [m]."""
         return tuple(map(DragAtNode, points, (self.coefficient * lengths).tolist()))
+
+    def shapes(self) -> tuple[Bar, ...]:
+        """Return the shapes to draw: dots."""
+        return tuple(Bar(point, point) for point in map(self.beam.at, (0.25, 0.5, 0.75)))

@@ -9,6 +9,7 @@ as a function of time are g(q) = u, with u as a further coordinate, which a supp
 
 from collections.abc import Callable
 from functools import cache
+from math import sqrt
 from typing import Any, NamedTuple
 
 Number = Any  # a float, a complex number or a symbol
@@ -277,14 +278,14 @@ def _deepest(stiffness: Number, square: Number, depth: Number, deepest: Number, 
     return (deepest + beyond) * depth / (depth + _LEAST), lost
 
 
-_LEAST = 1e-300  # [m^2/s^2], so that the derivative of |v| v is zero at rest; also a depth that is none
+_LEAST = 1e-300  # [m^2/s^2], so that |v| has a derivative at rest; also a depth that is none
 
 
 def _drag_dissipation(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> Number:
-    """Return c |v|^3 / 3."""
+    """Return c |v|^3 / 3, whose second derivative is zero at rest to the last digit: drag does not damp there."""
     ((x, y),) = v
-    square = x * x + y * y + _LEAST
-    return data[0] * square * f.sqrt(square) / 3
+    square = x * x + y * y
+    return data[0] * square * (f.sqrt(square + _LEAST) - sqrt(_LEAST)) / 3
 
 
 def _grounded(definition: Connection) -> Connection:

@@ -64,10 +64,10 @@ class Energy:
         return self.kinetic + self.strain + self.potential
 
     def of(self, part: Any) -> PartEnergy:
-        """Return the energies of a beam, connector, mass or motor, and the power that it exerts on the beams.
+        """Return the energies of a beam, connector, mass, motor or load, and the power that it exerts on the beams.
 
-        A mass has the potential of gravity; that of beams is in `potential` as a whole. Raises InputError for anything
-        else, and for energies that are of no solution.
+        A mass has the potential of gravity; that of beams and other loads is in `potential` as a whole. Raises
+        InputError for anything else, such as strains that are imposed, and for energies that are of no solution.
         """
         if self.solution is None:
             raise InputError("these energies are of no solution, of which parts could be known")

@@ -17,6 +17,7 @@ from beamfem.errors import InputError
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.beam import Point
 from beamfem.model.contribution import Contribution
+from beamfem.model.imposed_strains import ImposedStrain
 from beamfem.model.joint_base import Joint
 from beamfem.model.load_base import Load, PointLoad, factor
 from beamfem.model.model import Model
@@ -125,13 +126,22 @@ def _bound(solution: Solution, connector: Any) -> list[Connector]:
 
 
 def energies_of_part(solution: Solution, part: Any) -> np.ndarray:
-    """Return kinetic and potential energy [J], and power [W], of a connector, mass or motor (steps, 3)."""
+    """Return kinetic and potential energy [J], and power [W], of a connector, mass, motor or load (steps, 3)."""
     if isinstance(part, Motor) and any(part is load for load in solution.model.loads):
         signs = (-1.0, 1.0)[-len(part.points) :]
         speeds = [sign * solution.angular_velocity(point) for sign, point in zip(signs, part.points, strict=True)]
         return np.column_stack([np.zeros((len(solution), 2)), _of_motor(solution, part)[:, 2] * sum(speeds)])
-    items, (system, times) = _bound(solution, part), loading(solution)
+    system, times = loading(solution)
     power = np.zeros(len(solution))
+    if isinstance(part, Load) and not isinstance(part, ImposedStrain) and any(part is x for x in solution.model.loads):
+        chosen = np.array([any(each is x for x in part.parts) for each in solution.model.acting])
+        for row, (p, v, a, at) in enumerate(zip(solution.p, solution.v, solution.a, times.tolist(), strict=True)):
+            factors = np.where(chosen, system.loads.factors(at), 0.0)
+            loads = (system.loads.of(at, each) for each in (factors, 0.0 * factors))
+            acting, none = (residual(system, p, v, a, at, loads=each) for each in loads)
+            power[row] = (none - acting) @ v
+        return np.column_stack([np.zeros((len(solution), 2)), power])
+    items = _bound(solution, part)
     for row, (p, v, a, at) in enumerate(zip(solution.p, solution.v, solution.a, times.tolist(), strict=True)):
         gravity = system.connectors.gravity(at)
         for item in items:
@@ -152,7 +162,7 @@ def joint_force(solution: Solution, joint: Joint | Contribution | Load) -> np.nd
         if load is joint and isinstance(load, Motor):
             return _of_motor(solution, load)
     for part in solution.model.at_points:
-        if part is joint and len(part.points) == 2:
+        if part is joint and len(part.points) == 2 and len(_bound(solution, part)) == 1:
             return connector_force(solution, part)[:, 1]
         if part is joint and isinstance(part, BetweenPlaces):
             return 0.0 - connector_force(solution, part)[:, 0]

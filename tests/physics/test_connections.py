@@ -324,6 +324,25 @@ def test_a_falling_beam_reaches_the_speed_of_its_drag(element):
     np.testing.assert_allclose(force, [0.0, coefficient * speed[1] ** 2], rtol=1e-4, atol=1e-6)
 
 
+def test_drag_damps_no_small_vibration_about_rest_and_is_in_tables_and_pictures(tmp_path):
+    """A rate of 1e-150 of the free rotation took the place of the first vibration."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(3), SQUARE, STEEL)
+    fluid = bf.Drag(beam, 0.7)
+    model = bf.Model([beam], [bf.Pin(beam.start)], [GRAVITY], connectors=[fluid])
+    linear = bf.linearise(model)
+    assert not abs(linear.damping).max()
+    assert linear.modes(2).frequencies == pytest.approx(bf.solve_modes(model, 2).frequencies, rel=1e-9, abs=1e-6)
+    motion = bf.simulate(model, 1e-2, 1e-3, velocity=bf.RigidVelocity(angular=3.0))
+    table = motion.to_pandas(forces=True)
+    forces = table[table["kind"] == "Drag"].xs(0.0, level="time")[["fx", "fy", "moment"]].to_numpy()
+    assert forces == pytest.approx(motion.connector_force(fluid)[0])
+    assert forces[:, 1].sum() == pytest.approx(-0.7 * 9.0 / 3, rel=1e-12)
+    dots = [line.get_marker() for line in model.plot(tmp_path / "a.png").axes[0].lines]
+    assert dots.count("o") == 3
+    with pytest.raises(bf.InputError, match="is neither a joint, a motor nor a connector of two points"):
+        motion.joint_force(fluid)
+
+
 @pytest.mark.parametrize(("order", "elements"), [(2, 1), (3, 1), (4, 2)])
 def test_drag_of_a_spinning_beam_is_integrated_exactly(order, elements):
     """The torque about a pin of w^2 c s^2 s is c w^2 L^4 / 4, of degree 3 in s: exact from order 2 on."""

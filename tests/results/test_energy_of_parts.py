@@ -45,6 +45,27 @@ def test_a_motor_that_prescribes_an_angle_gives_its_torque_times_the_speed():
     assert work == pytest.approx(motion.energy().work, rel=1e-3, abs=1e-4 * work.max())
 
 
+def test_powers_of_loads_and_drag_are_the_rate_of_the_energy():
+    """A force that moves along an arm, one at its tip, its weight and its drag."""
+    arm = bf.Beam(bf.Line((0, 0), (0.8, 0)), 2, bf.CRBF(3), SQUARE, bf.Material(2e9, 0.3, 1200.0))
+    fluid, weight = bf.Drag(arm, 0.5), bf.Gravity((0.0, -9.81))
+    moving = bf.MovingForce(arm, lambda time: 0.4 + time, (1.0, 2.0))
+    push = bf.PointForce(arm.end, (3.0, 1.0), amplitude=lambda time: 5.0 * time, follower=True)
+    model = bf.Model([arm], [bf.Pin(arm.start)], [weight, moving, push], connectors=[fluid])
+    motion = bf.simulate(model, 0.2, 2e-4)
+    energy = motion.energy()
+    assert energy.of(moving).power[0] == pytest.approx(motion.velocity(arm.at(0.5))[0] @ (1.0, 2.0), abs=1e-12)
+    c, s = np.cos(turn := motion.rotation(arm.end)), np.sin(turn)
+    along = np.column_stack([3.0 * c - s, 3.0 * s + c]) * 5.0 * motion.time[:, None]
+    assert energy.of(push).power == pytest.approx((along * motion.velocity(arm.end)).sum(axis=1), abs=1e-9)
+    power = sum(energy.of(part).power for part in (fluid, weight, moving, push))
+    work = np.append(0.0, np.cumsum(0.5 * (power[1:] + power[:-1]) * np.diff(motion.time)))
+    gained = energy.kinetic + energy.strain
+    assert gained - gained[0] == pytest.approx(work, abs=1e-4 * gained.max())
+    with pytest.raises(bf.InputError, match="is not a connector of this model"):
+        energy.of(bf.PointForce(arm.end, (3.0, 1.0)))
+
+
 def test_conditions_of_joints_exert_no_power_and_other_objects_are_refused():
     one, two = (bf.Beam(bf.Line((x, 0), (x, -1)), 2, bf.CRBF(2), SQUARE, STEEL) for x in (0.0, 0.5))
     link, pins = bf.Link(one.end, two.end), [bf.Pin(one.start), bf.Pin(two.start)]

@@ -7,7 +7,8 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from beamfem.equations.connectors import COMPLEX_STEP, Connector, Motion, connectors_of
+from beamfem.equations.bound_connector import COMPLEX_STEP, Connector, Motion
+from beamfem.equations.connectors import connectors_of
 from beamfem.equations.equations import residual
 from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError

@@ -7,7 +7,7 @@ from scipy.sparse import coo_array, csc_array, csr_array, hstack
 
 from beamfem.equations.applied_loads import LoadsAt
 from beamfem.equations.assembler import Assembler, Equations
-from beamfem.equations.connectors import Motion
+from beamfem.equations.bound_connector import Motion
 from beamfem.equations.differences import differentiated
 from beamfem.equations.frame_inertia import absolute, right_angle, right_angle_of_unknowns, speeds
 from beamfem.equations.system import Proven, System

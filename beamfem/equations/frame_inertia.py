@@ -14,7 +14,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from beamfem.equations.connectors import TIMES, Connector, gravity_of, resting_near
+from beamfem.equations.bound_connector import Connector
+from beamfem.equations.connector_traits import TIMES, gravity_of, resting_near
 from beamfem.equations.model_coordinates import columns_of
 from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.equations.system import System

@@ -6,7 +6,8 @@ import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.equations.applied_loads import Loads
-from beamfem.equations.connectors import Connectors, Motion
+from beamfem.equations.bound_connector import Motion
+from beamfem.equations.connectors import Connectors
 from beamfem.equations.element_group import ElementGroup
 from beamfem.equations.stress_resultants import resultants, strain_group
 from beamfem.kernels.block import Block

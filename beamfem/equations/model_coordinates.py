@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beamfem.element.coordinates import across, labels
-from beamfem.equations.connectors import first_value
+from beamfem.equations.connector_nodes import first_value
 from beamfem.errors import InputError
 from beamfem.kernels.block import ROTATED_GRADIENTS, Block
 from beamfem.mesh.beam_mesh import BeamMesh

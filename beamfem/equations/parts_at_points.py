@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import LinAlgError
 
+from beamfem.equations.bound_connector import Connector
 from beamfem.equations.callbacks import KeptErrors
-from beamfem.equations.connectors import Connector
 from beamfem.equations.equation_numbering import Unknowns
 from beamfem.equations.model_coordinates import COORDINATES
 from beamfem.kernels.compiler.value_types import REALS

@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamfem.equations.connectors import Connector, Connectors
+from beamfem.equations.bound_connector import Connector
+from beamfem.equations.connectors import Connectors
 from beamfem.linalg.lapack import qr, solve_triangular, svd
 from beamfem.model.contribution import is_one_sided
 

@@ -221,7 +221,7 @@ class AxisRows(NamedTuple):
 
 
 class OnElements:
-    """A `Contribution` on a point and on one of the elements of a beam at a time, compiled; see `Connection.root`."""
+    """A `Contribution` on a point and on one of the elements of a beam at a time; see `Connection.compiled`."""
 
     __slots__ = ()
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from beamfem.element.fields import cross
-from beamfem.equations.connectors import Connector
+from beamfem.equations.bound_connector import Connector
 from beamfem.equations.equations import residual
 from beamfem.equations.frame_inertia import seen_from_rest
 from beamfem.equations.model_coordinates import COORDINATES, coordinate_of

@@ -7,19 +7,9 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.equations.connectors import (
-    AGREE,
-    COMPLEX_STEP,
-    ROUND_OFF,
-    TIMES,
-    WIDTH,
-    Connector,
-    Motion,
-    connectors_of,
-    gravity_of,
-    resting_near,
-    somewhere_near,
-)
+from beamfem.equations.bound_connector import COMPLEX_STEP, Connector, Motion
+from beamfem.equations.connector_traits import AGREE, ROUND_OFF, TIMES, WIDTH, gravity_of, resting_near, somewhere_near
+from beamfem.equations.connectors import connectors_of
 from beamfem.errors import InputError
 from beamfem.model.contribution import Contribution, remembered, require_connector
 from beamfem.model.model import Model

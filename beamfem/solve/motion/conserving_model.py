@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import coo_array, csc_array, csr_array, dia_array, kron
 
 from beamfem.equations.assembler import Equations
-from beamfem.equations.connectors import Connector
+from beamfem.equations.bound_connector import Connector
 from beamfem.equations.element_group import make_group
 from beamfem.equations.system import System
 from beamfem.kernels.block import (

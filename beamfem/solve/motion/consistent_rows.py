@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csc_array
 
-from beamfem.equations.connectors import COMPLEX_STEP, Connector
+from beamfem.equations.bound_connector import COMPLEX_STEP, Connector
 from beamfem.equations.equations import INERTIA, linearise
 from beamfem.equations.system import System
 from beamfem.linalg.lapack import LinAlgError

@@ -4,7 +4,8 @@ import numpy as np
 from scipy.linalg import LinAlgError
 from scipy.sparse import block_array, csc_array
 
-from beamfem.equations.connectors import SHORT_TIME, Motion
+from beamfem.equations.bound_connector import Motion
+from beamfem.equations.connectors import SHORT_TIME
 from beamfem.equations.equations import INERTIA, STATICS, linearise, residual
 from beamfem.equations.system import System
 from beamfem.errors import InputError

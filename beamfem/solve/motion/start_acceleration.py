@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.sparse import csc_array
 
-from beamfem.equations.connectors import Motion
+from beamfem.equations.bound_connector import Motion
 from beamfem.equations.equations import INERTIA, linearise, residual
 from beamfem.equations.system import System
 from beamfem.equations.viscosity import viscous_tangent

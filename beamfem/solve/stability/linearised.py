@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import coo_array, csr_array, eye_array
 
-from beamfem.equations.connectors import Connector
+from beamfem.equations.bound_connector import Connector
 from beamfem.equations.differences import differentiated
 from beamfem.equations.equations import STATICS, linearise_at_rest, load_change, predicted_stresses, residual_at_rest
 from beamfem.equations.stress_resultants import resultants, strain_group

@@ -8,7 +8,8 @@ from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import ArpackError, eigsh
 
-from beamfem.equations.connectors import Connector
+from beamfem.equations.bound_connector import Connector
+from beamfem.equations.connector_traits import lets_go
 from beamfem.equations.redundant_conditions import dependent_on_others, gradients_of
 from beamfem.equations.redundant_conditions import in_words as in_words_of
 from beamfem.equations.rigid_velocity import RigidVelocity, set_rigid_rates
@@ -164,7 +165,7 @@ def require_support(system: System) -> None:
 
 def free_when_open(system: System) -> str:
     """Return "; where ... are open, ..." if parts that hold one way only alone hold a model, nothing otherwise."""
-    opening = [item for item in system.connectors.items if item.lets_go]
+    opening = [item for item in system.connectors.items if lets_go(item)]
     given = {id(item.given) for item in opening}
     others = [connector for connector in system.model.connectors if id(connector) not in given]
     found = free_motion(system_of(system.model.with_(connectors=others), static=True)) if opening else None
@@ -214,7 +215,7 @@ def free_motion(system: System) -> FreeMotion | None:
     x, y = farthest.reference
     unjoined = next((pair for pair in unjoined_ends(model) if _parts(rows, free, pair)), None)
     missing = f"{in_words(model, unjoined)}: add a Rigid or a Hinge. Otherwise a" if unjoined else "A"
-    opening = [item for item in system.connectors.items if item.lets_go]
+    opening = [item for item in system.connectors.items if lets_go(item)]
     closing = f", or loads with scale=False that close {in_words_of(opening)} from the start" if opening else ""
     error = FreeMotionError(
         f"{beam_in_words(model.beams, number)} can move freely: {', '.join(described)}; its point ({x:g}, {y:g}) moves",

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.equations.connectors import damps_at_rest
+from beamfem.equations.connector_traits import damps_at_rest
 from beamfem.equations.equations import linearise_at_rest, residual_at_rest
 from beamfem.equations.system import System
 from beamfem.errors import InputError

@@ -275,9 +275,12 @@ def _deepest(stiffness: Number, square: Number, depth: Number, deepest: Number, 
     """Return the new deepest state, zero without contact, and the energy that is lost."""
     beyond = f.positive(depth - deepest)
     lost = stiffness * (1 - square) * beyond * (2 * deepest + beyond) / 2
-    return (deepest + beyond) * depth / (depth + _LEAST), lost
+    # by a hair deeper, so that small motions about the state after a step are on the way back, whatever round-off is
+    deeper = beyond + _HAIR * depth * beyond / (beyond + _LEAST)
+    return (deepest + deeper) * depth / (depth + _LEAST), lost
 
 
+_HAIR = 1e-9  # of a force or a depth
 _LEAST = 1e-300  # [m^2/s^2], so that |v| has a derivative at rest; also a depth that is none
 
 
@@ -303,7 +306,9 @@ def _with_friction(part: Connection, further: tuple[str, ...], measure: Function
         """Return the friction, and the change of the slip."""
         trial, most = data[stiffness] * (measure(q, data, f) - data[slip]), limit(q, data, f)
         over = f.positive(trial - most) - f.positive(-trial - most)
-        return trial - over, over / data[stiffness]
+        # by a hair more, so that small motions about the state after a step stick, whatever round-off is
+        back = _HAIR * most * over / (f.positive(over) + f.positive(-over) + _LEAST)
+        return trial - over, (over + back) / data[stiffness]
 
     def remember(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
         friction, slipped = slipping(q, data, f)

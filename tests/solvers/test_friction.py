@@ -117,3 +117,40 @@ def test_steps_that_fail_are_named_where_the_past_counts():
     ) as caught:
         bf.solve_static(model, steps=4, newton=bf.Newton(iterations=3))
     assert caught.value.solution.at[-1] == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e3, 39.37])
+@pytest.mark.parametrize("kind", ["hinge", "slider", "wall", "bouncing"])
+def test_small_vibrations_about_a_state_that_has_just_slipped_stick(kind, unit):
+    """So that modes do not depend on round-off: as with a spring of its stiffness, or that of the way back, in place.
+
+    Loads are so small that the rest of the stiffness is that of the reference.
+    """
+    small = 1e-6
+    square, steel = bf.Rectangle(0.1 * unit, 0.1 * unit), bf.Material(2e11 / unit**2, 0.3, 7800.0 / unit**4)
+    own, other = (bf.Beam(bf.Line((0.0, y), (unit, y)), 4, bf.CRBF(3), square, steel) for y in (0.0, unit))
+    a, b, axis, k = own.end, other.end, (0.0, 1.0), 1e6 / unit
+    torsion, turning = bf.TorsionSpring(a, b, k * unit**2), bf.PointMoment(a, 1e4 * small * unit)
+    across, aside = bf.PointForce(a, (0.0, -1e4 * small)), bf.PointForce(b, (1e4 * small, 0.0))
+    upright, spring = bf.SpringDamper(a, (unit, -unit), k), bf.SpringDamper(a, (unit, -unit), 4.0 * k)
+    rough, stuck, loads = {
+        "hinge": (bf.HingeFriction(a, b, 10.0 * small * unit, k * unit**2), [torsion], [turning]),
+        "slider": (
+            bf.Slider(a, b, axis, friction=0.01, stiffness=k),
+            [bf.Slider(a, b, axis), bf.SpringDamper(a, b, k)],
+            [across, aside],
+        ),
+        "wall": (
+            bf.Stop(a, (0.0, 0.0), (0.0, 1.0), k, friction=1e-4),
+            [upright, bf.SpringDamper(a, (2.0 * unit, 0.0), k)],
+            [across, bf.PointForce(a, (1e4 * small, 0.0))],
+        ),
+        "bouncing": (bf.Stop(a, (0.0, 0.0), (0.0, 1.0), k, restitution=0.5), [spring], [across]),
+    }[kind]
+    supports = [bf.Clamp(own.start), bf.Clamp(other.start)]
+    model, expected = (bf.Model([own, other], supports, loads, connectors=parts) for parts in ([rough], stuck))
+    rest = bf.solve_static(model)
+    assert rest.energy().dissipated[-1] > 0.0
+    expected = bf.solve_modes(expected, 4).frequencies
+    assert bf.solve_modes(model, 4, about=rest).frequencies == pytest.approx(expected, rel=1e-6)
+    assert bf.linearise(model, about=rest).modes(4).frequencies == pytest.approx(expected, rel=1e-6)

@@ -1,1 +1,1 @@
-"""What acts on beams, one file each: supports, joints, loads, masses, springs, links, drag."""
+"""What acts on beams, one file each; docs/extending/package.md says where a new part goes."""

@@ -118,6 +118,15 @@ def multipliers(solution: Solution, connector: Contribution) -> np.ndarray:
     return solution.p[:, numbers]
 
 
+def history(solution: Solution, connector: Contribution) -> dict[str, np.ndarray]:
+    """Return the history variables of a connector by name (steps,), see `Solution.history`. Raises InputError."""
+    item, *others = _bound(solution, connector)
+    if others or not len(item.memory):
+        raise InputError(f"{type(connector).__name__} has no history")
+    names = item.compiled.memory if item.compiled is not None else map(str, range(len(item.memory)))
+    return dict(zip(names, solution.p[:, item.memory].T, strict=True))
+
+
 def _bound(solution: Solution, connector: Any) -> list[Connector]:
     bound = [item for item in loading(solution)[0].connectors.items if item.given is connector]
     if bound:

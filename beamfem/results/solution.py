@@ -429,6 +429,38 @@ class Solution:
 
         return multipliers(self, connector)
 
+    def history(self, connector: Contribution) -> dict[str, np.ndarray]:
+        """Return the history variables of a connector in each row by name, those of a user-defined one by number.
+
+        Of friction, "slip" [m or rad] and "dissipated" [J]; of stops with a coefficient of restitution, the "deepest"
+        [m or rad] since they were hit, of `HingeStop` and `SliderStop` "low_deepest" and "high_deepest".
+
+        Parameters
+        ----------
+        connector : Contribution
+            One of `model.connectors` or `model.joints`, with history.
+
+        Returns
+        -------
+        dict of str to array, (steps,)
+            Values after the step that led to each row.
+
+        Raises
+        ------
+        InputError
+            For a connector without history, or of another model.
+
+        Examples
+        --------
+        >>> table = bf.Stop(beam.end, (0.0, -0.01), (0, 1), stiffness=1e8, friction=0.3)
+        >>> held = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0, -1e4))], connectors=[table])
+        >>> sorted(bf.solve_static(held).history(table))
+        ['dissipated', 'slip']
+        """
+        from beamfem.results.reactions import history
+
+        return history(self, connector)
+
     def __getstate__(self) -> dict[str, object]:
         """Return all but what `computed` keeps, which copies compute anew."""
         return {name: value for name, value in vars(self).items() if name != "_computed"}

@@ -135,6 +135,31 @@ def test_lengths_of_the_bushing_are_those_of_its_code():
         assert lines - len(documented) == int(length), file
 
 
+def test_lines_that_know_a_part_by_name_are_counted():
+    """Lines outside the class and docstrings; the docstring of the package is the list of names."""
+    page = (ROOT / "docs" / "extending.md").read_text()
+    rows = re.findall(r"^\| `(\w+)` \|.* (\d+) lines, (\d+) files \|$", page, re.M)
+    assert len(rows) == 5
+    sources = [path for kind in ("py", "pyi") for path in (ROOT / "beamfem").rglob(f"*.{kind}")]
+    for name, lines, files in rows:
+        found = [_lines_with(name, path) for path in sources]
+        assert (sum(found), sum(map(bool, found))) == (int(lines), int(files)), name
+
+
+def _lines_with(name: str, path: Path) -> int:
+    source = path.read_text()
+    if not re.search(rf"\b{name}\b", source):
+        return 0
+    left_out, own = set(), (ast.Module, ast.ClassDef, ast.FunctionDef)
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.ClassDef) and node.name == name:
+            left_out |= set(range(node.lineno, node.end_lineno + 1))
+        elif isinstance(node, own) and ast.get_docstring(node) and path != ROOT / "beamfem" / "__init__.py":
+            left_out |= set(range(node.body[0].lineno, node.body[0].end_lineno + 1))
+    numbered = enumerate(source.splitlines(), 1)
+    return sum(number not in left_out and bool(re.search(rf"\b{name}\b", line)) for number, line in numbered)
+
+
 def test_reference_lists_every_public_name():
     listed = "".join(path.read_text() for path in (ROOT / "docs" / "reference").glob("*.md"))
     missing = [name for name in bf.__all__ if not re.search(rf":: {name}\b", listed)]

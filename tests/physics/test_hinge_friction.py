@@ -65,6 +65,14 @@ def test_friction_holds_a_rod_and_dissipates_the_work_of_a_motor():
     assert torque[[5, 10, 15, 30, 35, 40]] == pytest.approx([0.5, 0.5, -0.5, -0.5, 0.5, 0.5], rel=1e-6)
     slipped = 0.3 + 0.6 + 0.6 - 5 * 0.5 / 1e4
     assert solution.energy().dissipated[-1] == pytest.approx(0.5 * slipped, rel=1e-6)
+    recorded, part = solution.history(driven.connectors[0]), driven.connectors[0]
+    assert recorded["dissipated"][-1] == pytest.approx(0.5 * slipped, rel=1e-6)
+    turned = solution.rotation(rod.start) - solution.rotation(driven.beams[0].end)
+    assert 1e4 * (turned - recorded["slip"]) == pytest.approx(-solution.joint_force(part)[:, 2], abs=1e-8)
+    stopped, _ = hinged(lambda a, b: bf.HingeStop(a, b, 0.1, stiffness=1e3))
+    moved = bf.simulate(stopped, 1e-3, 1e-3)
+    with pytest.raises(bf.InputError, match="HingeStop has no history"):
+        moved.history(stopped.connectors[0])
     held, rod = hinged(friction, 0.0, lambda rod: bf.PointForce(rod.end, (0.0, -0.9 * 0.5 / LENGTH)))
     assert bf.solve_static(held).rotation(rod.start)[-1] == pytest.approx(-0.9 * 0.5 / 1e4, rel=1e-6)
 

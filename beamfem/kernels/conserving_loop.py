@@ -11,6 +11,7 @@ ITERATIONS = 30
 _TOLERANCE = 1e-13  # of the model: a correction that ends an iteration
 _NOISE = 1e-10  # of the model: smaller corrections that no longer decrease are round-off
 _LARGEST = 1e100  # of the model
+_HALF_TURN = 3.14  # [rad]: sections turn by less, as their mean directors vanish at half turns, and their balance does
 
 
 @routine()
@@ -52,6 +53,10 @@ def iterate(system: System, solver: MotionSolver, stages: Stages, step: int, fre
         solver.statistics.iterations += 1
         solver.statistics.correction = size
         if size <= _TOLERANCE or (iteration > 0 and size <= _NOISE and size > 0.5 * before):
+            for k in range(own.angle_count):
+                angle = own.angles[k]
+                if abs(own.p[angle] - stages.begin[angle]) > _HALF_TURN:
+                    return 0
             return 1
     return 0
 

@@ -74,6 +74,8 @@ class Alike(NamedTuple):
 
     def potential(self, p: np.ndarray) -> np.ndarray:
         """Return the potential (...) [J] in states p (..., n)."""
+        if not len(self.numbers):
+            return np.zeros(p.shape[:-1])
         q = np.moveaxis(p[..., self.numbers], -1, 0)
         points = list(q.reshape(self.connection.points, self.connection.coordinates, *q.shape[1:]))
         assert self.connection.potential is not None

@@ -132,19 +132,26 @@ def _of_beams(solution: Solution) -> tuple[np.ndarray, np.ndarray, list[np.ndarr
     """Return the numbers of each beam (steps, beams, 9), and what sections have dissipated (steps,) [J].
 
     See `kernels.energy_passes`; sums of positions are those since the reference. And the positions of stations
-    (steps + 1, nl, 2) [m] of each block, the last ones in the reference.
+    (steps, nl, 2) [m] of each block.
     """
     system, _ = loading(solution)
-    p, v = np.vstack([solution.p, system.reference]), np.vstack([solution.v, np.zeros_like(system.reference)])
     factors = solution.computed(imposing) if system.loads.imposes.any() else np.empty((len(solution), 0))
-    result, places = energies_of_beams(system, p, v, np.vstack([factors, np.zeros((1, factors.shape[1]))]))
-    result[:-1, :, 2:6] -= result[-1, :, 2:6]
-    result, lost = result[:-1], np.zeros(len(solution))
+    result, places = energies_of_beams(system, solution.p, solution.v, factors)
+    result[:, :, 2:6] -= system.table(_in_reference)[0][:, 2:6]
+    lost = np.zeros(len(solution))
     for number, mesh in enumerate(solution.model.meshes):
         if mesh.beam.law is not None:
             result[:, number, 1], own = strain_energies(mesh, solution.p, imposed_measures(solution, mesh)).T
             lost += own
     return result, lost, places
+
+
+def _in_reference(system: System) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Return the numbers of each beam (beams, 9) in the reference at rest, and positions (nl, 2) [m] of stations."""
+    at_rest = system.reference[None]
+    none = np.zeros((1, system.loads.imposes.sum()))
+    result, places = energies_of_beams(system, at_rest, np.zeros_like(at_rest), none)
+    return result[0], [each[0] for each in places]
 
 
 def momenta(solution: Solution) -> np.ndarray:
@@ -183,16 +190,16 @@ def _of_loads(solution: Solution, moments: np.ndarray, places: list[np.ndarray])
     factors = np.array([np.where(system.loads.conserves, system.loads.factors(at), 0.0) for at in rows.tolist()])
     factors = factors.reshape(len(rows), -1)
     result -= (even_loads(model, factors) * moments).sum(axis=(1, 2))
-    for r, actions in zip(places, system.loads.actions, strict=True):
+    for r, start, actions in zip(places, system.table(_in_reference)[1], system.loads.actions, strict=True):
         at = actions.stations
         if actions.unit[:, :2].any():
             own = np.append(factors, np.zeros((len(rows), 1)), axis=1)[:, actions.source]
-            result -= np.einsum("sqc,qc,sq->s", r[:-1] - r[-1], actions.unit[:, :2], own)
+            result -= np.einsum("sqc,qc,sq->s", r - start, actions.unit[:, :2], own)
         for kind in set(at.kind.tolist()):
             if energy := STATIONS[kind].potential:
                 some = at.kind == kind
                 data = np.hstack([np.zeros((some.sum(), 3)), at.constants[some]])
-                result += energy([tuple(r[:-1, some].T)], data.T[:, :, None], (), ANALYTIC).sum(axis=0)
+                result += energy([tuple(r[:, some].T)], data.T[:, :, None], (), ANALYTIC).sum(axis=0)
     for load, own in zip(model.acting, factors.T, strict=True):
         if isinstance(load.place, Point) and (moment := load.acting(np.zeros(1))["moment"][0, 0]) and own.any():
             result -= own * moment * solution.rotation(load.place)

@@ -159,7 +159,7 @@ class Balance:
 
     energy: its parts; rise: change of energy less the work done; loss: its negative less what is dissipated, nan if
     that is not known; doubt: how accurately rows give the work; unsure: what they do not tell at all, and round-off;
-    exchanged: largest energy exchanged.
+    work: done since the first row.
     """
 
     time: np.ndarray
@@ -168,8 +168,16 @@ class Balance:
     loss: np.ndarray
     doubt: np.ndarray
     unsure: np.ndarray
-    exchanged: float
+    work: np.ndarray
     driven: bool
+
+    @property
+    def exchanged(self) -> float:
+        """Largest energy [J] exchanged."""
+        energy = self.energy
+        parts = (energy.kinetic, energy.strain, energy.potential, self.work)
+        most = (*(np.ptp(part) for part in parts), energy.kinetic.max(), _SMALL * np.abs(energy.strain).max())
+        return float(max(most))
 
 
 def energy_warnings(solution: "Solution") -> tuple[str, ...]:
@@ -218,21 +226,20 @@ def _some_rows(solution: "Solution") -> "Solution":
 def balance(solution: "Solution", accuracy: float = MotionLimits().tolerance) -> Balance:
     """Return the energy balance of the rows of a motion; accuracy: of coordinates, relative to the model."""
     system, energy = system_of(solution.model, static=False), solution.energy()
+    works, none = driven(solution), np.zeros(len(solution))
+    unsure = _inaccuracy(system, solution.p, energy.strain, accuracy)
+    if not (works or system.damped or energy.recorded.any()):
+        rise = np.append(0.0, np.cumsum(np.diff(energy.total)))
+        return Balance(solution.at, energy, rise, -rise, none, none + unsure, none, works)
     known, driving = _resolved(solution, system), np.fmin(energy.recorded, 0.0)
-    works, none = driven(solution), np.zeros(len(solution) - 1)
-    (work, given, stored, lost), doubt = (none, none, none, none), np.zeros(len(solution))
-    if works or system.damped:
-        forces = forces_without_potential(solution)
-        work, given, stored, lost = exchange(solution, forces)
-        doubt = _doubt(solution, forces, work + given)
+    forces = forces_without_potential(solution)
+    work, given, stored, lost = exchange(solution, forces)
+    doubt = _doubt(solution, forces, work + given)
     change = np.diff(energy.total) - stored - work
     rise = _summed(change - np.maximum(given, 0.0) + np.diff(driving), known)
     loss = -_summed(change - given + np.maximum(lost, 0.0) + np.diff(energy.recorded), known)
-    parts = (energy.kinetic, energy.strain, energy.potential, _summed(work, known))
-    exchanged = max(*(np.ptp(part) for part in parts), energy.kinetic.max(), _SMALL * np.abs(energy.strain).max())
     unknown = _summed(np.abs(np.diff(energy.total) - stored), ~known)
-    unsure = unknown + _inaccuracy(system, solution.p, energy.strain, accuracy)
-    return Balance(solution.at, energy, rise, loss, doubt, unsure, float(exchanged), works)
+    return Balance(solution.at, energy, rise, loss, doubt, unknown + unsure, _summed(work, known), works)
 
 
 def _summed(change: np.ndarray, known: np.ndarray) -> np.ndarray:

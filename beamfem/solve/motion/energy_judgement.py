@@ -42,10 +42,10 @@ class EnergyJudge:
         self._system, self._masses, self._radius = system, system.table(masses), radius_at_infinity(rule)
         self._duration = end
         self._damps = self._radius < 1.0 - 1e-6
-        self._first = self._solution(np.zeros(1), start[None].copy())
+        self._first = self._fastest = np.zeros(1), start[None].copy()  # times (1,) [s] and states (1, 3, n)
         moved = any(callable(item.value) for item in system.prescribed)
         self._share = _SHARE_MOVED if moved else share
-        self._fastest, self._speed, self._speed_evaluated = self._first, 0.0, 0.0
+        self._speed = self._speed_evaluated = 0.0
         self._drift = self._total = 0.0
         self._parts = np.empty((3, 0))  # extreme kinetic, strain and potential energies so far
 
@@ -58,8 +58,8 @@ class EnergyJudge:
         """Return what `recall` needs to go on with the judgement of the same motion."""
         numbers = [self._speed, self._speed_evaluated, self._drift, self._total]
         result = {"numbers": np.array(numbers), "parts": self._parts}
-        for name, row in (("first", self._first), ("fastest", self._fastest)):
-            result[f"{name}_time"], result[name] = row.at, np.array([row.p[0], row.v[0], row.a[0]])
+        for name, (times, states) in (("first", self._first), ("fastest", self._fastest)):
+            result[f"{name}_time"], result[name] = times, states[0].copy()
         return result
 
     def recall(self, memory: Mapping[str, np.ndarray]) -> None:
@@ -67,13 +67,13 @@ class EnergyJudge:
         self._speed, self._speed_evaluated, self._drift, self._total = memory["numbers"].tolist()
         self._parts = memory["parts"]
         self._first, self._fastest = (
-            self._solution(memory[f"{name}_time"], memory[name][None].copy()) for name in ("first", "fastest")
+            (memory[f"{name}_time"], memory[name][None].copy()) for name in ("first", "fastest")
         )
 
     @cached_property
     def conservative(self) -> bool:
         """Whether energies need no work of loads and supports, which is by the reactions at the ends of steps."""
-        return not (driven(self._first) or self._system.damped or self._system.history.laws)
+        return not (driven(self._solution(*self._first)) or self._system.damped or self._system.history.laws)
 
     def accept(self, times: np.ndarray, states: np.ndarray, cut: bool, failed: bool, final: bool) -> int:
         """Return how many steps between states (m + 1, 3, n) at times (m + 1,) [s] are good.
@@ -92,10 +92,10 @@ class EnergyJudge:
         if steps < _DIFFERENCES:
             doubtful |= doubted
         elif not cut:
-            rows = np.maximum(np.arange(1, steps + 1) if doubted else ends, _DIFFERENCES)
-            now, *before = (states[rows - back, 1] for back in range(4))
-            change = np.square(now - 3.0 * (before[0] - before[1]) - before[2]) @ self._masses
-            change = np.maximum.reduceat(change, bounds[:-1]) if doubted else change
+            rows = np.maximum(ends, _DIFFERENCES)
+            v = [states[3 - n : steps + 1 - n, 1] if doubted else states[rows - n, 1] for n in range(4)]
+            change = np.square(v[0] - 3.0 * (v[1] - v[2]) - v[3]) @ self._masses
+            change = np.maximum.reduceat(change, np.maximum(bounds[:-1] - 2, 0)) if doubted else change
             grown = (speeds > _GROWN * fastest[:-1]) & (fastest[:-1] > 0.0) & (change > _SMOOTH * speeds)
             doubtful |= ~(change <= _UNRESOLVED * fastest[1:]) | grown
         good = steps
@@ -105,7 +105,7 @@ class EnergyJudge:
         number = int(np.argmax(np.where(ends <= good, speeds, -1.0)))
         if ends[number] <= good and speeds[number] > self._speed:
             self._speed, row = float(speeds[number]), ends[number : number + 1]
-            self._fastest = self._solution(times[row], states[row])
+            self._fastest = times[row], states[row]
         return good
 
     def _first_refused(
@@ -157,14 +157,14 @@ class EnergyJudge:
         if self._parts.size and self._speed <= _FASTER * self._speed_evaluated:
             return
         if not self._parts.size:
-            self._total = float(self._exchange(self._first).total[0])
+            self._total = float(self._exchange(*self._first).total[0])
         if self._fastest is not self._first:
-            self._exchange(self._fastest)
+            self._exchange(*self._fastest)
         self._speed_evaluated = self._speed
 
-    def _exchange(self, state: Solution) -> Energy:
-        """Return the energies of a state, taken into account."""
-        energy = state.energy()
+    def _exchange(self, times: np.ndarray, states: np.ndarray) -> Energy:
+        """Return the energies of a state (1, 3, n), taken into account."""
+        energy = self._solution(times, states).energy()
         self._parts = _extremes(self._parts, energy.kinetic, energy.strain, energy.potential)
         return energy
 

@@ -6,11 +6,11 @@ from typing import Any
 
 from beamfem.equations.assembler import Scratch, lend_scratch, take_back_scratch
 from beamfem.equations.equations import STATICS
+from beamfem.equations.motion_workspace import border_record
 from beamfem.equations.system import System
 from beamfem.kernels.band import band
 from beamfem.kernels.newton_loop import NewtonRoutines, NewtonSolver
 from beamfem.kernels.records import aligned
-from beamfem.linalg.bordered import condensed_record
 
 _KEPT = 100_000  # entries of the largest tangent for which allocation is a noticeable part of a solve
 
@@ -43,9 +43,7 @@ class BandWorkspace:
         own.fill(**room)
         self.assembler.place(self.p, own.step, own.step, self.residual, own.rows)
         if unknowns.border_size:
-            edge = unknowns.border, len(system.connectors.multipliers)
-            own.bordered, own.border = 1, condensed_record(unknowns.banded, own.half, unknowns.reach, *edge)
-            own.border.rows, own.border.entries = own.rows, own.rows[unknowns.entries - unknowns.border_size**2 :]
+            own.bordered, own.border = 1, border_record(system, own.rows)
 
     def call(self, driver: Callable[..., Any]) -> Any:
         """Call a compiled driver and return its result. Raises the first error in what it has called in Python."""

@@ -11,8 +11,10 @@ from beamfem.equations.system import System
 from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 from beamfem.kernels.motion_record import MotionRoutines, MotionSolver
 from beamfem.kernels.predictor import difference_rows, padded
+from beamfem.kernels.record import Border
 from beamfem.kernels.records import aligned
 from beamfem.kernels.stage_record import Stages
+from beamfem.linalg import bordered
 
 _KEPT = 40_000_000  # entries of the largest tangent whose workspace is kept for the next motion of the model
 
@@ -30,6 +32,14 @@ def _routines(half_width: int, short: bool) -> MotionRoutines:
     return MotionRoutines.usual(factor=own.factor, solve_both=own.solve)
 
 
+def border_record(system: System, rows: np.ndarray) -> Border:
+    """Return the workspace to factor the tangent of a model, a band with a border whose entries are all in `rows`."""
+    unknowns, half = system.unknowns, system.layouts[0].half_width
+    entries = rows[unknowns.entries - unknowns.border_size**2 :]
+    border = bordered.Border(unknowns.border, len(system.connectors.multipliers), entries)
+    return bordered.condensed_record(unknowns.banded, half, unknowns.reach, rows, border)
+
+
 class MotionWorkspace:
     """Workspace for one motion; residual (n,): of the state reached; stages: of collocation, by method."""
 
@@ -44,8 +54,6 @@ class MotionWorkspace:
                 "residual": (size,),
                 "right": (unknown,) if first < 0 else (0,),
                 "rows": (unknowns.entries,),
-                "edge_columns": (len(unknowns.border), unknown),
-                "edge_factors": (unknowns.border_size, unknowns.border_size + 1),
                 "step": (max(size, unknown) + 2,),
                 "change": (padded(size),),
                 "differences": (difference_rows(size),),
@@ -58,9 +66,10 @@ class MotionWorkspace:
         if first >= 0:  # unknowns in a row are solved for where the residual is
             room["right"] = self.residual[first : first + unknown]
         own.fill(pair_run_count=len(pairs), pair_runs=pairs, **room)
-        own.edge_numbers = np.ascontiguousarray(unknowns.border)
         own.multipliers = np.ascontiguousarray(system.connectors.multipliers)
-        own.border = own.rows[unknowns.entries - unknowns.border_size**2 :]
+        if unknowns.border_size:
+            own.border = border_record(system, own.rows)
+            own.border.fill(factor=own.routines.factor, solve=own.routines.solve_both)
 
     def unload(self) -> None:
         """Let go of the loads and the rows of a motion."""

@@ -7,7 +7,7 @@ they alone hold a part. The condensed matrix is inverted by exchanges of one or 
 """
 
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.pointers import at, small_code
+from beamfem.kernels.pointers import at
 from beamfem.kernels.record import Border
 from beamfem.kernels.records import Reals
 
@@ -158,7 +158,6 @@ def factor_condensed(border: Border) -> float:
 
     Return the smallest ratio of a pivot to an original diagonal entry, 0 if one is zero.
     """
-    small_code()
     n, edge, m = border.unknown, border.edge, border.edge + border.conditions
     _take_out(border)
     ratio = border.factor(n, border.half, border.reach, border.rows, border.signs)
@@ -179,7 +178,6 @@ def factor_condensed(border: Border) -> float:
 @routine()
 def solve_condensed(border: Border, right: Reals) -> None:
     """Replace a right-hand side (n + k,) by the solution, multipliers last."""
-    small_code()
     n, edge, m, numbers = border.unknown, border.edge, border.edge + border.conditions, border.numbers
     values = border.sizes
     for own in range(edge):

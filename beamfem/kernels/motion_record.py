@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from beamfem.kernels.record import Solver
+from beamfem.kernels.record import Border, Solver
 from beamfem.kernels.records import Reals, Record, Several, Wholes, calls
 
 
@@ -83,8 +83,8 @@ class MotionRoutines(Record):
     rotate_back = calls("rollers:rotate_back")
     factor = calls("bidirectional_lu:ANY.factor")  # from both ends, see `bidirectional_lu`
     solve_both = calls("bidirectional_lu:ANY.solve")
-    factor_bordered = calls("bordered_band:factor_bordered")
-    solve_bordered = calls("bordered_band:solve_bordered")
+    factor_condensed = calls("condensation:factor_condensed")
+    solve_condensed = calls("condensation:solve_condensed")
     keep_directions = calls("motion_steps:keep_directions")
     rotations_since = calls("motion_steps:rotations_since")
     rotate_pairs = calls("motion_steps:rotate_pairs")
@@ -124,14 +124,10 @@ class MotionSolver(Solver):
     body_size: int
     bodies: Reals  # (steps or 1, beams, 4)
 
-    # a border of the band: t unknowns that are coupled beyond it, and k multipliers, which follow those of the band
-    edge: int  # t
-    edge_numbers: Wholes  # (t,)
-    conditions: int  # k
+    bordered: int  # whether the band has a border
+    border: Border
+    conditions: int  # number k of multipliers, which follow the unknowns of the band
     multipliers: Wholes  # (k,): their coordinates
-    border: Reals  # (t + k, t + k)
-    edge_columns: Reals  # (t, unknown): solutions of the band for the unit vectors of the edge
-    edge_factors: Reals  # (t + k, t + k + 1): factors of the coupled system, each row with its pivot row
 
     # vectors that rotate with their section
     pair_run_count: int

@@ -33,8 +33,8 @@ def assemble(system: System, solver: MotionSolver) -> None:
 @routine()
 def factorise(system: System, solver: MotionSolver) -> float:
     """Factor the tangent; return the smallest ratio of a pivot to the row's original diagonal entry."""
-    if solver.edge + solver.conditions > 0:
-        return solver.routines.factor_bordered(solver)
+    if solver.bordered != 0:
+        return solver.routines.factor_condensed(solver.border)
     return solver.routines.factor(solver.unknown, solver.half, solver.reach, solver.rows, solver.step)
 
 
@@ -72,8 +72,8 @@ def solve(system: System, solver: MotionSolver) -> None:
     if rollers > 0:
         call.rotate_in(rollers, first_of, normal, right)
     _rotate_vectors(solver, -1.0)
-    if solver.edge + solver.conditions > 0:
-        call.solve_bordered(solver)
+    if solver.bordered != 0:
+        call.solve_condensed(solver.border, right)
     else:
         call.solve_both(unknown, solver.half, solver.rows, right)
     _rotate_vectors(solver, 1.0)

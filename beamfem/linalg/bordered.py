@@ -40,14 +40,13 @@ class Border(NamedTuple):
         return len(self.entries)
 
 
-def condensed_record(size: int, half: int, reach: np.ndarray, numbers: np.ndarray, multipliers: int) -> record.Border:
-    """Return the workspace to factor a band (n, n) with a border; `rows` and `entries` are to be set.
-
-    numbers (t,), multipliers: see `Border`.
-    """
-    routines, t, m = bidirectional_lu(half, True), len(numbers), len(numbers) + multipliers
+def condensed_record(size: int, half: int, reach: np.ndarray, rows: np.ndarray, border: Border) -> record.Border:
+    """Return the workspace to factor a band of n unknowns, in `rows`, with a border, in place."""
+    (numbers, multipliers, entries), routines = border, bidirectional_lu(half, True)
+    t, m = len(numbers), len(numbers) + multipliers
     own = record.Border(unknown=size, half=half, reach=reach, edge=t, conditions=multipliers)
-    own.fill(numbers=np.ascontiguousarray(numbers), factor=routines.factor, solve=routines.solve)
+    own.fill(rows=rows, entries=entries, numbers=np.ascontiguousarray(numbers))
+    own.fill(factor=routines.factor, solve=routines.solve)
     room = {"signs": (size,), "columns": (t, size), "beside": (t, 2 * half + 1), "condensed": (m, m), "sizes": (3, m)}
     own.fill(**aligned(room))
     return own
@@ -83,8 +82,8 @@ class BorderedTangent(Tangent):
     def factorised(self, rotated: Rotated) -> Factorised:
         """Return the factors. Raises LinAlgError."""
         rows, reach = self.band.rows.copy(), np.ascontiguousarray(self.band.reach)
-        own = condensed_record(len(rows), rows.shape[1] // 2, reach, self.border.numbers, self.border.multipliers)
-        own.rows, own.entries = rows, np.ascontiguousarray(self.border.entries)
+        border = self.border._replace(entries=np.ascontiguousarray(self.border.entries))
+        own = condensed_record(len(rows), rows.shape[1] // 2, reach, rows, border)
         if not len(rotated[0]) and factor_condensed(own) > SMALLEST_PIVOT:
             return CondensedFactors(own)
         whole, multipliers = SparseTangent(self._whole()), self.border.multipliers

@@ -7,7 +7,7 @@ from beamfem.equations.motion_workspace import MotionWorkspace
 from beamfem.equations.system import System
 from beamfem.kernels.motion_record import MotionLimits, MotionStatistics, Rule
 from beamfem.kernels.time_loop import march
-from beamfem.solve.motion.coupled_stages import CoupledStages, is_weak
+from beamfem.solve.motion.coupled_stages import CoupledStages
 from beamfem.solve.motion.stored_states import Saving
 
 BAND = MotionLimits()
@@ -117,7 +117,6 @@ class CompiledSteps(StepsInCalls):
         space.assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))), self._step)
         space.assembler.require("tangent", "prediction")
         self._coupled = CoupledStages(system, space) if sparse else None
-        self._untried = bordered and self._coupled is None
 
     @property
     def why(self) -> str:
@@ -128,17 +127,10 @@ class CompiledSteps(StepsInCalls):
     def _advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """Do what `advance` does in one compiled call."""
         space, unknowns = self._space, self._system.unknowns
-        if self._untried:
-            self._untried = False
-            p, v, a, _ = state
-            weak = is_weak(self._system, (p, v, a), float(times[0]), space.assembler.weights, self._step)
-            self._coupled = CoupledStages(self._system, space) if weak else None
         assembler, solver = space.assembler, space.solver
         self._fill(state, prescribed, times, saving)
-        solver.fill(  # stages in Python factorise the border themselves
-            edge=len(unknowns.border) if self._coupled is None else 0,
-            conditions=unknowns.border_size - len(unknowns.border) if self._coupled is None else 0,
-        )
+        conditions = len(solver.multipliers) if self._coupled is None else 0  # stages in Python keep them themselves
+        solver.fill(bordered=self._coupled is None and unknowns.border_size > 0, conditions=conditions)
         if self._coupled is None and not assembler.calls_python:
             return int(march(assembler.record, solver))
         with Deferred() as self._deferred:

@@ -1,4 +1,4 @@
-"""Stages of compiled time steps for models with a sparse tangent, or a weak band: routines that call Python."""
+"""Stages of compiled time steps for models with a sparse tangent: routines that call Python."""
 
 from collections.abc import Callable
 from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p, cast
@@ -8,36 +8,13 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from beamfem.equations.callbacks import Deferred, KeptErrors
-from beamfem.equations.equations import linearise, tangent_of
+from beamfem.equations.equations import tangent_of
 from beamfem.equations.motion_workspace import MotionWorkspace
 from beamfem.equations.system import System
 from beamfem.kernels import motion_steps, rollers
-from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
 from beamfem.kernels.time_loop import march
-from beamfem.linalg.bordered import BorderedTangent
 from beamfem.linalg.lapack import LinAlgError
 from beamfem.linalg.tangent import UNROTATED, Factorised, SaddleTangent, SparseTangent
-
-# smallest ratio of a pivot to the original diagonal entry with which a band alone has digits enough to be bordered
-WEAK = 1e-10
-
-
-def is_weak(
-    system: System,
-    state: tuple[np.ndarray, np.ndarray, np.ndarray],
-    time: float,
-    weights: tuple[float, float, float],
-    step: float,
-) -> bool:
-    """Return whether the band of a bordered tangent has too few digits in p, p', p'' (n,) to be factorised alone."""
-    tangent = linearise(system, *state, time, weights, dt=step)[1]
-    if not isinstance(tangent, BorderedTangent):
-        return False
-    rows = np.ascontiguousarray(tangent.band.rows)
-    half = system.layouts[0].half_width
-    factor = bidirectional_lu(half, len(rows) < SHORT).factor
-    return not factor(len(rows), half, system.unknowns.reach, rows, np.empty(len(rows) + 2)) > WEAK
-
 
 _Factor = CFUNCTYPE(c_double, *(c_int64,) * 2, *(c_void_p,) * 3)
 _Solve = CFUNCTYPE(None, *(c_int64,) * 2, *(c_void_p,) * 2)
@@ -77,7 +54,7 @@ class PythonRoutines:
 
 
 class CoupledStages(PythonRoutines):
-    """The routines of a motion with a sparse tangent, or a band that is weak without its border."""
+    """The routines of a motion with a sparse tangent."""
 
     def __init__(self, system: System, space: MotionWorkspace) -> None:
         super().__init__(space.solver.right)

@@ -16,7 +16,7 @@ class Rayleigh:
     Each section force in a motion is C (eps + b eps'), and each mass dm resists its velocity v by a dm v. A vibration
     of angular frequency w has the damping ratio z = a / (2 w) + b w / 2. The strains eps are those of the elements, so
     a rigid motion loses no energy to b. It does lose energy to a, which represents a surrounding fluid. Statics, modes
-    and buckling have no rates and ignore both.
+    and buckling have no rates and ignore both. Raises InputError for a negative value, which would gain energy.
 
     Parameters
     ----------
@@ -24,11 +24,6 @@ class Rayleigh:
         Factor a >= 0 of the mass.
     stiffness : float, [s], default 0
         Factor b >= 0 of the stiffness, in addition to the `retardation_time` of the material.
-
-    Raises
-    ------
-    InputError
-        For a negative value, which would gain energy.
 
     References
     ----------
@@ -49,23 +44,13 @@ class Rayleigh:
     def from_ratios(cls, first: tuple[float, float], second: tuple[float, float]) -> "Rayleigh":
         """Return the damping that has given ratios at two frequencies.
 
-        z_i = a / (2 w_i) + b w_i / 2 with w_i = 2 pi f_i, solved for a and b.
+        z_i = a / (2 w_i) + b w_i / 2 with w_i = 2 pi f_i, solved for a and b. Raises InputError for equal frequencies,
+        or ratios that only a negative factor can have: z2 / z1 must lie between f1 / f2 and f2 / f1.
 
         Parameters
         ----------
         first, second : (float, float), [Hz, -]
             Frequency f and damping ratio z of two modes, such as those that `solve_modes` finds.
-
-        Returns
-        -------
-        Rayleigh
-            The damping.
-
-        Raises
-        ------
-        InputError
-            For equal frequencies, or ratios that only a negative factor can have: z2 / z1 must lie between f1 / f2 and
-            f2 / f1.
 
         Examples
         --------
@@ -100,17 +85,13 @@ class KelvinVoigt:
     """Damping of a viscoelastic beam after Kelvin and Voigt, for `Beam(damping=...)`.
 
     Each section force in a motion is C (eps + t eps'): the same as `Rayleigh(stiffness=t)`, or as a material with this
-    `retardation_time`, of which it is the sum where both are given.
+    `retardation_time`, of which it is the sum where both are given. Raises InputError for a negative time, which would
+    gain energy.
 
     Parameters
     ----------
     time : float, [s]
         Retardation time t >= 0, within which a sudden load deforms the beam by 1 - 1 / e of its static deformation.
-
-    Raises
-    ------
-    InputError
-        For a negative time, which would gain energy.
 
     Examples
     --------

@@ -12,7 +12,7 @@ class Material:
 
     With a retardation time t, every section force in a motion is C (eps + t eps'). A small vibration of angular
     frequency w then has the damping ratio t w / 2. A rigid motion is not damped, but every change of strain is,
-    including a free expansion.
+    including a free expansion. Raises InputError for an invalid value.
 
     Parameters
     ----------
@@ -28,11 +28,6 @@ class Material:
         Coefficient alpha of thermal expansion of a length, for `Temperature`.
     strength : float, [Pa], optional
         Strength that the von Mises stress is compared with.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
 
     Examples
     --------
@@ -69,17 +64,12 @@ class Material:
         return self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
 
     def lame_lambda(self, plane_stress: bool = False) -> float:
-        """Return Lamé's first parameter, E nu / ((1 + nu)(1 - 2 nu)), or E nu / (1 - nu^2) in plane stress.
+        """Return Lamé's first parameter, E nu / ((1 + nu)(1 - 2 nu)), or E nu / (1 - nu^2) in plane stress [Pa].
 
         Parameters
         ----------
         plane_stress : bool, default False
             Whether to return the value of plane stress.
-
-        Returns
-        -------
-        float, [Pa]
-            lambda.
 
         Examples
         --------

@@ -66,11 +66,6 @@ def converge(
         Arguments of the function. Besides the parameter of refinement, every list, tuple, range or one-dimensional
         array gives one curve for each of its values; anything else is passed on unchanged.
 
-    Returns
-    -------
-    Convergence
-        Curves with values, errors, orders and estimates; it prints as a table and has `plot`, `to_markdown` and others.
-
     Raises
     ------
     InputError

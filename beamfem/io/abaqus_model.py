@@ -98,11 +98,6 @@ def read_abaqus_model(
         Units that the numbers of the file have, such as "N, mm", for labels and tables as in `Model`, by default
         "N, m, s". Nothing is converted.
 
-    Returns
-    -------
-    AbaqusModel
-        The model, its frame with the sets of the file, and the procedures of its steps.
-
     Raises
     ------
     FileError

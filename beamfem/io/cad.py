@@ -44,11 +44,6 @@ def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve
     layer : str, optional
         Name of the layer to read; by default all layers are read.
 
-    Returns
-    -------
-    tuple of Curve
-        One curve for each entity.
-
     Raises
     ------
     FileError

@@ -38,6 +38,8 @@ _NODES = {"vertex": 1, "line": 2, "line3": 3}
 class LineMesh:
     """Lines that share nodes, and named sets of them.
 
+    Raises InputError for numbers that do not fit together.
+
     Parameters
     ----------
     nodes : array_like, [m], (n, 2)
@@ -48,11 +50,6 @@ class LineMesh:
         Cells of each set by name.
     point_sets : mapping
         Nodes of each set by name.
-
-    Raises
-    ------
-    InputError
-        For numbers that do not fit together.
 
     Examples
     --------
@@ -139,11 +136,6 @@ def read_mesh(path: str | PathLike[str], *, merge: bool = False) -> LineMesh:
     merge : bool, default False
         Whether ends of lines at one place become one node, as needed for the centrelines that `to_vtk` writes, whose
         elements share no points.
-
-    Returns
-    -------
-    LineMesh
-        Nodes, cells and their named sets.
 
     Raises
     ------

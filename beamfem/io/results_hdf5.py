@@ -214,11 +214,6 @@ def load(path: str | PathLike[str], rows: slice | None = None) -> Solution:
     rows : slice, optional
         Which rows, in ascending order, if not all: the others need no memory.
 
-    Returns
-    -------
-    Solution
-        The model with its states; a `Path` for a path.
-
     Raises
     ------
     FileError

@@ -12,8 +12,8 @@ from typing import NamedTuple
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import operation
 from beamfem.kernels.compiler.value_types import PAIRS, WHOLE, Value
-from beamfem.kernels.compiling import Routine, inlined, routine
-from beamfem.kernels.elimination import FAST, elimination
+from beamfem.kernels.compiling import FAST, Routine, inlined, routine
+from beamfem.kernels.elimination import elimination
 from beamfem.kernels.pointers import at, room
 
 KNOWN = (5, 7, 8, 9, 11, 14)  # chains of bilinear, quadratic and cubic elements, and of orders 3 and 4 with rotations

@@ -9,8 +9,8 @@ from functools import cache
 from typing import NamedTuple
 
 from beamfem.kernels.band import KNOWN, band, push
-from beamfem.kernels.compiling import Routine, inlined, routine
-from beamfem.kernels.elimination import FAST, elimination
+from beamfem.kernels.compiling import FAST, Routine, inlined, routine
+from beamfem.kernels.elimination import elimination
 from beamfem.kernels.pointers import at, room
 from beamfem.kernels.simd import as_pairs, first_of, paired, second_of
 

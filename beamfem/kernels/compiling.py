@@ -27,6 +27,7 @@ from beamfem.kernels.compiler.value_types import NUMBER, WHOLE, WIDTH, Kind, Sig
 from beamfem.kernels.pointers import at
 from beamfem.kernels.records import Record, checked, kind_of
 
+FAST = frozenset({"contract", "reassoc", "nsz"})  # fast-math flags that keep nan and infinity
 _Value = TypeVar("_Value", covariant=True)
 _PLAIN: dict[Kind | None, Any] = {None: None, WHOLE: c_int64, NUMBER: c_double}
 _compiling = RLock()  # two threads may need a kernel at the same time, but LLVM is not thread-safe

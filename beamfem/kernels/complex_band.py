@@ -9,8 +9,7 @@ from functools import cache
 from typing import NamedTuple
 
 from beamfem.kernels.band import KNOWN, push
-from beamfem.kernels.compiling import Routine, routine
-from beamfem.kernels.elimination import FAST
+from beamfem.kernels.compiling import FAST, Routine, routine
 from beamfem.kernels.pointers import at, room
 from beamfem.kernels.simd import as_pairs, first_of, paired, second_of
 

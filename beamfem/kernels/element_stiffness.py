@@ -4,13 +4,11 @@ h has 21 rows for each point: the blocks rr (xx, xy, yy), rd, rt (xx, xy, yx, yy
 yy) and tt (xx, xy, yy). A matrix (columns, rows, ROW) has a row of lanes for each entry.
 """
 
-from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.compiling import FAST, inlined, routine
 from beamfem.kernels.pointers import at
 from beamfem.kernels.record import ROW, Group
 from beamfem.kernels.records import Rows
 from beamfem.kernels.simd import WIDTH, zeros
-
-FAST = {"contract", "reassoc", "nsz"}
 
 
 @routine("iiidvvrvv", fastmath=FAST)

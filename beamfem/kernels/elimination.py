@@ -4,11 +4,10 @@ ab (n, 2 w + 1) is factored in place, in row storage: row i holds A[i, i - w .. 
 the diagonal holds the inverse pivots. If the half width is known to the compiler, a row is changed in whole lanes.
 """
 
-from beamfem.kernels.compiling import Routine, inlined, routine
+from beamfem.kernels.compiling import FAST, Routine, inlined, routine
 from beamfem.kernels.pointers import at
 from beamfem.kernels.simd import WIDTH, as_rows, merged, power_of_two, zeros
 
-FAST = {"contract", "reassoc", "nsz"}
 _IN_ORDER = {"contract", "nsz"}  # two multiplications with addition for a number, where reassociation takes three
 
 

@@ -3,12 +3,10 @@
 Each table entry is a row of lanes, since the elements of a batch may all be different.
 """
 
-from beamfem.kernels.compiling import routine
+from beamfem.kernels.compiling import FAST, routine
 from beamfem.kernels.pointers import at, small_code
 from beamfem.kernels.record import ROW
 from beamfem.kernels.simd import WIDTH, zeros
-
-FAST = {"contract", "reassoc", "nsz"}
 
 
 @routine("iiiiivvrvv", fastmath=FAST)

@@ -5,14 +5,12 @@ their derivatives from strains. A law with history reads it from the state of th
 row; w: weights.
 """
 
-from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.compiling import FAST, inlined, routine
 from beamfem.kernels.point import RATE, RESULTANT, STIFFNESS, STRAIN
 from beamfem.kernels.pointers import at
 from beamfem.kernels.record import ROW, Group, System
 from beamfem.kernels.records import Rows
 from beamfem.kernels.simd import WIDTH, zeros
-
-FAST = {"contract", "reassoc", "nsz"}
 
 
 @inlined

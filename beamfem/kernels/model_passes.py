@@ -1,7 +1,7 @@
 """Residual and tangent of a whole model, and prediction of the resultants after a step."""
 
 from beamfem.kernels.batch import rows_of
-from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.compiling import FAST, inlined, routine
 from beamfem.kernels.point import RATE, RATE_CHANGE, RESULTANT, STRAIN, VELOCITY
 from beamfem.kernels.pointers import at, given, small_code
 from beamfem.kernels.record import LANES, ROW, Group, System
@@ -64,7 +64,7 @@ def _add_product(group, first, count, chunk, matrix, rates, change):
                     to[i] += factor[i] * change[dofs[i]]
 
 
-@routine(fastmath={"contract", "reassoc", "nsz"})
+@routine(fastmath=FAST)
 def rate_nodes(group: Group, system: System, row: int) -> None:
     """Fill e' = B p' of all nodes of a group into the rows of its chunks from `row` on; p': `system.v`."""
     chunks, step, first, size = group.chunks, system.v, 0, 2 * group.vectors

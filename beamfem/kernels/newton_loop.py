@@ -2,13 +2,12 @@
 
 from typing import Annotated
 
-from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.compiling import FAST, inlined, routine
 from beamfem.kernels.pointers import at
 from beamfem.kernels.record import Border, Solver, System
 from beamfem.kernels.records import Reals, Record, calls
 from beamfem.kernels.simd import WIDTH, as_rows, larger, largest, zeros
 
-_FAST = {"contract", "reassoc", "nsz"}
 STALLED = 0.25  # of the correction before: a larger one no longer decreases, and if it is small it is round-off
 
 
@@ -68,7 +67,7 @@ def _larger_of(size, value):
     return abs(value) if not abs(value) <= size and size == size else size
 
 
-@routine("irrr", "d", fastmath=_FAST)
+@routine("irrr", "d", fastmath=FAST)
 def take_step(n, step, p, inverse_scale):
     """Add a step (n,) to p; return its largest component relative to the scale, NaN if one is NaN."""
     change, lanes, weight, sizes, whole = as_rows(step), as_rows(p), as_rows(inverse_scale), zeros(), n // WIDTH * WIDTH

@@ -3,12 +3,11 @@
 import math
 
 from beamfem.kernels import rollers
-from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.compiling import FAST, inlined, routine
 from beamfem.kernels.motion_record import MotionSolver
 from beamfem.kernels.pointers import at, small_code
 from beamfem.kernels.simd import WIDTH, as_rows, larger, largest, where_negative, zeros
 
-FAST = {"contract", "reassoc", "nsz"}
 _stay_on_planes = inlined(rollers.stay_on_planes)
 MOST = 3  # differences of the acceleration used to extrapolate it; higher ones would amplify noise from step to step
 

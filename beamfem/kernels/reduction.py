@@ -5,14 +5,12 @@ components depend: B = diag(1, b) with b (dependent, parameters) for each node. 
 numbered -1.
 """
 
-from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.compiling import FAST, inlined, routine
 from beamfem.kernels.element_stiffness import multiply
 from beamfem.kernels.pointers import at
 from beamfem.kernels.record import ROW, Group, System
 from beamfem.kernels.records import Reals
 from beamfem.kernels.simd import WIDTH, as_rows
-
-FAST = {"contract", "reassoc", "nsz"}
 
 
 @routine("iiiiiivvv", fastmath=FAST)

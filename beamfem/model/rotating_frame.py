@@ -10,7 +10,8 @@ class RotatingFrame:
     """A frame of reference that turns at a constant speed, in which a model is described.
 
     Centrifugal forces w^2 (r - c) and Coriolis forces -2 w e_z x v act on all mass. Supports, loads and places on the
-    ground turn with the frame. In statics the square of the speed is multiplied by the load factor.
+    ground turn with the frame. In statics the square of the speed is multiplied by the load factor. Raises InputError
+    for an invalid value.
 
     Parameters
     ----------
@@ -18,11 +19,6 @@ class RotatingFrame:
         Angular velocity w, counter-clockwise.
     about : (float, float), [m], default (0, 0)
         Center c of the rotation.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
 
     Examples
     --------

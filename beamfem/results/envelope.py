@@ -135,7 +135,8 @@ class Envelope:
 def envelope(solutions: Sequence[Solution] | Mapping[str, Solution], every_row: bool = False) -> Envelope:
     """Return the smallest and largest section forces and stresses of several solutions of the same beams.
 
-    Statics count with their last row, motions with all rows.
+    Statics count with their last row, motions with all rows. Raises InputError for anything else than solutions, or
+    solutions of different beams.
 
     Parameters
     ----------
@@ -143,16 +144,6 @@ def envelope(solutions: Sequence[Solution] | Mapping[str, Solution], every_row: 
         The solutions, such as load cases, and their names; by default "case 0", "case 1" and so on.
     every_row : bool, default False
         Whether all rows of statics count too, such as the load steps of a path.
-
-    Returns
-    -------
-    Envelope
-        Its `table`, `along` a beam, and `plot`.
-
-    Raises
-    ------
-    InputError
-        For anything else than solutions, or solutions of different beams.
 
     Examples
     --------

@@ -52,6 +52,8 @@ class FieldOnBasis:
 def field_on_basis(solution: Solution, beam: Beam, body: bool = True, piece: int | None = None) -> FieldOnBasis:
     """Return the field of a beam in all states of a solution on a scikit-fem basis.
 
+    Raises InputError for a beam with corners without a piece, and for knot spans as elements.
+
     Parameters
     ----------
     solution : Solution
@@ -66,16 +68,6 @@ def field_on_basis(solution: Solution, beam: Beam, body: bool = True, piece: int
     piece : int, optional
         Number of a smooth piece, 0 at the start of the beam, for a beam with corners, where its field has two
         directions but a basis only one.
-
-    Returns
-    -------
-    FieldOnBasis
-        The basis and the coefficients in each state.
-
-    Raises
-    ------
-    InputError
-        For a beam with corners without a piece, and for knot spans as elements.
 
     References
     ----------

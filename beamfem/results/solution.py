@@ -390,22 +390,13 @@ class Solution:
         force follows from equilibrium of the nodes on the side of `b` with their elements, inertia, loads, supports and
         connectors; a hinge transmits no moment. For connectors with two points, such as `Link`, `Slider`, `Weld` and
         `Gear`, it is the force on the second point, for a `Motor` its torque. A `Cable` or `SpringDamper` that ends on
-        the ground pulls there; tension is the length of the force.
+        the ground pulls there; tension is the length of the force. Raises InputError for anything else, and if further
+        joints connect the same points.
 
         Parameters
         ----------
         joint : Joint, Contribution or Motor
             One of `model.joints`, a connector with two points, or a motor.
-
-        Returns
-        -------
-        array, [N, N, N m], (steps, 3)
-            Force and moment about the point.
-
-        Raises
-        ------
-        InputError
-            For anything else, and if further joints connect the same points.
 
         Examples
         --------

@@ -77,7 +77,8 @@ class _Elastic:
 class ElasticPlastic(_Elastic):
     """Yields at a stress, with linear kinematic hardening: a bilinear stress-strain curve.
 
-    s = E (e - ep), |s - H ep| <= sy, integrated by return mapping (Simo and Hughes 1998, 1.4.3).
+    s = E (e - ep), |s - H ep| <= sy, integrated by return mapping (Simo and Hughes 1998, 1.4.3). Raises InputError for
+    an invalid value.
 
     Parameters
     ----------
@@ -91,11 +92,6 @@ class ElasticPlastic(_Elastic):
         Density.
     hardening : float, [Pa], default 0
         Hardening modulus H >= 0 by plastic strain; beyond yield the slope is E H / (E + H).
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
 
     Examples
     --------
@@ -147,6 +143,8 @@ class ElasticPlastic(_Elastic):
 class RambergOsgood(_Elastic):
     """A smooth stress-strain curve without history: e = s / E + 0.002 (s / s0)^n.
 
+    Raises InputError for an invalid value.
+
     Parameters
     ----------
     youngs_modulus : float, [Pa]
@@ -159,11 +157,6 @@ class RambergOsgood(_Elastic):
         Poisson's ratio, for the elastic shear stiffness.
     density : float, [kg/m^3]
         Density.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
 
     Examples
     --------
@@ -217,7 +210,8 @@ class Maxwell(_Elastic):
     """A spring beside Maxwell elements: a stress that relaxes by a Prony series.
 
     s = E (1 - sum g_i) e + sum g_i E (e - a_i), t_i da_i/dt = e - a_i, integrated exactly for a strain that is linear
-    in time within a step. Time passes in motions only; a static solve is that of the sudden load, with E.
+    in time within a step. Time passes in motions only; a static solve is that of the sudden load, with E. Raises
+    InputError for an invalid value, or shares that sum to more than 1.
 
     Parameters
     ----------
@@ -229,11 +223,6 @@ class Maxwell(_Elastic):
         Poisson's ratio, for the shear stiffness, which does not relax.
     density : float, [kg/m^3]
         Density.
-
-    Raises
-    ------
-    InputError
-        For an invalid value, or shares that sum to more than 1.
 
     Examples
     --------

@@ -132,7 +132,8 @@ def Fibres(
     """Return a section whose normal force and moment are sums over fibres, each with the stress of a law at its strain.
 
     N = sum A_i s(e_i), M = - sum A_i y_i s(e_i), with e_i = stretch - y_i curvature; shear stays elastic. A beam with
-    this section needs no material, but `Structural` forces.
+    this section needs no material, but `Structural` forces. Raises InputError for a shape without outline, an object
+    that is no law, or less than 2 points.
 
     Parameters
     ----------
@@ -143,16 +144,6 @@ def Fibres(
     points : int, default 20
         Number of fibres over the height, at the points of Gauss's rule; of a tube, twice as
         many along its wall.
-
-    Returns
-    -------
-    section
-        The section.
-
-    Raises
-    ------
-    InputError
-        For a shape without outline, an object that is no law, or less than 2 points.
 
     Examples
     --------

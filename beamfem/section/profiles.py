@@ -20,8 +20,8 @@ def Profile(name: str, weak: bool = False, millimetre: float = 1e-3) -> ShapedSe
     There are "IPE 80" to "IPE 600", "HEA 100" and "HEB 100" to 1000, "UPN 80" to "UPN 400" and angles such as
     "L 100x100x10" or "L 100x50x8"; square, rectangular and circular hollow sections have any size, "SHS 100x5",
     "RHS 120x80x5" (sides and wall) and "CHS 114.3x5", hot-finished or, as in "SHS 100x5 cold", cold-formed.
-    Its shear factor is that of `Polygon`.
-    A channel or an angle bends in the plane as if held against lateral motion and twist.
+    Its shear factor is that of `Polygon`. A channel or an angle bends in the plane as if held against lateral motion
+    and twist. Raises InputError for a name that the standards do not have.
 
     Parameters
     ----------
@@ -33,16 +33,6 @@ def Profile(name: str, weak: bool = False, millimetre: float = 1e-3) -> ShapedSe
         the lower face.
     millimetre : float, [m], default 1e-3
         A millimetre, the unit of the names, in the unit of length of the model.
-
-    Returns
-    -------
-    section
-        The section.
-
-    Raises
-    ------
-    InputError
-        For a name that the standards do not have.
 
     Source: EN 10365 (IPE, HE, UPN), EN 10056-1 (L), EN 10210-2 (hot-finished), EN 10219-2 (cold-formed).
 

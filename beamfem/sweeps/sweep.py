@@ -300,11 +300,6 @@ def sweep(
         Arguments of the function. Lists, tuples, ranges and one-dimensional arrays are varied; everything else is
         passed on unchanged.
 
-    Returns
-    -------
-    Sweep
-        One row per point, the last parameter varying fastest.
-
     Raises
     ------
     InputError

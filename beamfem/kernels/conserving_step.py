@@ -224,12 +224,8 @@ def add_turning(own: Conserving) -> None:
         i, o = n + 2 * (own.angle_count + j), n + 2 * own.angle_of[j]
         number, other, places = own.equations[2 * i], own.equations[2 * i + 1], at(own.stretch_places, 2 * j)
         m, force, y, wy = at(own.lost, i), at(own.force, i), at(own.vectors, 2 * size + i), at(own.rates, 2 * size + i)
-        u, w, u1, w1 = (
-            at(own.vectors, 2 * size + o),
-            at(own.rates, 2 * size + o),
-            at(own.vectors, size + o),
-            at(own.rates, size + o),
-        )
+        u, w = at(own.vectors, 2 * size + o), at(own.rates, 2 * size + o)
+        u1, w1 = at(own.vectors, size + o), at(own.rates, size + o)
         y1, wy1 = at(own.vectors, size + i), at(own.rates, size + i)
         square, turn = _dot(u, u), _across(u, w)
         multiplier, skew = -_across(u, m) / square, -_across(u, y) / square

@@ -54,10 +54,8 @@ def add_elements(group: Group, system: System) -> None:
             call.strains(count, q)
             if given(group.natural):
                 call.release(first, count, group.points, number, measures, group.natural, q)
-            c, reference = (
-                at(t, (group.stiffness + number * pairs) * ROW),
-                at(t, (group.reference + number * measures) * ROW),
-            )
+            c = at(t, (group.stiffness + number * pairs) * ROW)
+            reference = at(t, (group.reference + number * measures) * ROW)
             call.law(group, system, first, number, count, 1 if stiff else 0, weight, c, reference, q)
             if damped:
                 rate, velocity = at(q, RATE * ROW), at(nodal, group.velocity * ROW)

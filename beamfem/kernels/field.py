@@ -21,11 +21,8 @@ def interpolate(nodes, vectors, bends, count, stride, slope, second, director, e
     for i in range(0, count, WIDTH):
         rx, ry, dx, dy, third_x, third_y = zeros(), zeros(), zeros(), zeros(), zeros(), zeros()
         for n in range(nodes):
-            nodal, table, curved = (
-                at(e, n * stride + i),
-                at(slope, n * vectors * ROW + i),
-                at(second, n * vectors * ROW + i),
-            )
+            nodal, table = at(e, n * stride + i), at(slope, n * vectors * ROW + i)
+            curved = at(second, n * vectors * ROW + i)
             for s in range(last):
                 x, y, w = nodal[2 * s * ROW], nodal[(2 * s + 1) * ROW], table[s * ROW]
                 rx, ry = rx + w * x, ry + w * y
@@ -50,11 +47,8 @@ def distribute(nodes, vectors, bends, count, slope, second, director, q, f):
         rx, ry, dx, dy = q[i], q[ROW + i], q[2 * ROW + i], q[3 * ROW + i]
         third_x, third_y = q[4 * ROW + i], q[5 * ROW + i]
         for n in range(nodes):
-            force, table, curved = (
-                at(f, 2 * n * vectors * ROW + i),
-                at(slope, n * vectors * ROW + i),
-                at(second, n * vectors * ROW + i),
-            )
+            force, table = at(f, 2 * n * vectors * ROW + i), at(slope, n * vectors * ROW + i)
+            curved = at(second, n * vectors * ROW + i)
             for s in range(last):
                 w = table[s * ROW]
                 x, y = force[2 * s * ROW] + w * rx, force[(2 * s + 1) * ROW] + w * ry

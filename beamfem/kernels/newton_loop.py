@@ -129,13 +129,8 @@ def iterate(system: System, solver: NewtonSolver) -> int:
     call = solver.routines
     n, unknown, half, rollers = system.size, solver.unknown, solver.half, solver.rollers
     free, first_of, normal = solver.free_dofs, solver.roller_first, solver.roller_normal
-    rows, right, step, scale, inverse_scale = (
-        solver.rows,
-        solver.right,
-        solver.step,
-        solver.scale,
-        solver.inverse_scale,
-    )
+    rows, right, step = solver.rows, solver.right, solver.step
+    scale, inverse_scale = solver.scale, solver.inverse_scale
     prescribed_step, prescribed_force = solver.prescribed_step, solver.prescribed_force
     linear, in_a_row, reach, border = solver.linear, solver.first_free, solver.reach, solver.border
     residual, p, groups = system.residual, system.p, system.groups

@@ -13,7 +13,7 @@ from beamfem.kernels.pointers import at, small_code
 from beamfem.kernels.record import System
 from beamfem.kernels.simd import WIDTH, as_rows, larger, largest, zeros
 from beamfem.kernels.stage_record import Stages
-from beamfem.kernels.time_loop import load_row
+from beamfem.kernels.time_loop import load_row, save_end
 
 _ITERATIONS = 15
 _SLOW = 0.8  # rate of convergence above which an iteration is given up
@@ -58,11 +58,8 @@ def predict(system: System, solver: MotionSolver, stages: Stages, step: int, att
             a[i * stride + k] = total
     if attempt < 2:
         for number in range(solver.conditions):
-            own, changes, start = (
-                at(stages.a, solver.multipliers[number]),
-                stages.planes,
-                begin[solver.multipliers[number]],
-            )
+            own, start = at(stages.a, solver.multipliers[number]), begin[solver.multipliers[number]]
+            changes = stages.planes
             for i in range(s):
                 changes[i] = own[i * stride] - start
             for i in range(s):
@@ -235,14 +232,8 @@ def correct(solver: MotionSolver, stages: Stages) -> float:
 def accelerate(system: System, solver: MotionSolver, stages: Stages) -> None:
     """Set p'' in the state reached to that of the equations; it has that of prescribed coordinates, and else zeros."""
     small_code()
-    n, unknown, free, state, right, rows = (
-        solver.size,
-        solver.unknown,
-        solver.free_dofs,
-        solver.state,
-        stages.right,
-        solver.rows,
-    )
+    n, unknown, free, state = solver.size, solver.unknown, solver.free_dofs, solver.state
+    right, rows = stages.right, solver.rows
     system.p, system.v, system.a, system.matrix = state, at(state, n), at(state, 2 * n), rows
     system.weight_p, system.weight_v, system.weight_a, system.since_committed = 0.0, 0.0, 1.0, stages.elapsed
     system.tangent, solver.rotations_wanted = 1, 0
@@ -351,17 +342,9 @@ def start_step(solver, stages):
 
 @inlined
 def end_step(solver, stages, step):
-    """Count rotations in the step, and save its end if it is wanted."""
-    n, state, every, count = solver.size, solver.state, solver.every, solver.rotation_count
+    """Save the end of a step, whose accelerations are known from now on."""
     stages.known = 1
-    solver.routines.count_rotations(count, solver.rotation_table, solver.before, state, solver.rotated_by)
-    if (solver.first_step + step) % every == 0:
-        row = (solver.first_step + step) // every
-        to = at(solver.saved, 3 * n * row)
-        for k in range(3 * n):
-            to[k] = state[k]
-        for k in range(count):
-            solver.saved_rotations[row * count + k] = solver.rotated_by[k]
+    save_end(solver, step)
 
 
 @inlined

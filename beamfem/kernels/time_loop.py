@@ -46,6 +46,20 @@ def load_row(system, solver, row):
             group.natural = at(group.natural_of_steps, row * strains)
 
 
+@inlined
+def save_end(solver, step):
+    """Count rotations in a step, and save its end if it is wanted."""
+    n, state, count = solver.size, solver.state, solver.rotation_count
+    solver.routines.count_rotations(count, solver.rotation_table, solver.before, state, solver.rotated_by)
+    if (solver.first_step + step) % solver.every == 0:
+        row = (solver.first_step + step) // solver.every
+        to = at(solver.saved, 3 * n * row)
+        for k in range(3 * n):
+            to[k] = state[k]
+        for k in range(count):
+            solver.saved_rotations[row * count + k] = solver.rotated_by[k]
+
+
 @routine()
 def march(system: System, solver: MotionSolver) -> int:
     """March through `steps` steps from `state`, advanced in place; return how many were completed.
@@ -60,7 +74,7 @@ def march(system: System, solver: MotionSolver) -> int:
     """
     small_code()
     call = solver.routines
-    n, state, before, every = system.size, solver.state, solver.before, solver.every
+    n, state, before = system.size, solver.state, solver.before
     rule, limits, statistics = solver.rule, solver.limits, solver.statistics
     for step in range(solver.steps):
         load_row(system, solver, step)
@@ -138,12 +152,5 @@ def march(system: System, solver: MotionSolver) -> int:
                 parts = system.parts[kind]
                 if parts.history_size > 0:
                     parts.commit(parts, system)
-        call.count_rotations(solver.rotation_count, solver.rotation_table, before, state, solver.rotated_by)
-        if (solver.first_step + step) % every == 0:
-            row = (solver.first_step + step) // every
-            to = at(solver.saved, 3 * n * row)
-            for i in range(3 * n):
-                to[i] = state[i]
-            for i in range(solver.rotation_count):
-                solver.saved_rotations[row * solver.rotation_count + i] = solver.rotated_by[i]
+        save_end(solver, step)
     return solver.steps

@@ -21,7 +21,8 @@ def Profile(name: str, weak: bool = False, millimetre: float = 1e-3) -> ShapedSe
     "L 100x100x10" or "L 100x50x8"; square, rectangular and circular hollow sections have any size, "SHS 100x5",
     "RHS 120x80x5" (sides and wall) and "CHS 114.3x5", hot-finished or, as in "SHS 100x5 cold", cold-formed.
     Its shear factor is that of `Polygon`. A channel or an angle bends in the plane as if held against lateral motion
-    and twist. Raises InputError for a name that the standards do not have.
+    and twist. Raises InputError for a name that the standards do not have. Source: EN 10365 (IPE, HE, UPN),
+    EN 10056-1 (L), EN 10210-2 (hot-finished), EN 10219-2 (cold-formed).
 
     Parameters
     ----------
@@ -33,8 +34,6 @@ def Profile(name: str, weak: bool = False, millimetre: float = 1e-3) -> ShapedSe
         the lower face.
     millimetre : float, [m], default 1e-3
         A millimetre, the unit of the names, in the unit of length of the model.
-
-    Source: EN 10365 (IPE, HE, UPN), EN 10056-1 (L), EN 10210-2 (hot-finished), EN 10219-2 (cold-formed).
 
     Examples
     --------

@@ -115,8 +115,7 @@ class Until:
         return value < self.below if self.below is not None else value > (self.above or 0.0)
 
 
-def _until(value: Any, names: Names) -> Any:
-    return build(Until, value, names) if isinstance(value, dict) else finite("until", value)
+_until = reader(lambda item, names: build(Until, item, names) if isinstance(item, dict) else finite("until", item))
 
 
 def _analysis(kind: str, *sources: Callable[..., Any], **hints: Any) -> Keyed:
@@ -128,7 +127,7 @@ def _analysis(kind: str, *sources: Callable[..., Any], **hints: Any) -> Keyed:
 
 ANALYSES: Kinds = {
     "static": _analysis("static", solve_static),
-    "path": _analysis("path", trace_equilibrium, start=None, until=reader(_until)),
+    "path": _analysis("path", trace_equilibrium, start=None, until=_until),
     "buckling": _analysis("buckling", solve_buckling, Buckling.solution, about=reader(_start), mode=int),
     "modes": _analysis("modes", solve_modes, Modes.solution, about=reader(_start), mode=int),
     "dynamics": _analysis("dynamics", simulate, integrator=None, file=None, start=reader(_start), rho_inf=float),

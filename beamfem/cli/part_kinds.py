@@ -46,14 +46,11 @@ def _along(make: Callable[..., Any]) -> Callable[..., Any]:
     return Keyed(made, {key: (varying.get(hint, hint), default) for key, (hint, default) in keys_of(make).items()})
 
 
-def _kind_of(make: Callable[..., Any]) -> str:
-    """Return a name in lower case with hyphens, without Point before it, and Load or Mechanics after it."""
-    name = make.__name__.removeprefix("Point").removesuffix("Load").removesuffix("Mechanics")
-    return re.sub(r"(?<=[a-z])(?=[A-Z])", "-", name.replace("_", "-")).lower()
-
-
 def _by_kind(*made: Callable[..., Any]) -> dict[str, Callable[..., Any]]:
-    return {_kind_of(make): make for make in made}
+    """Return parts by their names in lower case with hyphens, without Point before and Load or Mechanics after them."""
+    names = [make.__name__.removeprefix("Point").removesuffix("Load").removesuffix("Mechanics") for make in made]
+    kinds = [re.sub(r"(?<=[a-z])(?=[A-Z])", "-", name.replace("_", "-")).lower() for name in names]
+    return dict(zip(kinds, made, strict=True))
 
 
 CURVES: Kinds = {

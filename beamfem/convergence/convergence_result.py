@@ -18,6 +18,7 @@ from beamfem.results.solution import Solution
 from beamfem.sweeps.workers import Failure
 from beamfem.validation import flag, require_known, shown
 from beamfem.view.html_page import Entry, Part, Table, write_page
+from beamfem.view.labels import note_beside
 from beamfem.view.notebook_paths import file_to_write
 from beamfem.view.plots import COLOURS, MARKERS, new_figure, save_figure
 
@@ -285,12 +286,4 @@ def _triangle(axes: Any, curve: Curve, colour: str) -> None:
     top = curve.error[fit.last - 1] * ratio**0.25 / 2.0
     bottom = top * ratio**0.5
     axes.fill([a, b, a], [top, bottom, bottom], facecolor=colour, alpha=0.25, edgecolor=colour, linewidth=0.8)
-    axes.annotate(
-        f"{fit.order:.1f}",
-        (a, np.sqrt(top * bottom)),
-        (-3, 0),
-        textcoords="offset points",
-        ha="right",
-        va="center",
-        fontsize=8,
-    )
+    note_beside(axes, f"{fit.order:.1f}", (a, np.sqrt(top * bottom)), (-3, 0), ha="right", fontsize=8)

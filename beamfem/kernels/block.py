@@ -110,10 +110,6 @@ class Block(NamedTuple):
     imposed: Imposed | None = None  # stress-free strains imposed by loads, added to `reference`
     history: np.ndarray = NO_HISTORY  # (ne, nl, k) numbers of the coordinates that store history variables of the law
 
-    def history_of(self, elements: slice | np.ndarray) -> np.ndarray:
-        """Return the numbers of the history variables of some elements."""
-        return self.history[elements] if self.history.size else self.history
-
     def resisting(self, stiffness: np.ndarray) -> "Block":
         """Return the block with a linear law of given stiffness (nc, nq, ns, ns)."""
         return self._replace(stiffness=np.ascontiguousarray(stiffness), law=None)

@@ -24,9 +24,7 @@ from beamfem.kernels.compiler.value_types import (
     WIDTH,
     Kind,
     Signature,
-    address_of_function,
     addresses_of,
-    record_kind,
     side_by_side,
 )
 
@@ -198,7 +196,7 @@ class Record:
                 cls._defaults[name] = vars(cls)[name]
         for name, given in vars(cls).items():
             if isinstance(given, _Function):
-                fields[name] = _Address(name, len(fields), address_of_function(given.signature))
+                fields[name] = _Address(name, len(fields), Kind("function", WHOLE.llvm, signature=given.signature))
         if taken := [name for name in fields if hasattr(Record, name)]:
             raise TypeError(f"a record has its own {', '.join(taken)}")
         cls.called = {name: each for name, each in vars(cls).items() if isinstance(each, _Function)}
@@ -207,7 +205,9 @@ class Record:
             if isinstance(field, _Address):
                 field.link(fields)
         cls.fields = fields
-        cls.kind = record_kind(cls.__name__, {name: (field.place, field.kind) for name, field in fields.items()})
+        cls.kind = Kind(
+            cls.__name__, WHOLES.llvm, fields={name: (each.place, each.kind) for name, each in fields.items()}
+        )
 
     def __init__(self, **values: Any) -> None:
         self._hold(np.zeros(len(self.fields), dtype=np.int64))

@@ -310,7 +310,7 @@ def cut_free(rows: Rows, mesh: BeamMesh, elements: np.ndarray, parted: Parted, p
 
 def parted(block: Block, elements: np.ndarray) -> Parted:
     """Return elements of a block without shared nodes."""
-    nodes, history = block.node[elements], block.history_of(elements)
+    nodes, history = block.node[elements], block.history[elements] if block.history.size else block.history
     flat = nodes.ravel()
     dof = block.dof[flat]
     used = np.unique(np.concatenate([dof[dof >= 0], history.ravel()]))

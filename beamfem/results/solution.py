@@ -252,8 +252,10 @@ class Solution:
         """
         from beamfem.results.axis_fields import fields
 
-        points = AxisPoints.at(self.model.mesh_of(point), [point.fraction])
-        return postprocess.part_of(fields(points, self), (slice(None), 0))
+        return postprocess.part_of(fields(self._at(point), self), (slice(None), 0))
+
+    def _at(self, point: Point) -> AxisPoints:
+        return AxisPoints.at(self.model.mesh_of(point), [point.fraction])
 
     def error(self, quantity: "Callable[[Solution], Any] | Point | None" = None, row: int = -1) -> Any:
         """Return an estimate of the discretisation error of a result: its change with a much finer mesh.
@@ -338,18 +340,15 @@ class Solution:
 
     def velocity(self, point: Point) -> np.ndarray:
         """Return the velocity (vx, vy) of a point (steps, 2) [m/s]."""
-        points = AxisPoints.at(self.model.mesh_of(point), [point.fraction])
-        return points.velocities(self.p, self.v)[:, 0]
+        return self._at(point).velocities(self.p, self.v)[:, 0]
 
     def acceleration(self, point: Point) -> np.ndarray:
         """Return the acceleration (ax, ay) of a point (steps, 2) [m/s^2]; in a rotating frame relative to it."""
-        points = AxisPoints.at(self.model.mesh_of(point), [point.fraction])
-        return points.accelerations(self.p, self.v, self.a)[:, 0]
+        return self._at(point).accelerations(self.p, self.v, self.a)[:, 0]
 
     def angular_velocity(self, point: Point) -> np.ndarray:
         """Return the angular velocity of the section (steps,) [rad/s]."""
-        points = AxisPoints.at(self.model.mesh_of(point), [point.fraction])
-        return points.angular_velocities(self.p, self.v)[:, 0]
+        return self._at(point).angular_velocities(self.p, self.v)[:, 0]
 
     def rotation(self, point: Point) -> np.ndarray:
         """Return the rotation of the section (steps,) [rad], counter-clockwise positive, full turns included."""
@@ -358,7 +357,7 @@ class Solution:
         mesh = self.model.mesh_of(point)
         if (node := mesh.node_near(point.fraction)) is not None and has_angles(mesh):
             return nodal_angles(mesh, self.p, np.array([node]))[:, 0]
-        return rotation(AxisPoints.at(mesh, [point.fraction]), self)[:, 0]
+        return rotation(self._at(point), self)[:, 0]
 
     def reaction(self, point: Point) -> np.ndarray:
         """Return fx, fy [N] and m [N m] of supports and springs on the beam at a point (steps, 3).
@@ -494,14 +493,12 @@ class Solution:
         """Return normal and shear force [N] and moment [N m] along a beam. Raises InputError for another beam."""
         from beamfem.results.section_forces import section_forces
 
-        self.model.number_of(beam)  # rejects beams of other models
         return section_forces(self, beam)
 
     def stresses(self, beam: Beam) -> "BeamStress":
         """Return the extreme stresses of the sections along a beam. Raises InputError for a beam of another model."""
         from beamfem.results.beam_stress import beam_stress
 
-        self.model.number_of(beam)
         return beam_stress(self, beam)
 
     def peak_stress(self, part: "Part" = "von_mises") -> "Peak":

@@ -70,18 +70,14 @@ def write_labels(
         named.append((text, at))
         offset = best[0] - at
         away = np.any(np.abs(offset) > half + _APART[0] + 1.0)
-        axes.annotate(
-            text,
-            point,
-            offset,
-            textcoords="offset points",
-            ha="center",
-            va="center",
-            fontsize=_SIZE,
-            color=colour,
-            zorder=4,
-            arrowprops={"arrowstyle": "-", "color": "0.5", "linewidth": 0.6, "shrinkB": 4.0} if away else None,
-        ).set_in_layout(False)
+        arrow = {"arrowstyle": "-", "color": "0.5", "linewidth": 0.6, "shrinkB": 4.0} if away else None
+        look = {"fontsize": _SIZE, "color": colour, "zorder": 4, "arrowprops": arrow}
+        note_beside(axes, text, point, offset, **look).set_in_layout(False)
+
+
+def note_beside(axes: Any, text: str, at: Any, offset: Any, **look: Any) -> Any:
+    """Write a text whose middle is `offset` (2,) [points of print] away from a point; return the artist."""
+    return axes.annotate(text, at, offset, **{"textcoords": "offset points", "ha": "center", "va": "center"} | look)
 
 
 def _covered(box: np.ndarray, others: np.ndarray) -> int:

@@ -16,6 +16,7 @@ from beamfem.results.full_turns import StationsOfRows
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
 from beamfem.view import symbols
+from beamfem.view.labels import note_beside
 from beamfem.view.support_symbols import Stamps
 
 
@@ -124,17 +125,9 @@ def _imposed(axes: Any, items: list[tuple[Strains, Solution]]) -> Any:
         lines = len(words) if sideways else 1
         beside[id(beam)] = before + lines
         offset = _APART * outward - [0.0, before * _APART] if sideways else (before + 1) * _APART * outward
-        note = axes.annotate(
-            ("\n" if sideways else " ").join(words),
-            at,
-            offset,
-            textcoords="offset points",
-            color=FORCE,
-            fontsize=8.0,
-            ha="left" if outward[0] > _SLOPED else "right" if outward[0] < -_SLOPED else "center",
-            va="top" if sideways else "center",
-            zorder=5.0,
-        )
+        side = "left" if outward[0] > _SLOPED else "right" if outward[0] < -_SLOPED else "center"
+        look = {"color": FORCE, "fontsize": 8.0, "zorder": 5.0, "ha": side, "va": "top" if sideways else "center"}
+        note = note_beside(axes, ("\n" if sideways else " ").join(words), at, offset, **look)
         _move_inside(note, axes)
         yield note
 
@@ -234,16 +227,5 @@ def _gravity(axes: Any, vector: np.ndarray) -> list[Any]:
     at, ahead = np.array([0.955, 0.9]), vector / np.linalg.norm(vector)
     arrow = _arrows(axes, at[None], 26.0 * ahead[None], "mid", transform=axes.transAxes)
     offset = -9.0 * np.abs(across(ahead))
-    name = axes.annotate(
-        "g",
-        at,
-        offset,
-        xycoords="axes fraction",
-        textcoords="offset points",
-        ha="center",
-        va="center",
-        color=FORCE,
-        fontstyle="italic",
-        zorder=5.0,
-    )
-    return [arrow, name]
+    look = {"color": FORCE, "fontstyle": "italic", "zorder": 5.0}
+    return [arrow, note_beside(axes, "g", at, offset, xycoords="axes fraction", **look)]

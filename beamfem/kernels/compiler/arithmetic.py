@@ -129,10 +129,6 @@ def _of_llvm(name: str) -> Callable[..., Value]:
     return call
 
 
-def _arctangent(build: Build, y: Value, x: Value) -> Value:
-    return build.call("atan2", *(Value(NUMBER, build.converted(each, NUMBER)) for each in (y, x)))
-
-
 # by function of Python
 FUNCTIONS: dict[Any, Callable[..., Value]] = {
     min: _extreme(ast.Lt()),
@@ -141,5 +137,5 @@ FUNCTIONS: dict[Any, Callable[..., Value]] = {
     int: _whole,
     math.sqrt: _of_llvm("sqrt"),
     np.floor: _of_llvm("floor"),
-    math.atan2: _arctangent,
+    math.atan2: lambda build, y, x: build.call("atan2", *(Value(NUMBER, build.converted(v, NUMBER)) for v in (y, x))),
 }

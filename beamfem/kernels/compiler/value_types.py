@@ -17,8 +17,8 @@ class Kind:
 
     name: used in error messages; llvm: type in LLVM; rank: in an operation with a value of higher rank, values are
     converted to that kind, -1 for pointers; entry: kind of the entries of a pointer, whose type in memory is `stored`,
-    or None if the entries are records side by side; fields: place and kind by name, of a pointer to a record;
-    signature: of the address of a function.
+    or None if the entries are records side by side; fields: place, in slots of 8 bytes, and kind by name, of a pointer
+    to a record; signature: of the address of a function, asked for when it is called.
     """
 
     name: str
@@ -72,11 +72,6 @@ SLOTS = Kind("pointer to 32-bit whole numbers", ir.IntType(32).as_pointer(), ent
 NOTHING = Kind("None", _INTEGER.as_pointer())
 
 
-def record_kind(name: str, fields: dict[str, tuple[int, Kind]]) -> Kind:
-    """Return the kind of pointers to records with these fields, whose places count slots of 8 bytes."""
-    return Kind(name, _INTEGER.as_pointer(), fields=fields)
-
-
 @cache
 def addresses_of(entry: Kind) -> Kind:
     """Return the kind of pointers to a table of addresses."""
@@ -87,11 +82,6 @@ def addresses_of(entry: Kind) -> Kind:
 def side_by_side(entry: Kind) -> Kind:
     """Return the kind of pointers to records side by side."""
     return Kind(f"pointer to several {entry.name}", _INTEGER.as_pointer(), entry=entry)
-
-
-def address_of_function(signature: Callable[[], Signature]) -> Kind:
-    """Return the kind of addresses of functions, whose signature is asked for when one is called."""
-    return Kind("function", _INTEGER, signature=signature)
 
 
 # Kinds of arguments by letter.

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from beamfem.kernels.record import Border, Solver
+from beamfem.kernels.record import Solver
 from beamfem.kernels.records import Reals, Record, Several, Wholes, calls
 
 
@@ -124,8 +124,6 @@ class MotionSolver(Solver):
     body_size: int
     bodies: Reals  # (steps or 1, beams, 4)
 
-    bordered: int  # whether the band has a border
-    border: Border
     conditions: int  # number k of multipliers, which follow the unknowns of the band
     multipliers: Wholes  # (k,): their coordinates
 

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from beamfem.kernels.compiling import FAST, inlined, routine
 from beamfem.kernels.pointers import at
-from beamfem.kernels.record import Border, Solver, System
+from beamfem.kernels.record import Solver, System
 from beamfem.kernels.records import Reals, Record, calls
 from beamfem.kernels.simd import WIDTH, as_rows, larger, largest, zeros
 
@@ -34,8 +34,6 @@ class NewtonSolver(Solver):
     prescribed_step: Annotated[Reals, "size"]
     prescribed_force: Annotated[Reals, "size"]
     linear: Annotated[Reals, "size"]
-    bordered: int  # whether the band has a border
-    border: Border
 
     # limits
     tolerance: float  # of a correction

@@ -10,9 +10,16 @@ from beamfem.kernels.simd import WIDTH, as_rows
 
 
 @inlined
-def _of_run(run):
-    """Return the kind of the nodes of a run, the first node and the end."""
-    return run.node_kind, run.first, run.first + run.length
+def _of_run(run, size):
+    """Return the kind of the nodes of a run, first node and end, numbers of linear and of polar coordinates."""
+    kind, linear, polar = run.node_kind, size, 1
+    if kind == ROTATION:
+        linear = size - 2
+    elif kind in (STRETCH, SHEAR_RIGID):
+        linear = size - 4
+    if kind == STRETCH:
+        polar = 2
+    return kind, run.first, run.first + run.length, linear, polar
 
 
 @routine()
@@ -34,13 +41,7 @@ def place_nodes(group: Group, system: System, moving: int) -> None:
     dependent, parameters = group.dependent, group.parameters
     force_rows = 2 * group.vectors if system.predicted == 0 else group.predicted_force + 2 * group.vectors - group.force
     for run in range(group.run_count):
-        kind, first, end = _of_run(runs[run])
-        linear = size
-        if kind == ROTATION:
-            linear = size - 2
-        elif kind in (STRETCH, SHEAR_RIGID):
-            linear = size - 4
-        polar = 2 if kind == STRETCH else 1
+        kind, first, end, linear, polar = _of_run(runs[run], size)
         while first < end:
             lane = first % LANES
             count = min(LANES - lane, end - first)
@@ -109,11 +110,9 @@ def finish_nodes(group: Group, system: System) -> None:
     if system.tangent == 0 or system.weight_p == 0.0:
         return
     for run in range(group.run_count):
-        kind, first, end = _of_run(runs[run])
+        kind, first, end, linear, polar = _of_run(runs[run], size)
         if kind in (GRADIENTS, ROTATED_GRADIENTS):
             continue
-        linear = size - 2 if kind == ROTATION else size - 4
-        polar = 2 if kind == STRETCH else 1
         while first < end:
             lane = first % LANES
             count = min(LANES - lane, end - first)

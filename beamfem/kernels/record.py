@@ -274,3 +274,5 @@ class Solver(Record):
     scale: Annotated[Reals, "size"]
     inverse_scale: Reals  # (n,), for motions padded
     reach: Slots  # (2, unknown): see `band.elimination`, downwards and backwards
+    bordered: int  # whether the band has a border
+    border: Border

@@ -36,6 +36,7 @@ _WANTED_ITERATIONS = 8
 # Of the longest step: in a shorter one a change of the pivots of an unsymmetric tangent by an even number is taken for
 # one that keeps the determinant away from zero, as two pivots can change their signs together.
 _PAIR = 1.0 / 64.0
+_MANY = 1.0 / 256.0  # of the longest step: in a shorter one, modes that soften together are all located
 _LARGEST_INCREASE = 4.0
 # Not a half: of a step that is refused as it ends where paths cross, two halves end there again, and so on towards it.
 _CUT = 0.6
@@ -138,12 +139,18 @@ def longest_accepted(
 
 
 def take_step(
-    line: Continuation, point: PathPoint, size: float, to: float | None = None, strict: bool = True
+    line: Continuation,
+    point: PathPoint,
+    size: float,
+    to: float | None = None,
+    strict: bool = True,
+    sought: float = np.inf,
 ) -> Step | Refused:
     """Return the step of a given length from a point with its critical points, or the reason of its rejection.
 
     to: load factor at the end of the step, if it is given; strict: whether to refuse a step whose iteration passed
-    states with other counts of negative pivots than its ends.
+    states with other counts of negative pivots than its ends; sought: number of critical points, of which a long step
+    is to pass no more.
     """
     smooth = point
     if size < _KINK:
@@ -171,6 +178,8 @@ def take_step(
     hidden = not line.system.symmetric and change_of_pivots != 0 and change_of_pivots % 2 == 0
     if hidden and size > _PAIR * longest_step(line, point):
         return Refused("the tangent may be singular at an even number of points within the step", corrected.iterations)
+    if abs(change_of_pivots) > sought and size > _MANY * longest_step(line, point):
+        return Refused("the step passes more critical points than are sought", corrected.iterations)
     if strict and _crosses_over(line, (point, new), corrected):
         return Refused("another path lies between the start and the end of the step", corrected.iterations, True)
     turn = float(np.arccos(min(line.dot(new.tangent, point.tangent), 1.0)))

@@ -406,7 +406,7 @@ class _LoadingPath:
         """Return the longest accepted step from a point with its critical points, or why the last one was refused."""
 
         def attempt(point: PathPoint, size: float) -> tuple[Step, list[_Critical]] | Refused:
-            outcome = take_step(self.line, point, size, strict=False)
+            outcome = take_step(self.line, point, size, strict=False, sought=self.count - len(self.criticals))
             if isinstance(outcome, Refused):
                 return outcome
             try:

@@ -1,5 +1,6 @@
 """An axis along a B-spline, rational (NURBS) or not."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -40,9 +41,9 @@ class BSpline(Curve):
     """
 
     degree: int
-    knots: tuple[float, ...]
-    control_points: tuple[tuple[float, float], ...]
-    weights: tuple[float, ...] | None = None
+    knots: Sequence[float] | np.ndarray
+    control_points: Sequence[Sequence[float]] | np.ndarray
+    weights: Sequence[float] | np.ndarray | None = None
 
     __repr__ = brief
 
@@ -95,7 +96,7 @@ class BSpline(Curve):
 
     def multiplicity(self, knot: float) -> int:
         """Return how many times a number occurs among the knots."""
-        return self.knots.count(float(knot))
+        return tuple(self.knots).count(float(knot))
 
     def evaluate(self, u: np.ndarray) -> np.ndarray:
         """Return the positions r(u) (n, 2) [m] at parameters (n,); beyond the ends, that of the nearer end.

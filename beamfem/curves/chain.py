@@ -1,6 +1,6 @@
 """An axis of several curves, each of which starts at the end of the previous one."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,7 +31,7 @@ class Chain(Curve):
     (3.0, (1.0,))
     """
 
-    curves: tuple[Curve, ...]
+    curves: Sequence[Curve]
 
     __repr__ = brief
 

@@ -1,6 +1,7 @@
 """Axes of straight lines and circular arcs."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -130,7 +131,7 @@ class Polyline(Curve):
     (1.0,)
     """
 
-    points: tuple[tuple[float, float], ...]
+    points: Sequence[Sequence[float]] | np.ndarray
 
     __repr__ = brief
 

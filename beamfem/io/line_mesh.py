@@ -59,10 +59,10 @@ class LineMesh:
     array([0., 0.])
     """
 
-    nodes: np.ndarray
-    cells: np.ndarray
-    member_sets: Mapping[str, np.ndarray]
-    point_sets: Mapping[str, np.ndarray]
+    nodes: Any
+    cells: Any
+    member_sets: Mapping[str, Any]
+    point_sets: Mapping[str, Any]
 
     __repr__ = brief
 

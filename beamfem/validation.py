@@ -243,10 +243,15 @@ def function_value(name: str, function: Callable[[float], float], at: float) -> 
 
 
 def called(name: str, function: Callable[..., Any], *arguments: Any) -> Any:
-    """Return what a user's function gives, or raise InputError naming it and the arguments where it raises."""
+    """Return what a user's function gives, or raise InputError naming it and the arguments where it raises.
+
+    A method of the package names what is wrong itself.
+    """
     try:
         return function(*arguments)
     except Exception as error:
+        if isinstance(error, InputError) and of_package(type(getattr(function, "__self__", None))):
+            raise
         listed = ", ".join(map(_argument, arguments))
         what = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
         raise InputError(f"{name}({listed}) cannot be computed: {what}") from error

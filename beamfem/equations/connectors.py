@@ -211,7 +211,10 @@ class Connectors:
         for item in self.items:
             p[item.dofs] = item.undeformed
         p[self.memory] = self.start
-        return self.tangents((p, zeros, zeros), 0.0, (1.0, 0.0, 0.0))
+        try:
+            return self.tangents((p, zeros, zeros), 0.0, (1.0, 0.0, 0.0))
+        except LinAlgError as error:
+            raise InputError(f"{error} in the reference: a number of it is too large or too small") from error
 
 
 def connectors_of(model: Model, static: bool) -> Connectors:

@@ -56,7 +56,8 @@ class Controller:
         signs = np.array([-1.0, 1.0])[-len(self.points) :]
         forces = np.zeros_like(at.q)
         state = np.array([signs @ at.q[:, 2], signs @ at.v[:, 2]])
-        forces[:, 2] = -signs * differentiated(lambda state: self._torque(at.time, *state.tolist()), state)
+        torque = differentiated(lambda state: self._torque(at.time, *state.tolist()), state, np.ones(2))
+        forces[:, 2] = -signs * torque
         return forces.ravel()
 
     def energy(self, at: At) -> tuple[float, float]:

@@ -64,7 +64,8 @@ class StateForce:
                 raise InputError(f"function of StateForce must return fx, fy and moment {shape}, got {forces.shape}")
             return forces
 
-        return -differentiated(acting, np.stack([at.q, at.v])).ravel()
+        size = max(point.beam.curve.length for point in self.points)
+        return -differentiated(acting, np.stack([at.q, at.v]), np.tile([size, size, 1.0], 2 * len(at.q))).ravel()
 
     def energy(self, at: At) -> tuple[float, float]:
         """Return no energies."""
@@ -78,12 +79,12 @@ class StateForce:
 _WIDTH = 1e-6  # of the differences
 
 
-def differentiated(function: Callable[[np.ndarray], Any], at: np.ndarray) -> Any:
-    """Return a function of real numbers (n,) at complex ones, with derivatives by central differences."""
+def differentiated(function: Callable[[np.ndarray], Any], at: np.ndarray, units: np.ndarray) -> Any:
+    """Return a function of real numbers (n,) at complex ones, with derivatives by differences in natural units (n,)."""
     real, moved = at.real.ravel(), at.imag.ravel()
     result = function(real)
     for number in np.flatnonzero(moved):
         step = np.zeros(len(real))
-        step[number] = _WIDTH * max(1.0, abs(real[number]))
+        step[number] = _WIDTH * max(units[number], abs(real[number]))
         result = result + 1j * moved[number] * (function(real + step) - function(real - step)) / (2.0 * step[number])
     return result

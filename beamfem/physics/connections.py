@@ -280,7 +280,7 @@ def _deepest(stiffness: Number, square: Number, depth: Number, deepest: Number, 
     return (deepest + deeper) * depth / (depth + _LEAST), lost
 
 
-_HAIR = 1e-9  # of a force or a depth
+_HAIR = 1e-10  # of a force or a depth
 _LEAST = 1e-300  # [m^2/s^2], so that |v| has a derivative at rest; also a depth that is none
 
 

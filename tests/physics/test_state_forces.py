@@ -68,3 +68,41 @@ def test_functions_of_other_arguments_and_results_are_refused():
     model = bf.Model([ROD], [CLAMP], connectors=[bf.StateForce(ROD.end, lambda time, q, v: 1.0)])
     with pytest.raises(bf.InputError, match=r"must return fx, fy and moment \(3,\), got \(\)"):
         bf.solve_static(model)
+
+
+@pytest.mark.parametrize("length", [1e-6, 1e-3, 1.0])
+def test_a_nonlinear_force_has_its_tangent_at_every_size_of_a_model(length):
+    """A magnet at 1/20 of the length, c / gap^2, in models from a micrometre on: differences are as small as these."""
+    axis, section = bf.Line((0, 0), (length, 0)), bf.Rectangle(0.01 * length, 0.01 * length)
+    rod, gap = bf.Beam(axis, 4, bf.CRBF(3), section, STEEL), 0.05 * length
+    strength = 0.2 * length**2 * gap**2
+
+    def pull(time, q, v):
+        return 0.0, strength / (gap - q[1]) ** 2, 0.0
+
+    model = bf.Model([rod], [bf.Clamp(rod.start)], connectors=[bf.StateForce(rod.end, pull)])
+    drawn = bf.solve_static(model)
+    rest = gap - drawn.displacement(rod.end)[-1, 1]
+    held = bf.Model([rod], [bf.Clamp(rod.start)], [bf.PointForce(rod.end, (0.0, strength / rest**2))])
+    own, other = (bf.linearise(each, about=about) for each, about in ((model, drawn), (held, bf.solve_static(held))))
+    tip = own.names.index("beam 0, node 12, r^y")
+    assert (other.stiffness - own.stiffness)[tip, tip] == pytest.approx(2.0 * strength / rest**3, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("part", "message"),
+    [
+        (bf.StateForce(ROD.end, lambda time, q, v: 1 / 0), "function of StateForce"),
+        (bf.Motor(ROD.end, torque=lambda time, angle, speed: 1 / 0), "torque of Motor"),
+    ],
+)
+def test_a_function_that_fails_is_named_with_its_own_arguments(part, message):
+    parts = {"loads": [part]} if isinstance(part, bf.Motor) else {"connectors": [part]}
+    with pytest.raises(bf.InputError, match=rf"^{message}\(0\.5, [^A]* cannot be computed: ZeroDivisionError"):
+        bf.solve_static(bf.Model([ROD], [CLAMP], **parts))
+
+
+def test_numbers_beyond_those_of_the_computer_are_refused_before_a_solve():
+    spring = bf.SpringDamper(ROD.end, (1.0, 1.0), 1e308)
+    with pytest.raises(bf.InputError, match="force of SpringDamper is not finite in the reference: a number of it is"):
+        bf.solve_static(bf.Model([ROD], [CLAMP], connectors=[spring]))

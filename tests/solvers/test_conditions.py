@@ -165,10 +165,11 @@ def test_redundant_conditions_are_named_with_the_parts_that_cause_them():
     with pytest.raises(bf.InputError) as caught:
         bf.solve_static(bf.Model([one, two, three], [*clamps, bf.Clamp(three.start)], connectors=[needed, *twice]))
     assert "connectors (HingeOfConditions at (0.5, 0.5) and (0.5, 0.5)) are redundant" in str(caught.value)
-    held = bf.Link(one.start, two.start)
-    for solve in (bf.solve_static, lambda model: bf.simulate(model, 0.01, 1e-3), bf.linearise):
+    held, push = bf.Link(one.start, two.start), [bf.PointForce(one.end, (0.0, -1.0), amplitude=lambda at: at)]
+    moving = (lambda model: bf.simulate(model, 0.01, 1e-3), bf.linearise, bf.solve_modes)
+    for solve in (bf.solve_static, bf.trace_equilibrium, bf.solve_buckling, *moving):
         with pytest.raises(bf.InputError) as caught:
-            solve(bf.Model([one, two], clamps, connectors=[needed, held]))
+            solve(bf.Model([one, two], clamps, push, connectors=[needed, held]))
         assert "connectors (Link at (0, 0) and (0.5, 0)) are redundant" in str(caught.value)
 
 

@@ -26,6 +26,7 @@ from beamfem.solve.accuracy.error_estimate import enriched, enriched_state, mode
 from beamfem.solve.modes.mode_stiffness import largest_translation, upright
 from beamfem.solve.modes.pencil import WRONG, Pencil, lowest_pairs
 from beamfem.solve.modes.rigid_modes import unresisted
+from beamfem.solve.start.mechanisms import require_independent
 from beamfem.solve.start.start_checks import refuse_dampers, require_equilibrium
 from beamfem.solve.start.start_state import resting_state
 from beamfem.tables import as_pandas
@@ -395,6 +396,7 @@ def _modes(model: Model, count: int, about: State | Solution | None) -> tuple[Mo
     unknown = len(system.free_dofs)
     if count > unknown:
         raise InputError(f"count is {count}, but this model has only {unknown} unknown coordinates")
+    require_independent(system, p)
     pencil = Pencil(system, p, load_factor)
     require_equilibrium(system, p, load_factor, "vibrate")
     if count > pencil.size:

@@ -25,7 +25,7 @@ from beamfem.solve.continuation.steps import Refused, Step, longest_accepted, lo
 from beamfem.solve.newton.newton import Newton, require_newton
 from beamfem.solve.paths.path_error import path_attempt
 from beamfem.solve.start.functions_of_time import SAME, Jump, functions_of_time, jumps_between, kinks_between
-from beamfem.solve.start.mechanisms import free_when_open, no_equilibrium_at_start, require_support
+from beamfem.solve.start.mechanisms import free_when_open, no_equilibrium_at_start, require_independent, require_support
 from beamfem.solve.start.start_checks import left_over, refuse_memory
 from beamfem.solve.statics.statics import first_equilibrium, nothing_acts
 from beamfem.validation import count, finite, function_of_one, optional, positive, shown
@@ -310,6 +310,7 @@ def _traced(
     refuse_memory(system, "trace_equilibrium")
     if nothing_acts(system):
         require_support(system)
+    require_independent(system, system.reference)
     if not len(system.free_dofs):
         raise InputError("the supports of this model prescribe all of its coordinates, so there is no path to follow")
     _require_load(system)

@@ -37,7 +37,7 @@ from beamfem.solve.stability.linearised import (
     size_of,
 )
 from beamfem.solve.stability.stability import stable_start
-from beamfem.solve.start.mechanisms import require_support
+from beamfem.solve.start.mechanisms import require_independent, require_support
 from beamfem.solve.start.start_checks import refuse_memory
 from beamfem.solve.start.start_state import last_state
 from beamfem.tables import as_pandas
@@ -301,6 +301,7 @@ def _buckling(model: Model, count: int, about: State | Solution | None) -> _Judg
     system = system_of(model, static=True)
     refuse_memory(system, "solve_buckling")
     require_support(system)
+    require_independent(system, system.reference)
     unknown = len(system.free_dofs)
     if count > unknown:
         raise InputError(f"count is {count}, but this model has only {unknown} unknown coordinates")

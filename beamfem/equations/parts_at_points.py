@@ -81,6 +81,26 @@ class Alike(NamedTuple):
         assert self.connection.potential is not None
         return np.asarray(self.connection.potential(points, self.data.T, (0.0, 0.0), ANALYTIC).sum(axis=-1))
 
+    def kinks(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Return the numbers (rows, k) whose positive parts forces contain, for its coordinates and rates (rows, n, u).
+
+        Forces have kinks where these change their sign. Parts with history or multipliers are left out.
+        """
+        own, found = self.connection, [np.empty((len(q), 0))]
+
+        def positive(x: np.ndarray) -> np.ndarray:
+            found.append(np.broadcast_to(x, q.shape[:2]))
+            return np.asarray(ANALYTIC.positive(x))
+
+        if not (own.memory or own.multipliers or self.alternatives > 1):
+            f = ANALYTIC._replace(positive=positive, rate=np.zeros_like)
+            places, rates = (own.split(np.moveaxis(x, -1, 0)) for x in (q, v))
+            if own.potential is not None:
+                own.potential(places, self.data.T, (0.0, 0.0), f)
+            if own.force is not None:
+                own.force(places, rates, self.data.T, f)
+        return np.concatenate(found, axis=1)
+
 
 def springs_to_ground(model: Model, unknowns: Unknowns, reference: np.ndarray) -> Alike:
     """Return the springs of supports, which are unstressed at the coordinates `reference` (n,)."""

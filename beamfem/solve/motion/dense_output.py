@@ -12,9 +12,26 @@ def between(system: System, times: np.ndarray, states: np.ndarray, at: np.ndarra
     fourth derivatives. Multipliers and history variables, which have no rates, are linear, and coordinates that
     supports prescribe have their values. smooth: whether p is of degree 5, with p'' of both ends too.
     """
+    step, share = _places(times, at)
+    result, p = interpolated(times, states, at, smooth), states[:, 0]
+    linear = np.concatenate([system.connectors.multipliers, system.history.numbers]).astype(np.int64)
+    result[:, 0, linear] = ((1.0 - share) * p[step] + share * p[step + 1])[:, linear]
+    result[:, 1:, linear] = 0.0
+    if any(callable(item.value) for item in system.prescribed):
+        result[:, 0, system.prescribed_dofs] = [system.prescribed_values(time) for time in at.tolist()]
+    return result
+
+
+def _places(times: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the steps (k,) in which times are, and their shares (k, 1) of these."""
     step = np.clip(np.searchsorted(times, at, side="left") - 1, 0, len(times) - 2)
+    return step, ((at - times[step]) / (times[step + 1] - times[step]))[:, None]
+
+
+def interpolated(times: np.ndarray, states: np.ndarray, at: np.ndarray, smooth: bool) -> np.ndarray:
+    """Return p, p' and p'' (k, 3, n) of coordinates with rates that are not prescribed, see `between`."""
+    step, share = _places(times, at)
     size = (times[step + 1] - times[step])[:, None]
-    share = (at[:, None] - times[step][:, None]) / size
     p, v, a = (states[:, k] for k in range(3))
     result = np.stack(
         [
@@ -29,11 +46,6 @@ def between(system: System, times: np.ndarray, states: np.ndarray, at: np.ndarra
         first = a[step] - 6.0 * change + (4.0 * v[step] + 2.0 * v[step + 1]) / size
         last = a[step + 1] + 6.0 * change - (2.0 * v[step] + 4.0 * v[step + 1]) / size
         result[:, 0] += 0.5 * size**2 * (share * share_left) ** 2 * (share_left * first + share * last)
-    linear = np.concatenate([system.connectors.multipliers, system.history.numbers]).astype(np.int64)
-    result[:, 0, linear] = ((1.0 - share) * p[step] + share * p[step + 1])[:, linear]
-    result[:, 1:, linear] = 0.0
-    if any(callable(item.value) for item in system.prescribed):
-        result[:, 0, system.prescribed_dofs] = [system.prescribed_values(time) for time in at.tolist()]
     return result
 
 

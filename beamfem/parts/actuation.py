@@ -14,7 +14,8 @@ from beamfem.model.load_base import Amplitude
 class Actuation(ImposedStrain):
     """Imposed curvature, stretch and shear of the stress-free state, such as by muscles, growth or swelling.
 
-    Section forces follow from the difference, s = C (eps - eps0 - amplitude * actuation).
+    Section forces follow from the difference, s = C (eps - eps0 - amplitude * actuation). Raises InputError for an
+    invalid value, or a strain that the nodes of the element cannot follow.
 
     Parameters
     ----------
@@ -30,11 +31,6 @@ class Actuation(ImposedStrain):
         Factor as a function of time [s], or of the load factor in statics.
     scale : bool, default True
         Whether the actuation grows with the load factor in statics, if it has no amplitude.
-
-    Raises
-    ------
-    InputError
-        For an invalid value, or a strain that the nodes of the element cannot follow.
 
     Notes
     -----

@@ -18,7 +18,8 @@ class Bushing(BetweenPlaces):
     """Springs and dampers between two sections, in axes that turn with the first, free of force in the reference.
 
     Potential (kx u^2 + ky v^2 + kt (tb - ta)^2) / 2, with the displacement (u, v) of b relative to a in axes that are x
-    and y in the reference and turn with the section of a. The dampers act on the rates of the same three.
+    and y in the reference and turn with the section of a. The dampers act on the rates of the same three. Raises
+    InputError for an invalid value.
 
     Parameters
     ----------
@@ -28,11 +29,6 @@ class Bushing(BetweenPlaces):
         Stiffness (kx, ky, kt).
     damping : (float, float, float), [N s/m, N s/m, N m s/rad], default (0, 0, 0)
         Damping.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
 
     Examples
     --------

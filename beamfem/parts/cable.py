@@ -18,6 +18,9 @@ from beamfem.validation import convert, not_negative, positive
 class Cable(BetweenPlaces):
     """A straight, massless cable between two points: its tension is k max(l - l0, 0).
 
+    Raises InputError for an invalid value, if the points coincide in the reference, or if the pretension leaves no
+    length.
+
     Parameters
     ----------
     a : Point
@@ -28,11 +31,6 @@ class Cable(BetweenPlaces):
         Stiffness k > 0, E A / l0.
     pretension : float, [N], default 0
         Tension N0 at the distance L in the reference, so that l0 = L - N0 / k.
-
-    Raises
-    ------
-    InputError
-        For an invalid value, if the points coincide in the reference, or if the pretension leaves no length.
 
     Examples
     --------

@@ -17,6 +17,8 @@ Varying = Callable[[float], Sequence[float]]
 class DistributedLoad(LineLoad):
     """Distributed force on a beam, per reference length.
 
+    Raises InputError for an invalid value.
+
     Parameters
     ----------
     beam : Beam
@@ -31,11 +33,6 @@ class DistributedLoad(LineLoad):
     follower : bool, default False
         Whether the force at each point rotates with its section; on a curved beam that is not normal to the axis, see
         `Pressure`.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
 
     Examples
     --------
@@ -81,6 +78,8 @@ class DistributedLoad(LineLoad):
     def values(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the forces per length at given arc lengths.
 
+        Raises InputError if a function does not return two finite numbers.
+
         Parameters
         ----------
         arc_length : array, [m], (n,)
@@ -90,11 +89,6 @@ class DistributedLoad(LineLoad):
         -------
         array, [N/m], (n, 2)
             Forces (qx, qy) per reference length, without the factor of the load.
-
-        Raises
-        ------
-        InputError
-            If a function does not return two finite numbers.
 
         Examples
         --------

@@ -27,7 +27,8 @@ class DragAtNode(AtPoint):
 class Drag(PartAlongBeam):
     """Drag of a fluid at rest along a beam, -c |v| v per unit length [N/m] at the velocity v.
 
-    It is lumped at the nodes by Gauss-Lobatto quadrature, exact to degree 2 k - 1 on elements of order k.
+    It is lumped at the nodes by Gauss-Lobatto quadrature, exact to degree 2 k - 1 on elements of order k. Raises
+    InputError for an invalid value.
 
     Parameters
     ----------
@@ -35,11 +36,6 @@ class Drag(PartAlongBeam):
         The beam.
     coefficient : float, [kg/m^2]
         Coefficient c >= 0: for a fluid of density rho and drag coefficient C_D of a section of height h, rho C_D h / 2.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
 
     Examples
     --------

@@ -12,17 +12,14 @@ from beamfem.validation import convert, squared, vector
 class Foundation(LineSupport):
     """Winkler foundation along a beam, unstressed in the reference.
 
+    Raises InputError for a negative stiffness, or if both are zero.
+
     Parameters
     ----------
     beam : Beam
         The supported beam.
     stiffness : (float, float), [N/m^2]
         Stiffness (kx, ky) per reference length.
-
-    Raises
-    ------
-    InputError
-        For a negative stiffness, or if both are zero.
 
     Examples
     --------

@@ -13,7 +13,8 @@ from beamfem.validation import convert, finite
 class Gear(BetweenPlaces):
     """A gear between two sections: the rotation of b from the reference is `ratio` times that of a.
 
-    Its condition is t_b - ratio t_a = 0, its multiplier the moment on b [N m].
+    Its condition is t_b - ratio t_a = 0, its multiplier the moment on b [N m]. Raises InputError for an invalid value,
+    or a ratio of zero.
 
     Parameters
     ----------
@@ -21,11 +22,6 @@ class Gear(BetweenPlaces):
         Points of beams.
     ratio : float, [-]
         Transmission ratio, negative if both turn in opposite directions.
-
-    Raises
-    ------
-    InputError
-        For an invalid value, or a ratio of zero.
 
     Examples
     --------

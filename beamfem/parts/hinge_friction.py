@@ -16,7 +16,8 @@ class HingeFriction(BetweenPlaces):
     """Dry friction between two sections, such as those of a `Hinge`: a torsion spring that slips.
 
     Its moment is k times the change of t_b - t_a since it slipped last, and at most the friction torque (Prandtl 1928),
-    in statics from step to step. Its losses are in `solution.energy().dissipated`.
+    in statics from step to step. Its losses are in `solution.energy().dissipated`. Raises InputError for an invalid
+    value.
 
     Parameters
     ----------
@@ -26,11 +27,6 @@ class HingeFriction(BetweenPlaces):
         Friction torque > 0, at which it slips.
     stiffness : float, [N m/rad]
         Stiffness k > 0 with which it sticks; the larger, the smaller the steps that it needs.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
 
     Examples
     --------

@@ -16,7 +16,8 @@ class HingeStop(EndStop):
     At the excess d beyond a limit the moment is k d (1 + c dd/dt) towards it (Hunt and Crossley 1975). With a
     coefficient of restitution e it is k d, and k / e^2 (d - (1 - e^2) d_max) on the way back from the largest excess
     d_max, so that bodies of any mass and speed bounce with e times their relative speed (Walton and Braun 1986). A body
-    that is too slow to leave the stop rests in it, by up to (1 - e^2) d_max.
+    that is too slow to leave the stop rests in it, by up to (1 - e^2) d_max. Raises InputError for an invalid value,
+    without a limit, and if low is above high.
 
     Parameters
     ----------
@@ -30,11 +31,6 @@ class HingeStop(EndStop):
         Damping c; a body that hits at the angular velocity w bounces with about 1 - 2 c w / 3 of it.
     restitution : float, [-], optional
         Coefficient of restitution e, above 0 and up to 1, in place of a damping.
-
-    Raises
-    ------
-    InputError
-        For an invalid value, without a limit, and if low is above high.
 
     Examples
     --------

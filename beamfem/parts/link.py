@@ -13,17 +13,13 @@ from beamfem.physics.connections import LINK
 class Link(BetweenPlaces):
     """A rigid, massless link hinged at two points, which keep the distance l0 that they have in the reference.
 
-    Its condition is (l^2 - l0^2) / (2 l0) = 0, its multiplier the tension [N].
+    Its condition is (l^2 - l0^2) / (2 l0) = 0, its multiplier the tension [N]. Raises InputError for anything but
+    points, and if they coincide in the reference.
 
     Parameters
     ----------
     a, b : Point
         Points of beams.
-
-    Raises
-    ------
-    InputError
-        For anything but points, and if they coincide in the reference.
 
     Examples
     --------

@@ -77,7 +77,8 @@ class Motor(CompositeLoad):
     [s], or on the load factor in statics, where the angle is the integral of the speed over it. In a hinge, the torque
     acts on the section of b, and its opposite on that of a.
 
-    `solution.joint_force(motor)` has the torque. A motor does not hold the position: a `Pin` does.
+    `solution.joint_force(motor)` has the torque. A motor does not hold the position: a `Pin` does. Raises InputError
+    for an invalid value, or if not exactly one of angle, speed and torque is given.
 
     Parameters
     ----------
@@ -89,11 +90,6 @@ class Motor(CompositeLoad):
         Angular velocity; the angle is 0 at the beginning.
     torque : float or callable, [N m], optional
         Torque, counter-clockwise; also a function of time, angle and speed, such as that of a controller.
-
-    Raises
-    ------
-    InputError
-        For an invalid value, or if not exactly one of angle, speed and torque is given.
 
     Examples
     --------

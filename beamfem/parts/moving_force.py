@@ -13,7 +13,7 @@ class MovingForce(MovingLoad):
     """A force on the axis that moves along a beam, such as that of a wheel; off the beam there is none.
 
     The nodal forces are exact at each position. The section forces of the element on which it stands are those of a
-    distributed load with the same resultant.
+    distributed load with the same resultant. Raises InputError for an invalid value.
 
     Parameters
     ----------
@@ -27,11 +27,6 @@ class MovingForce(MovingLoad):
         Factor as a function of time [s], or of the load factor in statics.
     scale : bool, default False
         Whether the force grows with the load factor in statics, if it has no amplitude.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
 
     Examples
     --------

@@ -16,7 +16,7 @@ from beamfem.validation import convert, not_negative, positive
 class PointMass(AtPoint):
     """A mass at a point, with its weight under `Gravity`.
 
-    Kinetic energy m |r'|^2 / 2 + J w^2 / 2.
+    Kinetic energy m |r'|^2 / 2 + J w^2 / 2. Raises InputError for an invalid value.
 
     Parameters
     ----------
@@ -26,11 +26,6 @@ class PointMass(AtPoint):
         Mass m > 0.
     inertia : float, [kg m^2], default 0
         Moment of inertia J about the point.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
 
     Examples
     --------

@@ -15,7 +15,8 @@ class Prescribed(PointSupport):
 
     A number is multiplied by the load factor in statics and constant in dynamics; a function depends on time [s], or on
     the load factor in statics. None leaves a direction free. With a velocity, the displacement is its integral from
-    time 0, and a motion starts with it.
+    time 0, and a motion starts with it. Raises InputError if nothing is prescribed, or both a displacement and its
+    rate, or a value is invalid.
 
     Parameters
     ----------
@@ -29,11 +30,6 @@ class Prescribed(PointSupport):
         Velocity, in place of a displacement.
     angular : float or callable, [rad/s], optional
         Angular velocity of the section, in place of its rotation.
-
-    Raises
-    ------
-    InputError
-        If nothing is prescribed, or both a displacement and its rate, or a value is invalid.
 
     Examples
     --------

@@ -16,7 +16,7 @@ class Pressure(LineLoad):
     """Pressure times width, normal to the deformed axis of a beam, per deformed length: a force p (-y', x') ds.
 
     It acts on the axis and does work on the area swept by the axis: a constant pressure is conservative if both ends of
-    the beam are constrained in at least one direction, or close a ring.
+    the beam are constrained in at least one direction, or close a ring. Raises InputError for an invalid value.
 
     Parameters
     ----------
@@ -30,11 +30,6 @@ class Pressure(LineLoad):
         Factor as a function of time [s], or of the load factor in statics.
     scale : bool, default True
         Whether the pressure grows with the load factor in statics, if it has no amplitude.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
 
     Examples
     --------
@@ -67,6 +62,8 @@ class Pressure(LineLoad):
     def values(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the pressure times width at given arc lengths.
 
+        Raises InputError if a function does not return a finite number.
+
         Parameters
         ----------
         arc_length : array, [m], (n,)
@@ -76,11 +73,6 @@ class Pressure(LineLoad):
         -------
         array, [N/m], (n,)
             Pressure times width, without the factor of the load.
-
-        Raises
-        ------
-        InputError
-            If a function does not return a finite number.
 
         Examples
         --------

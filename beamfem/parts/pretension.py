@@ -16,6 +16,7 @@ class Pretension(ImposedStrain):
 
     It imposes the stretch -F / (E A), so that the normal force is F if the ends do not move; ends that give way relax
     it, and every other load changes it. Continuum forces without plane stress are stiffer than E A, and F is larger.
+    Raises InputError for an invalid value, or elements whose nodes cannot stretch.
 
     Parameters
     ----------
@@ -28,11 +29,6 @@ class Pretension(ImposedStrain):
     scale : bool, default False
         Whether it grows with the load factor in statics; by default it acts fully at load factor 0, so that what it is
         balanced with should do so, too: `Gravity(scale=False)`.
-
-    Raises
-    ------
-    InputError
-        For an invalid value, or elements whose nodes cannot stretch.
 
     Examples
     --------

@@ -21,7 +21,8 @@ from beamfem.validation import convert, not_negative, positive, vector
 class RigidBody(AtPoint):
     """A rigid body fixed to a section, with its weight under `Gravity`.
 
-    Its centre of mass is c = R(theta) offset from the point: kinetic energy m |r' + w x c|^2 / 2 + J w^2 / 2.
+    Its centre of mass is c = R(theta) offset from the point: kinetic energy m |r' + w x c|^2 / 2 + J w^2 / 2. Raises
+    InputError for an invalid value.
 
     Parameters
     ----------
@@ -33,11 +34,6 @@ class RigidBody(AtPoint):
         Moment of inertia J about the centre of mass.
     offset : (float, float), [m], default (0, 0)
         Vector from the point to the centre of mass in the reference, along x and y.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
 
     Examples
     --------

@@ -14,17 +14,14 @@ from beamfem.validation import convert, squared, vector
 class Roller(PointSupport):
     """Constrain the displacement along a normal only.
 
+    Raises InputError for a zero normal.
+
     Parameters
     ----------
     point : Point
         The supported point.
     normal : (float, float), [-], default (0, 1)
         Direction of the constraint; its length does not matter.
-
-    Raises
-    ------
-    InputError
-        For a zero normal.
 
     Examples
     --------

@@ -20,7 +20,7 @@ class Slider(BetweenPlaces):
     the force N across the axis [N] and the moment [N m].
 
     With friction, a spring along the axis holds b until its force reaches friction |N| (Coulomb); then b slips. Its
-    losses are in `solution.energy().dissipated`.
+    losses are in `solution.energy().dissipated`. Raises InputError for an invalid value, or friction without stiffness.
 
     Parameters
     ----------
@@ -32,11 +32,6 @@ class Slider(BetweenPlaces):
         Coefficient of friction >= 0.
     stiffness : float, [N/m], optional
         Stiffness > 0 with which friction sticks; the larger, the smaller the steps that it needs.
-
-    Raises
-    ------
-    InputError
-        For an invalid value, or friction without stiffness.
 
     Examples
     --------

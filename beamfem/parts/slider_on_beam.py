@@ -24,7 +24,8 @@ class SliderOnBeam(PartAlongBeam):
 
     Its condition is that the distance from the axis, (r_b - r(s)) . n(s) at the closest place s, is that of the
     reference; beyond the ends of the beam, from the tangents there. Its multiplier is the force across the axis [N].
-    The point turns freely. A mass rides on the beam as a `PointMass` at the point.
+    The point turns freely. A mass rides on the beam as a `PointMass` at the point. Raises InputError for an invalid
+    value.
 
     Parameters
     ----------
@@ -32,11 +33,6 @@ class SliderOnBeam(PartAlongBeam):
         The beam, with elements of which r, or r and r_x, are coordinates: all but `ShearRigid`.
     point : Point
         Point of another beam.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
 
     Examples
     --------

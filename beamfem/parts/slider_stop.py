@@ -17,7 +17,8 @@ class SliderStop(EndStop):
     """End stops of a `Slider`: stiff one-sided springs that keep b between two limits along an axis that turns with a.
 
     At the excess d beyond a limit the force is k d (1 + c dd/dt) towards it, or bodies bounce with a coefficient of
-    restitution, as off a `HingeStop`.
+    restitution, as off a `HingeStop`. Raises InputError for an invalid value, without a limit, and if low is above
+    high.
 
     Parameters
     ----------
@@ -33,11 +34,6 @@ class SliderStop(EndStop):
         Damping c; a body that hits at the speed v bounces with about 1 - 2 c v / 3 of it.
     restitution : float, [-], optional
         Coefficient of restitution, above 0 and up to 1, in place of a damping.
-
-    Raises
-    ------
-    InputError
-        For an invalid value, without a limit, and if low is above high.
 
     Examples
     --------

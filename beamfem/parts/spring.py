@@ -12,6 +12,8 @@ from beamfem.validation import convert, finite, squared, vector
 class Spring(PointSupport):
     """Spring to the ground, unstressed in the reference.
 
+    Raises InputError for a negative stiffness, or if all are zero.
+
     Parameters
     ----------
     point : Point
@@ -20,11 +22,6 @@ class Spring(PointSupport):
         Stiffness (kx, ky) against displacement.
     rotational : float, [N m/rad], default 0
         Stiffness against rotation.
-
-    Raises
-    ------
-    InputError
-        For a negative stiffness, or if all are zero.
 
     Examples
     --------

@@ -40,7 +40,8 @@ class SpringDamper(BetweenPlaces):
 
     With a law F(e, f) of the elongation e = l - l0 in place of a stiffness, the force is F + c dl/dt. The law is
     written with +, -, *, /, whole powers, f.sqrt and f.positive, which is max(x, 0); see `Connection`. An
-    `Interpolated` table of forces is a law too.
+    `Interpolated` table of forces is a law too. Raises InputError for an invalid value, and if the points coincide in
+    the reference.
 
     Parameters
     ----------
@@ -54,11 +55,6 @@ class SpringDamper(BetweenPlaces):
         Damping c >= 0.
     length : float, [m], optional
         Length l0 free of force, by default the distance in the reference.
-
-    Raises
-    ------
-    InputError
-        For an invalid value, and if the points coincide in the reference.
 
     Examples
     --------

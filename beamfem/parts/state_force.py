@@ -17,7 +17,8 @@ from beamfem.validation import called, takes
 class StateForce:
     """A force on points as a function of time, positions and velocities, such as that of a controller or a thruster.
 
-    Derivatives of the function are central differences, so that it may be any function of real numbers.
+    Derivatives of the function are central differences, so that it may be any function of real numbers. Raises
+    InputError for a function of other arguments.
 
     Parameters
     ----------
@@ -26,11 +27,6 @@ class StateForce:
     function : callable, [N, N, N m]
         Function of time [s], in statics of the load factor, of x, y and the rotation from the reference, (3,) of one
         point or (m, 3) of several, [m, m, rad], and of their rates. It returns fx, fy and moment on each point.
-
-    Raises
-    ------
-    InputError
-        For a function of other arguments.
 
     Examples
     --------

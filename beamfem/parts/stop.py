@@ -20,7 +20,7 @@ class Stop(AtPoint):
 
     At the penetration d = max(-gap, 0) its pressure is k d (1 + c dd/dt) (Hunt and Crossley 1975). Friction sticks with
     the stiffness k and slips at the limit mu k d, in statics from step to step. Bodies may bounce with a coefficient of
-    restitution instead, as off a `HingeStop`.
+    restitution instead, as off a `HingeStop`. Raises InputError for an invalid value, or a normal of zero.
 
     Parameters
     ----------
@@ -38,11 +38,6 @@ class Stop(AtPoint):
         Coefficient of friction mu.
     restitution : float, [-], optional
         Coefficient of restitution, above 0 and up to 1, in place of damping and friction.
-
-    Raises
-    ------
-    InputError
-        For an invalid value, or a normal of zero.
 
     Examples
     --------

@@ -19,7 +19,8 @@ class Temperature(ImposedStrain):
 
     An unconstrained section of one material has the stretch alpha * change and the curvature -alpha * gradient, with
     the `thermal_expansion` alpha of the material; different layers are in equilibrium with each other. The thickness
-    does not expand at nodes that keep it constant.
+    does not expand at nodes that keep it constant. Raises InputError for an invalid value, or a material without
+    thermal expansion.
 
     Parameters
     ----------
@@ -33,11 +34,6 @@ class Temperature(ImposedStrain):
         Factor as a function of time [s], or of the load factor in statics.
     scale : bool, default True
         Whether the change grows with the load factor in statics, if it has no amplitude.
-
-    Raises
-    ------
-    InputError
-        For an invalid value, or a material without thermal expansion.
 
     Notes
     -----

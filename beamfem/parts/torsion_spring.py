@@ -14,7 +14,8 @@ from beamfem.validation import convert, not_negative
 class TorsionSpring(BetweenPlaces):
     """A torsion spring and damper between two sections, such as those of a `Hinge`.
 
-    Its moment is k (tb - ta) + c d(tb - ta)/dt, with the rotations ta and tb from the reference.
+    Its moment is k (tb - ta) + c d(tb - ta)/dt, with the rotations ta and tb from the reference. Raises InputError for
+    an invalid value.
 
     Parameters
     ----------
@@ -24,11 +25,6 @@ class TorsionSpring(BetweenPlaces):
         Stiffness k >= 0.
     damping : float, [N m s/rad], default 0
         Damping c >= 0.
-
-    Raises
-    ------
-    InputError
-        For an invalid value.
 
     Examples
     --------

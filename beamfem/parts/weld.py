@@ -17,16 +17,12 @@ class Weld(BetweenPlaces):
 
     Its conditions are r_b - r_a = R(t_a) d, with the vector d between them in the reference, and t_b - t_a = 0; its
     multipliers are the force [N] in the axes of a and the moment [N m], both on a. `Rigid` joins coincident points.
+    Raises InputError for anything but points, and if they coincide in the reference.
 
     Parameters
     ----------
     a, b : Point
         Points of beams.
-
-    Raises
-    ------
-    InputError
-        For anything but points, and if they coincide in the reference.
 
     Examples
     --------

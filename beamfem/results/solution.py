@@ -423,7 +423,8 @@ class Solution:
         """Return the history variables of a connector in each row by name, those of a user-defined one by number.
 
         Of friction, "slip" [m or rad] and "dissipated" [J]; of stops with a coefficient of restitution, the "deepest"
-        [m or rad] since they were hit, of `HingeStop` and `SliderStop` "low_deepest" and "high_deepest".
+        [m or rad] since they were hit, of `HingeStop` and `SliderStop` "low_deepest" and "high_deepest". Raises
+        InputError for a connector without history, or of another model.
 
         Parameters
         ----------
@@ -434,11 +435,6 @@ class Solution:
         -------
         dict of str to array, (steps,)
             Values after the step that led to each row.
-
-        Raises
-        ------
-        InputError
-            For a connector without history, or of another model.
 
         Examples
         --------

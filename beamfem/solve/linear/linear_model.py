@@ -178,19 +178,14 @@ class LinearModel:
 
         Its points are r = r1 + R(theta1) (X + Phi q) in the frame of its first interface, with the deformation q of the
         reduced model. Its energies are exact for this field; stresses do not change its stiffness, as in all linear
-        models.
+        models. Raises InputError if the model was not reduced to two interfaces or more, if it is not free or not in
+        its reference, if loads act on it, or if its interfaces have no rotations.
 
         Returns
         -------
         FloatingBody
             A part for `masses` of a Model. Its `points` are the interfaces, to which any other part is attached; its
             beams, without stiffness and mass, need not be listed.
-
-        Raises
-        ------
-        InputError
-            If the model was not reduced to two interfaces or more, if it is not free or not in its reference, if loads
-            act on it, or if its interfaces have no rotations.
 
         References
         ----------
@@ -210,6 +205,8 @@ class LinearModel:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Return the first-order form x' = A x + B f, y = C x + D f, with x = (z, z').
 
+        Raises InputError for an invalid output, and if the mass matrix is singular.
+
         Parameters
         ----------
         outputs : sequence of (str, Point), optional
@@ -219,11 +216,6 @@ class LinearModel:
         -------
         (array, array, array, array), (2 m, 2 m), (2 m, loads), (outputs, 2 m), (outputs, loads)
             A, B, C and D, for example for `control.ss`.
-
-        Raises
-        ------
-        InputError
-            For an invalid output, and if the mass matrix is singular.
 
         Examples
         --------

@@ -134,6 +134,8 @@ class Modes:
     def participation(self, direction: tuple[float, float] | RigidVelocity) -> np.ndarray:
         """Return the participation factors phi^T M r of undamped modes in a rigid motion r.
 
+        Raises InputError for an invalid direction, and if shapes are complex.
+
         Parameters
         ----------
         direction : (float, float) or RigidVelocity
@@ -143,11 +145,6 @@ class Modes:
         -------
         array, [kg^(1/2)], (count,)
             The factors, for a rotation of 1 rad/s [kg^(1/2) m].
-
-        Raises
-        ------
-        InputError
-            For an invalid direction, and if shapes are complex.
 
         Examples
         --------
@@ -170,7 +167,7 @@ class Modes:
         """Return the effective masses (phi^T M r)^2 of undamped modes in a direction.
 
         Summed over all modes they are the total mass, except the small fraction of it that elements at supports have at
-        prescribed coordinates.
+        prescribed coordinates. Raises InputError as `participation` does.
 
         Parameters
         ----------
@@ -181,11 +178,6 @@ class Modes:
         -------
         array, [kg], (count,)
             The masses, for a rotation of 1 rad/s the moments of inertia [kg m^2].
-
-        Raises
-        ------
-        InputError
-            See `participation`.
 
         Examples
         --------

@@ -14,17 +14,13 @@ from beamfem.validation import number_below
 class Gauss:
     """Gauss collocation with s stages: order 2 s, without numerical damping, symmetric in time.
 
-    One stage is the implicit midpoint rule. Accelerations at the ends of steps are those of the equations there.
+    One stage is the implicit midpoint rule. Accelerations at the ends of steps are those of the equations there. Raises
+    InputError for another number of stages.
 
     Parameters
     ----------
     stages : int, default 3
         Number of stages s, from 1 to 6.
-
-    Raises
-    ------
-    InputError
-        For another number of stages.
 
     References
     ----------
@@ -72,17 +68,13 @@ def Midpoint() -> Gauss:
 class Radau:
     """Radau IIA collocation with s stages: order 2 s - 1, L-stable: what a step does not resolve decays.
 
-    The last stage is the end of the step, where equations and conditions hold.
+    The last stage is the end of the step, where equations and conditions hold. Raises InputError for another number of
+    stages.
 
     Parameters
     ----------
     stages : int, default 3
         Number of stages s, from 1 to 5.
-
-    Raises
-    ------
-    InputError
-        For another number of stages.
 
     References
     ----------

@@ -38,14 +38,10 @@ class EnergyMomentum:
     mean state (Betsch and Leyendecker 2006).
 
     It is for linear elastic beams of any element. Gravity, dead loads, foundations and springs along x and y conserve
-    energy too. Forces that have another potential, such as those of a `SpringDamper`, of a spring against rotation
-    or of a moment, are those of the mean state, and conserve energy to second order.
-
-    Raises
-    ------
-    InputError
-        As the motion begins, if the model has section laws, damping of beams, imposed strains, moved supports,
-        conditions, or bodies other than `PointMass` and `RigidBody`.
+    energy too. Forces that have another potential, such as those of a `SpringDamper`, of a spring against rotation or
+    of a moment, are those of the mean state, and conserve energy to second order. Raises InputError as the motion
+    begins, if the model has section laws, damping of beams, imposed strains, moved supports, conditions, or bodies
+    other than `PointMass` and `RigidBody`.
 
     Examples
     --------

@@ -18,6 +18,8 @@ _CLOSE = 1e-12  # of a step: accuracy of the time of an event
 class Event:
     """A function of the state whose crossing of zero is located and recorded in `solution.events`.
 
+    Raises InputError for invalid arguments.
+
     Parameters
     ----------
     name : str
@@ -29,11 +31,6 @@ class Event:
         Whether only crossings from negative to positive count, or, if False, only those from positive to negative.
     stop : bool, default False
         Whether the motion ends there.
-
-    Raises
-    ------
-    InputError
-        For invalid arguments.
 
     Examples
     --------

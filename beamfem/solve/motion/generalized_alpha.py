@@ -58,16 +58,13 @@ def require_rule(scheme: Scheme, step: float) -> tuple[float, ...]:
 class GeneralizedAlpha:
     """Generalized-alpha method, second order accurate, unconditionally stable for linear systems.
 
+    Raises InputError for a value outside 0 to 1.
+
     Parameters
     ----------
     rho_inf : float, [-], default 0.9
         Spectral radius at infinite frequency, from 0 to 1; 1 has no numerical damping, 0 removes the highest
         frequencies in one step.
-
-    Raises
-    ------
-    InputError
-        For a value outside 0 to 1.
 
     References
     ----------
@@ -111,17 +108,12 @@ class HHT:
     """Method of Hilber, Hughes and Taylor, a member of the generalized-alpha family.
 
     alpha_m = 0, alpha_f = -alpha, gamma = 1/2 - alpha, beta = (1 - alpha)^2 / 4, see `Scheme`. It is second order
-    accurate and unconditionally stable for linear systems.
+    accurate and unconditionally stable for linear systems. Raises InputError for a value outside -1/3 to 0.
 
     Parameters
     ----------
     alpha : float, [-], default -0.05
         Numerical damping, from -1/3 to 0; the spectral radius at infinite frequency is (1 + alpha) / (1 - alpha).
-
-    Raises
-    ------
-    InputError
-        For a value outside -1/3 to 0.
 
     References
     ----------
@@ -151,7 +143,8 @@ class Newmark:
     p1 = p0 + h p0' + h^2 ((1/2 - beta) p0'' + beta p1''), p1' = p0' + h ((1 - gamma) p0'' + gamma p1'').
 
     With gamma = 1/2 it is second order accurate, otherwise first order; with 2 beta >= gamma it is unconditionally
-    stable for linear systems. The default is the trapezoidal rule.
+    stable for linear systems. The default is the trapezoidal rule. Raises InputError for beta that is not positive, and
+    gamma below 1/2, which would feed energy into the motion.
 
     Parameters
     ----------
@@ -159,11 +152,6 @@ class Newmark:
         Weight of the new acceleration in displacements, above 0.
     gamma : float, [-], default 0.5
         Weight of the new acceleration in velocities, from 1/2, without numerical damping.
-
-    Raises
-    ------
-    InputError
-        For beta that is not positive, and gamma below 1/2, which would feed energy into the motion.
 
     References
     ----------

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.linalg import LinAlgError
 from scipy.sparse import coo_array, csr_array
 
 from beamfem.cached_properties import cached_property
@@ -11,6 +12,7 @@ from beamfem.equations.bound_connector import COMPLEX_STEP, Connector, Motion
 from beamfem.equations.connector_nodes import checked_connectors
 from beamfem.equations.connector_traits import follows_time, resists_rates
 from beamfem.equations.equation_numbering import Mesh
+from beamfem.errors import InputError
 from beamfem.model.contribution import is_one_sided, remembered
 from beamfem.model.load_base import factor
 from beamfem.model.model import Model

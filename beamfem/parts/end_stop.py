@@ -8,7 +8,7 @@ from beamfem.errors import InputError
 from beamfem.parts.at_points import BetweenPlaces
 from beamfem.validation import convert, finite, not_negative, optional, positive
 
-_NEVER = 1e9  # [rad] or [m]
+_NEVER = 1e300  # [rad] or [m], far away in all units
 
 
 def require_rebound(part: Any) -> None:

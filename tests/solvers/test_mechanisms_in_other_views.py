@@ -142,3 +142,40 @@ def test_without_damping_linear_models_have_the_modes_of_solve_modes(seed):
     if np.all(expected.growth == 0.0):  # a diverging mode has a decaying one beside it
         assert found.frequencies == pytest.approx(expected.frequencies, rel=1e-8)
         assert np.all(found.growth == 0.0)
+
+
+@pytest.mark.parametrize("length", [1e-6, 1e9])
+@pytest.mark.parametrize("kind", ["slider", "gear", "torsion spring"])
+def test_parts_on_rotations_hold_and_move_models_in_micrometres_of_metres_and_in_nanometres(kind, length):
+    """Rotations have no unit of length: rows of them are small or large beside those of positions in such units."""
+
+    def found(unit):
+        steel, square = bf.Material(2.1e11, 0.3, 7850.0 / unit**2), bf.Rectangle(0.02 * unit, 0.02 * unit)
+        ends = ((0.0, 0.0), (unit, 0.1 * unit)), ((0.0, unit), (1.1 * unit, unit))
+        one, two = (bf.Beam(bf.Line(*each), 3, bf.CRBF(3), square, steel) for each in ends)
+        part = {
+            "slider": bf.Slider(one.end, two.end, (0.3, 1.0)),
+            "gear": bf.Gear(one.end, two.end, -3.0),
+            "torsion spring": bf.TorsionSpring(one.end, two.end, 1e4 * unit**3),
+        }[kind]
+        held = bf.Prescribed(two.end, ux=0.0) if kind == "slider" else bf.Pin(two.start)
+        push = bf.PointForce(two.end, (0.0, -100.0 * unit**2))
+        model = bf.Model([one, two], [bf.Clamp(one.start), held], [push], connectors=[part])
+        motion = bf.simulate(model, 0.02, 1e-3).displacement(two.end)[-1] / unit
+        return bf.solve_static(model).displacement(two.end)[-1] / unit, motion
+
+    for own, other in zip(found(length), found(1.0), strict=True):
+        assert own == pytest.approx(other, rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize("low", [None, -1e12])
+def test_an_end_stop_without_a_lower_limit_is_none_in_nanometres_either(low):
+    unit = 1e9
+    steel, square = bf.Material(2.1e11 / unit, 0.3, 7850.0 / unit**3), bf.Rectangle(0.02 * unit, 0.02 * unit)
+    one, two = (bf.Beam(bf.Line((x, 0.0), (x + unit, 0.0)), 2, bf.CRBF(2), square, steel) for x in (0.0, unit))
+    slider = bf.Slider(one.end, two.start, (1.0, 0.0))
+    stop = bf.SliderStop(one.end, two.start, (1.0, 0.0), low=low, high=unit, stiffness=1.0)
+    back = bf.Prescribed(two.start, ux=lambda factor: -1.5 * unit * factor)
+    found = bf.solve_static(bf.Model([one, two], [bf.Clamp(one.start), back], connectors=[slider, stop]))
+    assert not found.connector_force(stop).any()
+    assert found.displacement(two.end)[-1, 0] == pytest.approx(-1.5 * unit)

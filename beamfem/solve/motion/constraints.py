@@ -2,7 +2,7 @@
 
 import numpy as np
 from scipy.linalg import LinAlgError
-from scipy.sparse import block_array, csc_array
+from scipy.sparse import block_array, csc_array, dia_array
 
 from beamfem.equations.bound_connector import Motion
 from beamfem.equations.connectors import SHORT_TIME
@@ -108,11 +108,13 @@ def onto_conditions(system: System, state: np.ndarray, time: float) -> None:
 def _with_conditions(system: System, p: np.ndarray, mass: Tangent, right: np.ndarray, time: float) -> np.ndarray:
     """Return x and multipliers (unknown,), with [M, G'; G, 0] [x, l] = right."""
     k, zeros = len(system.connectors.multipliers), np.zeros(len(p))
-    inertia = mass.sparse(UNROTATED)[:-k, :-k]
-    conditions = linearise(system, p, zeros, zeros, time, STATICS)[1].sparse(UNROTATED)[-k:, :-k]
+    scale = np.append(system.scale[system.free_dofs][:-k], np.ones(k))  # rotations weigh as much as lengths
+    units = dia_array((scale[None, :-k], [0]), shape=(len(scale) - k,) * 2)
+    inertia = units @ mass.sparse(UNROTATED)[:-k, :-k] @ units
+    conditions = linearise(system, p, zeros, zeros, time, STATICS)[1].sparse(UNROTATED)[-k:, :-k] @ units
     whole = SaddleTangent(SparseTangent(csc_array(block_array([[inertia, conditions.T], [conditions, None]]))), k)
     try:
-        return whole.solve(right, system.rotated)
+        return scale * whole.solve(scale * right, system.rotated)
     except LinAlgError as error:
         raise InputError(dependent(system, p)) from error
 

@@ -79,11 +79,12 @@ class Conditions:
         moved = [np.vstack([self.extent * self.displacement(point), [0.0, 0.0, 1.0]]) for point in points]
         bodies = [int(self.body[self.model.number_of(point.beam)]) for point in points]
         for row in stopped:
-            parts = {number: np.zeros(3) for number in bodies}
+            parts, every = {number: np.zeros(3) for number in bodies}, 0.0
             for number, coefficients, motion in zip(bodies, row.reshape(-1, 3), moved, strict=True):
                 parts[number] += coefficients @ motion
+                every = max(every, float((np.abs(coefficients) @ np.abs(motion)).max()))
             size = max(float(np.abs(part).max()) for part in parts.values())
-            if size > NEGLIGIBLE * self.extent:
+            if size > NEGLIGIBLE * every:  # what is left of terms that cancel out within a body is round-off
                 self._add({number: part / size for number, part in parts.items()})
 
     def displacement(self, point: Point) -> np.ndarray:

@@ -97,6 +97,14 @@ def flying_beam(element):
     return {"model": bf.Model([beam], loads=[bf.PointForce(beam.end, (0.0, 20.0), amplitude=pulse)]), "duration": 0.5}
 
 
+def linked_arms(element, count=3, elements=4):
+    """Soft arms on links that fall from horizontal, and crack like a whip."""
+    section, rubber = bf.Section(area=1.6e-3, second_moment=8.533e-6), bf.Material(0.7e6, 0.3, 5540.0)
+    arms = [bf.Beam(bf.Line((x, 0), (x + 1.2, 0)), elements, element, section, rubber) for x in 1.3 * np.arange(count)]
+    links = [bf.Link(one.end, other.start) for one, other in pairwise(arms)]
+    return bf.Model(arms, [bf.Pin(arms[0].start)], [GRAVITY], connectors=links)
+
+
 # name: motion, step [s], integrator
 CASES = {
     "double pendulum, 5 ms": (double_pendulum, 5e-3, UNDAMPED),

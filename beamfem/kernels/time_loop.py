@@ -23,9 +23,13 @@ def _predict_resultants(system, solver):
 
 
 @inlined
-def _is_inside_out(system, solver):
-    """Return whether the last state has r0' x d <= 0 at a quadrature point: no motion leads there."""
-    smallest = 1.0
+def _jumps_inside_out(system, solver):
+    """Return whether a long step ends with r0' x d <= 0 at a quadrature point; motions of soft beams do lead there."""
+    smallest, moved, state, before = 1.0, 0.0, solver.state, solver.before
+    for i in range(system.size):
+        moved = max(moved, abs(state[i] - before[i]) * solver.inverse_scale[i])
+    if not moved > motion_steps.FAR:
+        return False
     for group in range(system.group_count):
         smallest = min(smallest, solver.routines.smallest_jacobian(system.groups[group]))
     return not smallest > 0.0
@@ -114,7 +118,7 @@ def march(system: System, solver: MotionSolver) -> int:
             if (
                 done == motion_steps.CONVERGED
                 and (full != 0 or first_size > motion_steps.FAR)
-                and _is_inside_out(system, solver)
+                and _jumps_inside_out(system, solver)
             ):
                 done = motion_steps.DIVERGED
             fresh = done == motion_steps.RENEW

@@ -14,6 +14,7 @@ from beamfem.equations.system import System
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.results.solution_checks import advice
 from beamfem.solve.motion.compiled_steps import CompiledSteps, StepsInCalls
+from beamfem.solve.motion.constraints import stopped_by_conditions
 from beamfem.solve.motion.energy_judgement import CHUNK, EnergyJudge
 from beamfem.solve.motion.energy_momentum import ConservingSteps, EnergyMomentum
 from beamfem.solve.motion.equations_of_motion import Integrator
@@ -227,6 +228,7 @@ class StepCutter:
         )
         state[:], rotations[:] = window.begin, window.rows.rotations[0]
         self.change_size(part, state)
+        self._put_onto_conditions(shorter, state)
         if jumps:
             state[2] = state[3] = initial_acceleration(self.system, state, part.loads_from)
         rows, given = Rows.empty(PARTS * count, state, rotations), self.prescribed(shorter, part.step)
@@ -245,6 +247,17 @@ class StepCutter:
         self.further += (PARTS - 1) * count
         self.change_size(shorter, state)
         return good
+
+    def _put_onto_conditions(self, shorter: Stretch, state: np.ndarray) -> None:
+        """Put the rates of a state (4, n) onto the conditions of joints, before shorter steps.
+
+        Steps satisfy conditions of positions. Errors in those of rates, and multipliers, alternate from step to step
+        without numerical damping, and the shorter the steps are, the larger are the forces that stop them.
+        """
+        if is_scheme(self.integrator) and len(self.system.connectors.multipliers):
+            time, step = shorter.loads_from, shorter.step if self.relaxed else 0.0
+            state[1] += stopped_by_conditions(self.system, state[0], state[1], time)
+            state[2] = state[3] = initial_acceleration(self.system, state, time, step)
 
     def change_size(self, part: Stretch, state: np.ndarray) -> None:
         """Prepare a state (4, n) after steps of a stretch for steps of another size."""

@@ -86,6 +86,18 @@ def test_steps_are_as_long_as_the_highest_frequency_allows(method):
     assert np.max(np.abs(motion.velocity(beam.end))) < 1.1 * np.max(np.abs(motion.velocity(beam.end)[:20]))
 
 
+@pytest.mark.parametrize("retardation", [2e-3, 5e-3])
+def test_steps_of_damped_beams_are_stable(retardation):
+    """Central differences begin with p'' of the predicted velocity: at most 1 / d for x'' + d x' = 0, not 2 / d."""
+    rubber = bf.Material(5e5, 0.0, 1000.0, retardation_time=retardation)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(2), bf.Rectangle(0.02, 0.1), rubber)
+    model = bf.Model([beam], [bf.Pin(beam.start)], [bf.Gravity((0, -9.81))])
+    motion = bf.simulate(model, 0.2, integrator=bf.CentralDifferences())
+    assert motion.statistics.rejected == 0
+    damped = bf.solve_modes(bf.Model([beam], [bf.Clamp(beam.start)]), model.size - 3).frequencies[-1]
+    assert 0.4 < motion.at[1] * retardation * (2.0 * np.pi * damped) ** 2 < 1.0
+
+
 def test_longer_steps_are_divided_and_rows_stay_where_they_are():
     one, model = pendulum(bf.CRBF(2))
     motion = bf.simulate(model, 0.2, 0.05, bf.CentralDifferences())

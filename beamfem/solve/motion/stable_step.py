@@ -49,16 +49,19 @@ def _largest(matrix: csc_array, inertia: csc_array) -> float:
 
 
 def _limit(rule: Coefficients, damping: float) -> float:
-    """Return the largest step at which no vibration x'' + d x' + x = 0 grows, with a damping d."""
+    """Return the largest step at which no vibration x'' + d x' + x = 0 grows, with a damping d.
+
+    Where the last stage is the end of the step, the next one begins with its x'', which is by the x' of that stage.
+    """
     steps = np.linspace(0.0, 10.0, _GRID + 1)[1:]
-    one, s = np.eye(2), len(rule.nodes)
-    stages = np.stack([np.ones(s), rule.nodes], axis=1)  # x and h x' of the stages, from those at the beginning
+    s, continued = len(rule.nodes), len(rule.samples) == len(rule.nodes)
     for number, h in enumerate(steps.tolist()):
-        # h^2 a = -h^2 x - h d (h x')
-        x, v = stages, np.tile(one[1], (s, 1))
+        # h^2 a = -h^2 x - h d (h x') of the stages, from x, h x' and h^2 x'' at the beginning
+        right = np.array([np.full(s, -h * h), -h * h * rule.nodes - h * damping, np.zeros(s)]).T
         left = np.eye(s) + h * h * rule.of_p + h * damping * rule.of_v
-        a = np.linalg.solve(left, -h * h * x - h * damping * v)
-        after = np.array([[1.0, 1.0], [0.0, 1.0]]) + rule.at_end[:2] @ a
+        if continued:
+            right[0], left[0] = (0.0, 0.0, 1.0), np.eye(s)[0]
+        after = np.array([[1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.0] * 3]) + rule.at_end @ np.linalg.solve(left, right)
         if np.max(np.abs(np.linalg.eigvals(after))) > 1.0 + _GROWTH:
             return float(steps[max(number - 1, 0)])
     return float(steps[-1])

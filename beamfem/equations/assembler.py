@@ -70,7 +70,7 @@ class Work:
 class Equations:
     """Groups of elements and parts at points in the form that compiled code expects, without workspace.
 
-    called: what of them calls Python.
+    called: what of them calls Python; spare: workspaces that no evaluation uses, if they are not the system's own.
     """
 
     def __init__(
@@ -78,6 +78,7 @@ class Equations:
     ) -> None:
         self.groups, self.size = tuple(groups), size
         self.record = record.System(size=size, group_count=len(self.groups), part_kinds=len(parts), parts=parts)
+        self.spare: list[Assembler] = []
         self.called = *called, *(group.law for group in groups if group.law is not None and group.law.in_python)
 
 

@@ -152,19 +152,19 @@ def energies_of_beams(
     return result, places
 
 
-def _acquired(system: System) -> Assembler:
+def _acquired(system: System, equations: Equations | None = None) -> Assembler:
     """Return an assembler whose workspace no other evaluation uses: a spare one, or a new one."""
     try:
-        assembler: Assembler = system.spare(Assembler).pop()
+        assembler: Assembler = (system.spare(Assembler) if equations is None else equations.spare).pop()
     except IndexError:
-        assembler = system.assembler()
+        assembler = system.assembler() if equations is None else Assembler(equations)
     return assembler
 
 
-def _return_assembler(system: System, assembler: Assembler) -> None:
+def _return_assembler(system: System, assembler: Assembler, equations: Equations | None = None) -> None:
     """Keep an assembler for the next evaluation if its workspace is small."""
     if assembler.numbers <= _KEPT:
-        system.spare(Assembler).append(assembler)
+        (system.spare(Assembler) if equations is None else equations.spare).append(assembler)
 
 
 def _plain(state: np.ndarray) -> np.ndarray:
@@ -225,7 +225,7 @@ class _Asked(NamedTuple):
 def _linearise(system: System, motion: Motion, asked: _Asked) -> tuple[np.ndarray, Tangent]:
     """Return residual and tangent of a motion at rest, see `linearise`."""
     matrix, result = np.empty(system.unknowns.entries), np.empty(len(motion[0]))
-    assembler = _acquired(system) if asked.equations is None else Assembler(asked.equations)
+    assembler = _acquired(system, asked.equations)
     own = assembler.stresses
     if asked.stresses is not None:
         assembler.take_stresses(asked.stresses)
@@ -233,9 +233,8 @@ def _linearise(system: System, motion: Motion, asked: _Asked) -> tuple[np.ndarra
     assembler.weigh(asked.coefficients, asked.dt, asked.moving)
     p, v, a = map(_plain, motion)
     assembler.balance(p, v, a, result, matrix, asked.stresses is not None)
-    if asked.equations is None:
-        assembler.take_stresses(own)
-        _return_assembler(system, assembler)
+    assembler.take_stresses(own)
+    _return_assembler(system, assembler, asked.equations)
     return result, tangent_of(system, matrix)
 
 
@@ -367,14 +366,12 @@ def predicted_stresses(
     time: at the end of the step, for imposed strains; equations: those of other blocks, used instead of those of the
     system; rates: in dynamics, p' (n,) and the weights of p, p' and p'' in the tangent; dt [s]: see `residual`.
     """
-    assembler = _acquired(system) if equations is None else Assembler(equations)
+    assembler = _acquired(system, equations)
     assembler.impose(system.loads.imposing(time))
     assembler.weigh((0.0, 0.0, 0.0) if rates is None else rates[1], dt)
     assembler.predict(_plain(p), _plain(step), None if rates is None else _plain(rates[0]))
-    if equations is not None:
-        return assembler.stresses
     stresses = tuple(stress.copy() for stress in assembler.stresses)
-    _return_assembler(system, assembler)
+    _return_assembler(system, assembler, equations)
     return stresses
 
 

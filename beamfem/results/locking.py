@@ -13,7 +13,7 @@ from beamfem.equations.blocks import build_block
 from beamfem.equations.equations import STATICS, linearise, predicted_stresses, residual
 from beamfem.equations.system import System, system_of
 from beamfem.errors import LockingWarning
-from beamfem.kernels.block import GREEN_LAGRANGE, Block
+from beamfem.kernels.block import GREEN_LAGRANGE
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.model.beam import beam_in_words, sections_along
 from beamfem.model.model import Model
@@ -133,7 +133,7 @@ def stiffness_locking(state: State, shapes: np.ndarray, power: float, what: str)
         return ()
     system = system_of(state.model, static=True)
     zeros, free = np.zeros(len(state.p)), system.free_dofs
-    at, unlocked = (state.p, zeros, zeros, state.at), system.equations_of(_unlocked_blocks(system))
+    at, unlocked = (state.p, zeros, zeros, state.at), system.table(_unlocked_equations)
     _, _, predicted = _step(system, at, STATICS, unlocked)
     before, after = (
         linearise(system, *at, STATICS, stresses, equations)[1].sparse(system.rotated)
@@ -185,7 +185,7 @@ def _change(state: State, span: float | None) -> tuple[float, np.ndarray]:
     if moved == 0.0 or span == 0.0:
         return 0.0, np.zeros(len(state.p))
     weights = STATICS if span is None else (1.0, 0.0, 1.0 / span**2)
-    unlocked = system.equations_of(_unlocked_blocks(system))
+    unlocked = system.table(_unlocked_equations)
     step, work, _ = _step(system, (state.p, state.v, state.a, state.at), weights, unlocked)
     return float(np.linalg.norm(step[nodes], axis=1).max()) / moved, work
 
@@ -235,7 +235,8 @@ def _resists_its_director(element: Element) -> bool:
     return unit and element.forces.code == GREEN_LAGRANGE and not has_stations(element.field)
 
 
-def _unlocked_blocks(system: System) -> tuple[Block, ...]:
+def _unlocked_equations(system: System) -> Equations:
+    """Return the equations without locking."""
     blocks = list(system.blocks)
     for number, other in _unlocked(system.model).items():
         meshes = [(i, mesh) for i, mesh in enumerate(system.model.meshes) if mesh.block == number]
@@ -245,7 +246,7 @@ def _unlocked_blocks(system: System) -> tuple[Block, ...]:
             stiffness = blocks[number].stiffness.copy()
             stiffness[..., _THICKNESS, :] = stiffness[..., _THICKNESS] = 0.0
             blocks[number] = blocks[number]._replace(stiffness=stiffness)
-    return tuple(blocks)
+    return system.equations_of(blocks)
 
 
 def _found(model: Model, change: float, work: np.ndarray, what: str) -> tuple[Finding, ...]:

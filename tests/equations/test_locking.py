@@ -398,3 +398,16 @@ def test_locking_does_not_matter_in_a_motion_too_short_for_stiffness():
         tips.append(motion.displacement(own.end)[-1, 1])
         assert motion.warnings == ()
     assert tips[0] == pytest.approx(tips[1], rel=1e-3)
+
+
+@pytest.mark.filterwarnings("ignore::beamfem.LockingWarning")
+def test_other_loads_lock_as_in_a_model_of_their_own():
+    """The equations without locking are kept for all loads on a mesh."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.BilinearCRBF(), bf.Rectangle(0.05, 0.05), STEEL)
+    forces = [[bf.PointForce(beam.end, (0.0, size))] for size in (1e3, 3e4)]
+    first = bf.Model([beam], [bf.Clamp(beam.start)], forces[0])
+    bf.solve_static(first)
+    shared = bf.solve_static(first.with_loads(forces[1]))
+    own = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], forces[1]))
+    assert locks(shared)
+    assert shared.warnings == own.warnings

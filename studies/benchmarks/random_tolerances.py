@@ -15,7 +15,7 @@ from beamfem.equations.system import system_of
 from studies.benchmarks.random_motions import Case, case
 
 TOLERANCES: tuple[float, ...] = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
-INTEGRATORS = (bf.Radau(2), bf.Radau(3), bf.Gauss(3), bf.GeneralizedAlpha())
+INTEGRATORS = (bf.Radau(2), bf.Radau(3), bf.Radau(4), bf.Gauss(3), bf.GeneralizedAlpha())
 _FINER = 0.05  # of the smallest tolerance: that of the reference
 _INSTANTS = 10
 

@@ -57,6 +57,15 @@ def test_a_tighter_tolerance_takes_shorter_steps(pendulum):
             assert motion.time[-1] == pytest.approx(0.5, rel=1e-12)
 
 
+@pytest.mark.parametrize(("tolerance", "stages"), [(1e-3, 2), (1e-4, 3), (1e-6, 3), (1e-7, 4), (1e-9, 4)])
+def test_tighter_tolerances_have_more_stages_by_default(pendulum, tolerance, stages):
+    at, model = [0.1, 0.2], pendulum[1]
+    usual, given = (bf.simulate(model, 0.2, None, i, tolerance=tolerance, save_at=at) for i in (None, bf.Radau(stages)))
+    assert np.array_equal(usual.p, given.p)
+    exact = bf.simulate(model, 0.2, None, bf.Gauss(4), tolerance=1e-11, save_at=at)
+    assert np.abs(usual.position(pendulum[0].end) - exact.position(pendulum[0].end)).max() < 8.0 * tolerance * 1.2
+
+
 @pytest.mark.parametrize("integrator", [bf.GeneralizedAlpha(), bf.Radau(1)], ids=["generalized-alpha", "Radau"])
 @pytest.mark.parametrize("duration", [0.3475, 0.35, 0.3525])
 def test_the_last_step_is_as_long_as_the_time_that_it_takes(pendulum, duration, integrator):

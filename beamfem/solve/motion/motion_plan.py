@@ -24,7 +24,7 @@ from beamfem.solve.start.start_checks import refuse_frame, require_memory
 from beamfem.validation import count, positive, shown
 
 AnyIntegrator = Scheme | Integrator | Staged | EnergyMomentum  # as users give it
-_LOOSE = 1e-3  # tolerance from which a method of lower order meets it with less work
+_LOOSE, _TIGHT = 1e-3, 1e-7  # tolerances from and up to which methods of lower and higher order need less work
 _PARTS = 1000  # of a motion whose steps follow a tolerance, within which kinks of loads are found
 
 
@@ -80,13 +80,14 @@ class MotionPlan:
 def usual_integrator(model: Model, tolerance: float | None) -> AnyIntegrator:
     """Return the integrator that a motion has by default.
 
-    Of random motions Radau's method of three stages meets tolerances from 1e-4 to 1e-9 with the least work, see
-    `studies.benchmarks.random_tolerances`; at looser ones its iterations limit the steps, and two stages suffice. Steps
-    with history are compiled for the generalized-alpha family only.
+    Of random motions Radau's method of three stages meets tolerances from 1e-4 to 1e-6 with the least work, see
+    `studies.benchmarks.random_tolerances`; at looser ones its iterations limit the steps, and two stages suffice, while
+    four take less time up to 1e-7. Steps with history are compiled for the generalized-alpha family only.
     """
     if tolerance is None or len(system_of(model, static=False).history.numbers):
         return GeneralizedAlpha()
-    return Radau(3 if positive("tolerance", tolerance) < _LOOSE else 2)
+    tolerance = positive("tolerance", tolerance)
+    return Radau(2 if tolerance >= _LOOSE else 3 if tolerance > _TIGHT else 4)
 
 
 def settings_of(

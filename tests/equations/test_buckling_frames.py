@@ -331,3 +331,24 @@ def test_a_search_that_finds_the_same_place_again_ends(led):
     assert not len(found) or found.load_factors[0] > 50.0
     assert not path.limit_points
     assert not path.bifurcations
+
+
+def test_of_many_close_critical_loads_no_more_are_located_than_are_sought(monkeypatch):
+    """N_m = EI (m pi / L)^2 + k (L / m pi)^2 of a column on a stiff foundation, nearly equal around m = 32."""
+    length, stiffness = 10.0, 1e4
+    section = bf.Rectangle(1.0, 1e-3 * length)
+    material = bf.Material(youngs_modulus=1.0 / section.second_moment, poisson_ratio=0.3, density=1.0)
+    beam = bf.Beam(bf.Line((0, 0), (length, 0)), 32, bf.CRBF(6), section, material)
+    parts = [bf.Pin(beam.start), bf.Roller(beam.end), bf.Foundation(beam, (0.0, stiffness))]
+    located, take_step = [], buckling.take_step
+
+    def counted(*args, **options):
+        step = take_step(*args, **options)
+        located.append(len(getattr(step, "crossings", ())))
+        return step
+
+    monkeypatch.setattr(buckling, "take_step", counted)
+    found = bf.solve_buckling(bf.Model([beam], parts, [bf.PointForce(beam.end, (-1.0, 0.0))]))
+    waves = (np.arange(1, 60) * np.pi / length) ** 2
+    assert found.load_factors == pytest.approx([(waves + stiffness / waves).min()], rel=2e-3)  # strains of 1.7e-3
+    assert sum(located) == 1

@@ -285,6 +285,21 @@ def test_critical_points_of_straight_columns_are_found_on_any_mesh(accuracy):
         assert found == pytest.approx(exact, abs=accuracy * max(exact))
 
 
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-4])
+@pytest.mark.parametrize(("stiffness", "end"), [(1.0, 2.5), (100.0, 20.4)])
+def test_bifurcations_into_waves_shorter_than_the_first_elements_are_found(stiffness, end, accuracy):
+    """N_m = EI (m pi / L)^2 + k (L / m pi)^2, inextensible: paths on both meshes were straight, and stable, beyond."""
+    length, height = 10.0, 1e-3
+    material = bf.Material(12.0 / height**3, 0.3, 1.0)
+    beam = bf.Beam(bf.Line((0, 0), (length, 0)), section=bf.Rectangle(1.0, height), material=material)
+    parts = [bf.Pin(beam.start), bf.Roller(beam.end), bf.Foundation(beam, (0.0, stiffness))]
+    column = bf.Model([beam], parts, [bf.PointForce(beam.end, (-1.0, 0.0))])
+    waves = (np.arange(1, 20) * np.pi / length) ** 2
+    exact = sorted(load for load in waves + stiffness / waves if load < end)
+    found = critical_loads(bf.trace_equilibrium(column, end, accuracy=accuracy))
+    assert found == pytest.approx(exact, abs=accuracy * exact[-1])
+
+
 def test_a_branch_starts_at_a_bifurcation_of_a_model_without_elements():
     """Tip of the elastica: 2 sin(a / 2) sqrt(EI / P), P = K(sin^2(a / 2))^2 EI / L^2; strains of 4e-5 are left out."""
     column = next(columns())

@@ -32,6 +32,7 @@ from beamfem.solve.continuation.bifurcations import bifurcations
 from beamfem.solve.continuation.continuation import Continuation
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 from beamfem.solve.newton.newton import Newton
+from beamfem.solve.stability.linearised import critical_growth
 
 _MOST_ROWS = 24  # of a path whose errors are estimated
 _WIDER = 3  # rows on each side of a critical point, at the most, between which it is looked for on finer elements
@@ -87,7 +88,8 @@ def _critical_error(finer: "_FinerPath", rows: dict[int, tuple[PathState, Soluti
 
     rows: some of the path by their numbers, and the same on finer elements; where another number of modes has lost its
     stiffness on these, and no critical point is beside, one is missing. One that only an end of the path parts from it
-    is off by about twice the way to there. Raises SegmentLostError if one is not found on finer elements.
+    is off by about twice the way to there. Raises SegmentLostError if one is not found on finer elements, or if by
+    linear analysis they more than halve the way from the last stable state to the next one, as even finer ones may.
     """
     path, points = finer.path, finer.points
     largest, errors, modes = max((abs(point.at) for point in points), default=0.0), list[float](), list[Any]()
@@ -101,14 +103,22 @@ def _critical_error(finer: "_FinerPath", rows: dict[int, tuple[PathState, Soluti
             continue
         errors.append(abs(other.state.at - point.at))
         modes.append((errors[-1], (point, finer.own_mode(point), *other)))
+    stable: tuple[State, State] | None = None
     for row, (state, same) in rows.items():
-        missing = abs(_softened(finer.line, same[0]) - _softened(finer.own_line, state))
+        softened = _softened(finer.line, same[0]), _softened(finer.own_line, state)
+        if softened == (0, 0) and path.at[row] > path.at[row - 1]:
+            stable = state, same[0]
+        missing = abs(softened[0] - softened[1])
         if missing and not {row - 1, row} & set(finer.places):
             found = [other.state.at for kind in finer.between(row - 1, row) for other in kind]
             if len(found) != missing:
                 raise SegmentLostError("another number of modes has lost its stiffness")
             errors += [2.0 * abs(float(path.at[row]) - at) for at in found]
             largest = max(largest, *map(abs, found))
+    if stable is not None:
+        own, ahead = (critical_growth(system_of(row.model, static=True), row.p, row.at) for row in stable)
+        if own > 2.0 * ahead:
+            raise SegmentLostError("a mode that coarse elements stiffen may have lost its stiffness")
     if not errors:
         return 0.0, None
     of_modes = np.array([error for error, _ in modes]) / (largest or 1.0)

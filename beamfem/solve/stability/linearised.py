@@ -10,7 +10,7 @@ from beamfem.equations.differences import differentiated
 from beamfem.equations.equations import STATICS, linearise_at_rest, load_change, predicted_stresses, residual_at_rest
 from beamfem.equations.stress_resultants import resultants, strain_group
 from beamfem.equations.system import System
-from beamfem.errors import InputError
+from beamfem.errors import ConvergenceError, InputError
 from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS
 from beamfem.linalg.eigenpairs import dominant_pairs, first_vector
 from beamfem.linalg.lapack import eigh, qr
@@ -226,9 +226,7 @@ def linear_reach(system: System, linear: LinearSolution, linearised: np.ndarray)
     Raises InputError if strains are too large before any of them. The path is then straight, so that linear analysis is
     right; otherwise only the path itself shows what is critical.
     """
-    with np.errstate(divide="ignore"):
-        moved = float(_MOVEMENT / np.float64(largest_movement(system, linear.slope)))
-        strained = float(_STRAIN / np.float64(linear.strain))
+    moved, strained = _reaches(system, linear)
     if strained < moved and not len(linearised):
         raise InputError(
             "no positive load factor is critical as the loading path starts: the loads stiffen the model. If they "
@@ -241,6 +239,28 @@ def linear_reach(system: System, linear: LinearSolution, linearised: np.ndarray)
             "points on the path itself, whatever its strains"
         )
     return min(float(linearised[-1]) if len(linearised) else np.inf, moved)
+
+
+def _reaches(system: System, linear: LinearSolution) -> tuple[float, float]:
+    """Return by how much loads may grow until displacements, and strains, are too large for linear analysis."""
+    with np.errstate(divide="ignore"):
+        moved = _MOVEMENT / np.float64(largest_movement(system, linear.slope))
+        return float(moved), float(_STRAIN / np.float64(linear.strain))
+
+
+def critical_growth(system: System, p: np.ndarray, load_factor: float) -> float:
+    """Return by how much loads may grow from a stable state p (n,) until linear analysis finds them critical.
+
+    Infinite if none is found as far as linear analysis counts, or if loads are not conservative.
+    """
+    linear = linear_solution(system, p, load_factor)
+    if linear is None:
+        return np.inf
+    try:
+        growth = linearised_loads(system, p, load_factor, linear, 1) - load_factor
+    except (InputError, ConvergenceError):
+        return np.inf
+    return float(min(growth[growth < min(_reaches(system, linear))], default=np.inf))
 
 
 def _effect(system: System, linear: LinearSolution) -> float:

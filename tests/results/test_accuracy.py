@@ -477,6 +477,23 @@ def test_rows_without_the_largest_strain_energy_are_as_accurate_as_asked_for():
     np.testing.assert_allclose(found, moved(8, bf.CRBF(8)), atol=1e-4)
 
 
+@pytest.mark.parametrize(("layers", "accuracy"), [(20.0, 1e-2), (40.0, 1e-2), (40.0, 1e-3)])
+def test_bars_turn_about_short_strips_that_bend_in_a_layer_as_accurately_as_asked_for(layers, accuracy):
+    """A strip under a tension N bends within sqrt(EI / N) by a moment 2 sqrt(EI N) sin(angle / 2), and turns a bar.
+
+    Its axis is short, so that even a poor one is off by little: the end of the bar was off by 1.6 times the accuracy.
+    """
+    strip, bar = (
+        bf.Beam(bf.Line((a, 0), (b, 0)), section=bf.Rectangle(0.02, height), material=STEEL)
+        for a, b, height in ((0.0, 0.01, 1e-5), (0.01, 1.0, 0.02))
+    )
+    bending, layer = STEEL.youngs_modulus * strip.section.second_moment, 0.01 / layers
+    loads = [bf.PointForce(strip.end, (bending / layer**2, 0.0)), bf.PointMoment(bar.end, 0.5 * bending / layer)]
+    model = bf.Model([strip, bar], [bf.Clamp(strip.start)], loads, [bf.Rigid(strip.end, bar.start)])
+    solution = bf.solve_static(model, accuracy=accuracy)
+    assert solution.rotation(bar.end)[-1] == pytest.approx(2.0 * np.arcsin(0.25), abs=accuracy)
+
+
 @pytest.mark.parametrize(("length", "stiffness", "force"), [(10.0, 1e9, 3e5), (100.0, 1e5, 3e3), (100.0, 1e7, 1e5)])
 def test_layers_much_thinner_than_elements_are_found(length, stiffness, force):
     """Halved elements show but a quarter of the error there: deflections of 5e-4 of the length were off by 4e-4."""

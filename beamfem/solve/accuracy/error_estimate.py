@@ -512,6 +512,7 @@ def shares_of_rows(
 
 
 _LOWEST = 3  # order of the axis whose coefficients tell its error
+_ROUND_OFF = 100.0 * np.finfo(float).eps  # coefficients [-] that are no more than this
 
 
 def errors_of_orders(solution: Solution) -> list[np.ndarray] | None:
@@ -519,8 +520,10 @@ def errors_of_orders(solution: Solution) -> list[np.ndarray] | None:
 
     They are relative to the size of the model, and those of the interpolation: the sizes of all Legendre coefficients
     a_n that an order lacks. Those of analytic functions fall as rho^-n, beside the largest of degree 2 or more; the
-    first that is not known follows from the last two, as symmetric functions have none of odd degree. None for elements
-    whose nodes do not tell it.
+    first that is not known follows from the last two, as symmetric functions have none of odd degree. Errors are at
+    least those of the angle between the ends of an element, by which a short one turns the model: it is stationary in
+    the energy, so that it is off by the square of the relative error of the slopes. None for elements whose nodes do
+    not tell it.
     """
     extent, result = system_of(solution.model, static=True).extent, []
     for mesh in solution.model.meshes:
@@ -532,8 +535,12 @@ def errors_of_orders(solution: Solution) -> list[np.ndarray] | None:
         sizes = np.linalg.norm(coefficients, axis=-1)[..., 2:] / extent
         bent = np.maximum(sizes.max(axis=-1, keepdims=True), np.finfo(float).tiny)
         beyond = bent * (sizes[..., -2:] / bent) ** ((order + 1) / np.array([order - 1, order]))
-        lacking = np.concatenate([sizes, beyond.max(axis=-1, keepdims=True)], axis=-1)
-        result.append(np.cumsum(lacking[..., ::-1], axis=-1)[..., ::-1])
+        first = beyond.max(axis=-1, keepdims=True)
+        errors = np.cumsum(np.concatenate([sizes, first], axis=-1)[..., ::-1], axis=-1)[..., ::-1]
+        # twice the degree over the length is the slope of a polynomial of Legendre beside its size
+        turn = np.maximum((np.arange(2, order + 1) * sizes).max(axis=-1, keepdims=True), np.finfo(float).tiny)
+        slope = np.where(first > _ROUND_OFF, (order + 1) * first, 0.0)
+        result.append(np.maximum(errors, 2.0 * extent / mesh.lengths[:, None] * slope**2 / turn))
     return result
 
 

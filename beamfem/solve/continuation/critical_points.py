@@ -73,7 +73,11 @@ class Segment:
 
         It is interpolated if more than the load factor is critical, so that no equilibrium can be solved for.
         """
-        return self.found[x].y if x in self.found else self.interpolated(x)[0]
+        if x in self.found:
+            return self.found[x].y
+        y, system = self.interpolated(x)[0], self.line.system
+        y[system.prescribed_dofs] = system.prescribed_values(float(y[-1]))  # weights add up to one but for round-off
+        return y
 
     def interpolated(self, x: float) -> tuple[np.ndarray, np.ndarray]:
         """Return y (n + 1,) and the tangent (n + 1,) at a fraction from those beside it. Raises SegmentLostError."""

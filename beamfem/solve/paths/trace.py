@@ -509,8 +509,9 @@ def _step(
 
 def _landing(line: Continuation, step: Step, load_factor: float) -> PathPoint | None:
     """Return the first point of a step with the load factor, None if the step does not reach it."""
-    fractions = [0.0, *(x for x in step.limits if x in step.segment.found), 1.0]
-    stops = [step.segment.at(x) for x in fractions]
+    found = step.segment.found
+    # close to limit points there are others, if they are interpolated themselves
+    stops = [found[x] for x in (sorted(found) if step.limits else (0.0, 1.0))]
     for before, after in pairwise(stops):
         low, high = before.load_factor - load_factor, after.load_factor - load_factor
         if high == 0.0:

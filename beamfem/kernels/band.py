@@ -16,7 +16,8 @@ from beamfem.kernels.compiling import FAST, Routine, inlined, routine
 from beamfem.kernels.elimination import elimination
 from beamfem.kernels.pointers import at, room
 
-KNOWN = (5, 7, 8, 9, 11, 14)  # chains of bilinear, quadratic and cubic elements, and of orders 3 and 4 with rotations
+# chains of bilinear, quadratic and cubic elements, and of orders 3 and 4 with rotations; with hinges in them, one more
+KNOWN = (5, 6, 7, 8, 9, 11, 12, 14, 15)
 
 
 class Band(NamedTuple):

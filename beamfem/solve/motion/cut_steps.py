@@ -139,7 +139,8 @@ class StepCutter:
                         self.why += f", also with steps of {part.step:.3g} {second} from {at:.6g} {second} on"
                         self.why += advice(self.system.model, rows.states[good, 0])
                         return done
-                    size = self._next_size(size, count, clock.perf_counter() - started, window)
+                    if level == 0:
+                        size = self._next_size(size, count, clock.perf_counter() - started, window)
                 self.memory = motion.memory(state)
             if window is not None:
                 good = self._redo(window, part, state, rotations, level, jumps)
@@ -229,8 +230,6 @@ class StepCutter:
         state[:], rotations[:] = window.begin, window.rows.rotations[0]
         self.change_size(part, state)
         self._put_onto_conditions(shorter, state)
-        if jumps:
-            state[2] = state[3] = initial_acceleration(self.system, state, part.loads_from)
         rows, given = Rows.empty(PARTS * count, state, rotations), self.prescribed(shorter, part.step)
         done = self.take(shorter, given, state, rotations, rows, level=level + 1, jumps=jumps)
         good, complete = done // PARTS, done == PARTS * count

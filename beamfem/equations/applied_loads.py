@@ -59,21 +59,6 @@ class LoadsAt:
         return any(bool(array.any()) for array in self.arrays)
 
 
-def even_loads(model: Model, factors: np.ndarray) -> np.ndarray:
-    """Return acceleration [m/s^2] and load per length [N/m] of each beam (..., beams, 4) by loads that are even.
-
-    factors (..., k): of `model.acting`.
-    """
-    result = np.zeros((*factors.shape[:-1], len(model.beams), 4))
-    for number, load in enumerate(model.acting):
-        if load.even:
-            ((name, vectors),) = load.acting(_START).items()
-            beams = model.number_of(load.place) if isinstance(load.place, Beam) else 0
-            rows = slice(beams, beams + 1 if isinstance(load.place, Beam) else None)
-            result[..., rows, _COLUMNS[name]] += factors[..., number, None, None] * vectors[0]
-    return result
-
-
 _START, _COLUMNS = np.zeros(1), {"acceleration": slice(2), "line_force": slice(2, 4)}
 
 
@@ -195,13 +180,44 @@ class Loads:
     def of(self, time: float, factors: np.ndarray) -> LoadsAt:
         """Return the loads at a time with given factors (k,) of `model.acting`."""
         points = tuple(actions.values(time, factors) for actions in self.actions)
-        return LoadsAt(even_loads(self.model, factors), points, factors[self.imposes])
+        return LoadsAt(self.even(factors), points, factors[self.imposes])
 
     def of_rows(self, times: Sequence[float] | np.ndarray) -> LoadsAt:
         """Return the loads at times, which are the first axis of its arrays."""
         factors = np.array([self.factors(time) for time in times]).reshape(len(times), -1)
         points = tuple(actions.values(times, factors) for actions in self.actions)
-        return LoadsAt(even_loads(self.model, factors), points, factors[:, self.imposes])
+        return LoadsAt(self.even(factors), points, factors[:, self.imposes])
+
+    def even(self, factors: np.ndarray) -> np.ndarray:
+        """Return acceleration [m/s^2] and load per length [N/m] of each beam (..., beams, 4) by loads that are even.
+
+        factors (..., k): of `model.acting`.
+        """
+        result = np.zeros((*factors.shape[:-1], len(self.model.beams), 4))
+        for number, beams, columns, vector in self._even:
+            result[..., beams, columns] += factors[..., number, None, None] * vector
+        return result
+
+    @cached_property
+    def _even(self) -> list[tuple[int, slice, slice, np.ndarray]]:
+        """Number in `model.acting` of each load that is even, its beams, columns of `LoadsAt.body`, and vector (2,)."""
+        found = []
+        for number, load in enumerate(self.model.acting):
+            if load.even:
+                ((name, vectors),) = load.acting(_START).items()
+                beams = slice(None)
+                if isinstance(load.place, Beam):
+                    own = self.model.number_of(load.place)
+                    beams = slice(own, own + 1)
+                found.append((number, beams, _COLUMNS[name], vectors[0]))
+        return found
+
+    @cached_property
+    def turning(self) -> list[tuple[int, Point, float]]:
+        """Number in `model.acting` of each load that is a moment, its point, and the moment [N m]."""
+        at_points = [(n, each.place, each) for n, each in enumerate(self.model.acting) if isinstance(each.place, Point)]
+        moments = [(number, place, float(each.acting(_START)["moment"][0, 0])) for number, place, each in at_points]
+        return [found for found in moments if found[2]]
 
     @cached_property
     def imposes(self) -> np.ndarray:

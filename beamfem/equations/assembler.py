@@ -195,7 +195,14 @@ class Assembler:
     def balance(
         self, p: np.ndarray, v: np.ndarray, a: np.ndarray, residual: np.ndarray, matrix: np.ndarray, predicted: bool
     ) -> None:
-        """Assemble the residual (n,) and, unless it is empty, the flat matrix.
+        """Assemble the residual (n,) and, unless it is empty, the flat matrix, see `prepare`."""
+        self.prepare(p, v, a, residual, matrix, predicted)
+        self.evaluate()
+
+    def prepare(
+        self, p: np.ndarray, v: np.ndarray, a: np.ndarray, residual: np.ndarray, matrix: np.ndarray, predicted: bool
+    ) -> None:
+        """Set the arrays whose numbers each `evaluate` takes and fills.
 
         predicted: whether the geometric part of the tangent uses `stresses`.
         """
@@ -203,6 +210,9 @@ class Assembler:
         self.place(p, v, a, residual, matrix)
         self.record.tangent = matrix.size > 0
         self.record.predicted = predicted and matrix.size > 0
+
+    def evaluate(self) -> None:
+        """Assemble the residual and the matrix of the state that the arrays of `prepare` have now."""
         self.call(model_passes.balance.compiled, self.record.address)
 
     def predict(self, p: np.ndarray, step: np.ndarray, v: np.ndarray | None = None) -> None:

@@ -142,8 +142,11 @@ class Connectors:
 
     def energies(self, motion: Motion, times: np.ndarray) -> np.ndarray:
         """Return the total kinetic and potential energy (rows, 2) [J] in motions p, p', p'' (rows, n) at times."""
-        gravity = np.array([self.gravity(time) for time in times.tolist() if self.items]).reshape(-1, 2)
-        return sum((item.energies(motion, times, gravity) for item in self.items), np.zeros((len(times), 2)))
+        result = np.zeros((len(times), 2))
+        if not self.items:
+            return result
+        gravity = np.array([self.gravity(time) for time in times.tolist()]).reshape(-1, 2)
+        return sum((item.energies(motion, times, gravity) for item in self.items), result)
 
     def momenta(self, motion: Motion, time: float) -> np.ndarray:
         """Return the linear momentum [kg m/s] and the angular momentum about the origin [kg m^2/s] (3,)."""

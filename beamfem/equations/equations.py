@@ -1,5 +1,6 @@
 """Residual and tangent of a system in a state: the interface between solvers and kernels."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +25,7 @@ _KEPT = 200_000  # floats of the largest workspace whose allocation is a noticea
 
 
 Weights = tuple[float, float, float]  # ck, cv, ca: of p, p' and p''
+Rates = tuple[np.ndarray, np.ndarray]  # p' and p'' (n,)
 Stresses = tuple[np.ndarray, ...]  # resultants (ne, nq, ns) of each block
 
 
@@ -118,16 +120,35 @@ def imposed_forces(system: System, time: float) -> np.ndarray:
     return residual_under(system, system.reference, time, np.where(loads.imposes, loads.factors(time), 0.0))
 
 
+def residuals(system: System, p: np.ndarray, rates: Sequence[Rates], time: float) -> np.ndarray:
+    """Return the residuals (k, n) of a state p (n,) with pairs p' and p'' of rates (k), see `residual`."""
+    if system.model.frame is None and not len(system.connectors.one_sided):
+        return _residuals(system, p, rates, time)
+    return np.array([residual(system, p, *pair, time) for pair in rates])
+
+
+def _residuals(
+    system: System, p: np.ndarray, rates: Sequence[Rates], time: float, dt: float = 0.0, loads: LoadsAt | None = None
+) -> np.ndarray:
+    """Return the residuals (k, n) in a frame at rest, see `residuals`."""
+    result, assembler, loads = np.empty((len(rates), len(p))), _acquired(system), loads or system.loads.at(time)
+    assembler.take(loads, time)
+    assembler.weigh((1.0, 1.0, 1.0), dt)
+    place, v, a, forces = np.empty((4, len(p)))
+    place[:] = p
+    assembler.prepare(place, v, a, forces, _EMPTY, False)
+    for row, (v[:], a[:]) in zip(result, rates, strict=True):
+        assembler.evaluate()
+        row[:] = forces
+    _return_assembler(system, assembler)
+    return result
+
+
 def _residual(
     system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float, dt: float, loads: LoadsAt | None = None
 ) -> np.ndarray:
-    """Return the residual (n,) of a motion at rest, see `residual`."""
-    result, assembler, loads = np.empty(len(p)), _acquired(system), loads or system.loads.at(time)
-    assembler.take(loads, time)
-    assembler.weigh((1.0, 1.0, 1.0), dt)
-    assembler.balance(_plain(p), _plain(v), _plain(a), result, _EMPTY, False)
-    _return_assembler(system, assembler)
-    return result
+    """Return the residual (n,) in a frame at rest, see `residual`."""
+    return _residuals(system, p, [(v, a)], time, dt, loads)[0]
 
 
 def energies_of_beams(

@@ -6,13 +6,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beamfem.cached_properties import cached_property
-from beamfem.equations.applied_loads import even_loads
 from beamfem.equations.connectors import Connectors
 from beamfem.equations.equations import energies_of_beams, residual
 from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError
-from beamfem.model.beam import Beam, Point
+from beamfem.model.beam import Beam
 from beamfem.parts.at_points import ANALYTIC
 from beamfem.physics.stations import STATIONS
 from beamfem.reprs import brief
@@ -183,14 +182,14 @@ def _of_loads(solution: Solution, moments: np.ndarray, places: list[np.ndarray])
     moments (steps, beams, 4): of mass and length of the beams; places: of stations, see `_of_beams`.
     """
     system, times = loading(solution)
-    model, result = solution.model, np.zeros(len(solution))
-    if not system.loads.conserves.any() and not model.line_supports:
+    loads, result = system.loads, np.zeros(len(solution))
+    if not loads.conserves.any() and not solution.model.line_supports:
         return result
-    rows = times if system.static or system.loads.varying else times[:1]  # one row stands for all of them
-    factors = np.array([np.where(system.loads.conserves, system.loads.factors(at), 0.0) for at in rows.tolist()])
+    rows = times if system.static or loads.varying else times[:1]  # one row stands for all of them
+    factors = np.array([np.where(loads.conserves, loads.factors(at), 0.0) for at in rows.tolist()])
     factors = factors.reshape(len(rows), -1)
-    result -= (even_loads(model, factors) * moments).sum(axis=(1, 2))
-    for r, start, actions in zip(places, system.table(_in_reference)[1], system.loads.actions, strict=True):
+    result -= (loads.even(factors) * moments).sum(axis=(1, 2))
+    for r, start, actions in zip(places, system.table(_in_reference)[1], loads.actions, strict=True):
         at = actions.stations
         if actions.unit[:, :2].any():
             own = np.append(factors, np.zeros((len(rows), 1)), axis=1)[:, actions.source]
@@ -200,9 +199,9 @@ def _of_loads(solution: Solution, moments: np.ndarray, places: list[np.ndarray])
                 some = at.kind == kind
                 data = np.hstack([np.zeros((some.sum(), 3)), at.constants[some]])
                 result += energy([tuple(r[:, some].T)], data.T[:, :, None], (), ANALYTIC).sum(axis=0)
-    for load, own in zip(model.acting, factors.T, strict=True):
-        if isinstance(load.place, Point) and (moment := load.acting(np.zeros(1))["moment"][0, 0]) and own.any():
-            result -= own * moment * solution.rotation(load.place)
+    for number, point, moment in loads.turning:
+        if factors[:, number].any():
+            result -= factors[:, number] * moment * solution.rotation(point)
     return result
 
 

@@ -194,7 +194,8 @@ def energy_warnings(solution: "Solution") -> tuple[str, ...]:
     if moved and len(solution) != solution.statistics.steps + 1:
         return ()
     judged, unit = balance(_some_rows(solution)), solution.model.unit
-    compared = f"compared with {judged.exchanged:.3g} {unit('J')} exchanged at most"
+    exchanged = judged.exchanged
+    compared = f"compared with {exchanged:.3g} {unit('J')} exchanged at most"
     cases = (
         (judged.rise, _MUCH, "rises", "more than the work that is done on it" if judged.driven else "",
          "the time steps do not resolve its high-frequency vibration"),
@@ -202,7 +203,7 @@ def energy_warnings(solution: "Solution") -> tuple[str, ...]:
          "the numerical damping of the time steps removes it"),
     )  # fmt: skip
     for change, share, verb, explained, why in cases:
-        beyond = change - share * judged.exchanged - judged.doubt - judged.unsure
+        beyond = change - share * exchanged - judged.doubt - judged.unsure
         row = int(np.argmax(np.where(np.isfinite(beyond), beyond, -np.inf)))
         if beyond[row] > 0.0:
             explained = explained or "although no work is done on the motion"
@@ -280,8 +281,11 @@ def _inaccuracy(system: System, p: np.ndarray, strain: np.ndarray, accuracy: flo
 
     The energy u of such differences alone changes U by 2 sqrt(U u) + u (Cauchy and Schwarz).
     """
-    reach, turn = sizes(system, np.abs(p).max(axis=0))
-    relative = ROUND_OFF + accuracy
-    forces = relative * (reach * system.residual_errors[0] + turn * system.residual_errors[1])
-    least = 0.5 * relative * float(forces @ np.where(system.positions, reach, turn))
-    return float(2.0 * np.sqrt(np.abs(strain).max() * least) + least)
+    size = np.array(sizes(system, np.abs(p).max(axis=0)))
+    least = 0.5 * (ROUND_OFF + accuracy) ** 2 * float(size @ system.table(_stiffnesses) @ size)
+    return 2.0 * sqrt(float(np.abs(strain).max()) * least) + least
+
+
+def _stiffnesses(system: System) -> np.ndarray:
+    """Return the sums (2, 2) of errors of forces per unit errors, in positions and in directions, over both kinds."""
+    return system.residual_errors @ np.column_stack([system.positions, ~system.positions])

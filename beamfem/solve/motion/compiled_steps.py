@@ -37,10 +37,8 @@ class StepsInCalls:
 
     def _fill(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> None:
         """Hand a state, what is prescribed and the loads at times, and where rows are saved to compiled code."""
-        loads, assembler = (
-            self._system.loads.of_rows(times if self._system.loads.varying else times[:1]),
-            self._space.assembler,
-        )
+        every, assembler = self._system.loads, self._space.assembler
+        loads = every.of_rows(times) if every.varying else every.at(float(times[0]))
         assembler.load(loads.body, loads.points, loads.imposing)
         assembler.place(state[0], state[1], state[2], self._space.residual, self._space.solver.rows)
         self._space.solver.fill(
@@ -48,8 +46,8 @@ class StepsInCalls:
             steps=len(prescribed),
             times=np.ascontiguousarray(times),
             prescribed_values=prescribed,
-            varies=len(loads.body) > 1,
-            body_size=loads.body[0].size,
+            varies=every.varying and len(times) > 1,
+            body_size=4 * len(self._system.model.beams),
             bodies=loads.body,
             first_step=saving.first,
             every=saving.every,

@@ -3,13 +3,14 @@
 from collections.abc import Mapping
 from functools import lru_cache
 from itertools import pairwise
+from math import inf, isfinite
 
 import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.equations.system import System
 from beamfem.results.energies import Energy
-from beamfem.results.energy_balance import Balance, balance, driven, masses
+from beamfem.results.energy_balance import balance, driven, masses
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics
 
@@ -47,7 +48,7 @@ class EnergyJudge:
         self._share = _SHARE_MOVED if moved else share
         self._speed = self._speed_evaluated = 0.0
         self._drift = self._total = 0.0
-        self._parts = np.empty((3, 0))  # extreme kinetic, strain and potential energies so far
+        self._parts = list[tuple[float, float]]()  # extreme kinetic, strain and potential energies so far
 
     @property
     def refuses_jumps(self) -> bool:
@@ -57,7 +58,7 @@ class EnergyJudge:
     def memory(self) -> dict[str, np.ndarray]:
         """Return what `recall` needs to go on with the judgement of the same motion."""
         numbers = [self._speed, self._speed_evaluated, self._drift, self._total]
-        result = {"numbers": np.array(numbers), "parts": self._parts}
+        result = {"numbers": np.array(numbers), "parts": np.array(self._parts).reshape(3, -1)}
         for name, (times, states) in (("first", self._first), ("fastest", self._fastest)):
             result[f"{name}_time"], result[name] = times, states[0].copy()
         return result
@@ -65,7 +66,7 @@ class EnergyJudge:
     def recall(self, memory: Mapping[str, np.ndarray]) -> None:
         """Go on with what was kept."""
         self._speed, self._speed_evaluated, self._drift, self._total = memory["numbers"].tolist()
-        self._parts = memory["parts"]
+        self._parts = [(low, high) for low, high in memory["parts"].tolist()] if memory["parts"].size else []
         self._first, self._fastest = (
             (memory[f"{name}_time"], memory[name][None].copy()) for name in ("first", "fastest")
         )
@@ -85,17 +86,21 @@ class EnergyJudge:
         bounds = np.append(np.arange(0, steps, CHUNK), steps)
         ends = bounds[1:]
         speeds = np.square(states[ends, 1]) @ self._masses
-        fastest = np.maximum.accumulate(np.append(self._speed, speeds))
         doubtful = np.full(len(ends), cut)
         doubtful[-2:] |= failed
-        doubted = self._parts.size > 0
+        doubted = len(self._parts) > 0
         if steps < _DIFFERENCES:
             doubtful |= doubted
         elif not cut:
             rows = np.maximum(ends, _DIFFERENCES)
             v = [states[3 - n : steps + 1 - n, 1] if doubted else states[rows - n, 1] for n in range(4)]
-            change = np.square(v[0] - 3.0 * (v[1] - v[2]) - v[3]) @ self._masses
+            change = v[2] - v[1]  # one array, as many of them would not fit into the cache
+            change *= 3.0
+            change += v[0]
+            change -= v[3]
+            change = np.square(change, out=change) @ self._masses
             change = np.maximum.reduceat(change, np.maximum(bounds[:-1] - 2, 0)) if doubted else change
+            fastest = np.maximum.accumulate(np.append(self._speed, speeds))
             grown = (speeds > _GROWN * fastest[:-1]) & (fastest[:-1] > 0.0) & (change > _SMOOTH * speeds)
             doubtful |= ~(change <= _UNRESOLVED * fastest[1:]) | grown
         good = steps
@@ -112,38 +117,54 @@ class EnergyJudge:
         self, times: np.ndarray, states: np.ndarray, chunks: list[tuple[int, int]], cut: bool, final: bool
     ) -> int:
         """Return where the first chunk of steps begins that is refused, or the number of steps."""
-        self._evaluate_exchanged()
+        before = self._not_evaluated()
+        if not self.conservative:  # the work between rows is that of steps
+            for time, state in before:
+                self._exchange(self._solution(time, state).energy(), 1)
+            before = []
         for group in [chunks] if self.conservative else _adjacent(chunks):
             rows = sorted({row for first, last in group for row in range(first, last + 1)})
-            some = self._solution(times[rows], states[rows])
-            found = balance(some, _ACCURACY)
-            place = {row: i for i, row in enumerate(rows)}
+            which = slice(rows[0], rows[-1] + 1) if rows[-1] - rows[0] < len(rows) else rows
+            at, some = map(np.concatenate, zip(*before, (times[which], states[which]), strict=True))
+            found = balance(self._solution(at, some), _ACCURACY)
+            self._exchange(found.energy, len(before))
+            energies = found.energy.kinetic, found.energy.strain, found.energy.potential
+            table = np.array([*energies, found.rise, found.loss, found.time, found.doubt, found.unsure])
+            place = {row: number for number, row in enumerate(rows, len(before))}
             for first, last in group:
-                if not self._passes(found, place[first], place[last], final):
+                if not self._passes(table[:, place[first] : place[last] + 1].tolist(), float(table[-1, 0]), final):
                     return first
         return len(times) - 1
 
-    def _passes(self, found: Balance, first: int, last: int, final: bool) -> bool:
-        """Judge the chunk of steps between two rows of a balance, and take it into account if it is good."""
-        energy, rows = found.energy, slice(first, last + 1)
-        parts = _extremes(self._parts, energy.kinetic[rows], energy.strain[rows], energy.potential[rows])
-        exchanged = max(float((parts[:, 1] - parts[:, 0]).max()), float(parts[0, 1]))
+    def _passes(self, chunk: list[list[float]], unsure: float, final: bool) -> bool:
+        """Judge a chunk of steps by the rows of its balance, and take it into account if it is good.
+
+        chunk: kinetic, strain and potential energies, rises, losses, times, doubts and uncertainties of its rows; these
+        are few numbers, for which arrays would take longer; unsure: uncertainty of the first row of all chunks.
+        """
+        kinetic, strain, potential, rise, loss, time, doubts, uncertain = chunk
+        if not all(map(isfinite, kinetic + strain + potential)):
+            return False
+        parts = [(min(low, *own), max(high, *own)) for (low, high), own in zip(self._parts, chunk[:3], strict=True)]
+        exchanged = max(parts[0][1], *(high - low for low, high in parts))
         if self.conservative and not self._damps:
-            self._drift = float(energy.total[first]) - self._total
-        rises, losses = found.rise[rows] - found.rise[first], found.loss[rows] - found.loss[first]
+            self._drift = kinetic[0] + strain[0] + potential[0] - self._total
+        rises, losses = [each - rise[0] for each in rise], [each - loss[0] for each in loss]
         share = self._share * exchanged
         left = max(share - abs(self._drift), 0.0)
-        spent = float(found.time[last] - found.time[first]) / self._duration
+        spent = (time[-1] - time[0]) / self._duration
         allowed = max(0.5 * left, spent * share, (2.0 * share - abs(self._drift)) if final else 0.0)
-        doubt = float(found.doubt[last] - found.doubt[first])
+        doubt = doubts[-1] - doubts[0]
         doubt = doubt if final else min(doubt, _MOST_DOUBT * exchanged)
-        doubt += float(found.unsure[last] - found.unsure[first] + found.unsure[0])
+        doubt += uncertain[-1] - uncertain[0] + unsure
         if self._damps:
-            stored = float(energy.kinetic[first] + energy.strain[first])
-            losses = losses - (1.0 - self._radius ** (2.0 * np.arange(last - first + 1))) * stored
-        change = float(rises[-1]) if rises[-1] > 0.0 else -float(np.fmax(losses[-1], 0.0))
+            stored = kinetic[0] + strain[0]
+            losses = [each - (1.0 - self._radius ** (2.0 * step)) * stored for step, each in enumerate(losses)]
+        change = rises[-1] if rises[-1] > 0.0 else -max(0.0, losses[-1])
         bound = max(1.5 * share, abs(self._drift) + 0.25 * share) + doubt
-        within = float(max(np.fmax.reduce(rises) + self._drift, np.fmax.reduce(losses) - self._drift)) <= bound
+        # nan, where a loss is not known, is none
+        highest, lowest = (max((each for each in values if each == each), default=-inf) for values in (rises, losses))
+        within = max(highest + self._drift, lowest - self._drift) <= bound
         if not within or (abs(change) > allowed + doubt and abs(self._drift + change) > abs(self._drift)):
             return False
         self._drift += change
@@ -152,31 +173,25 @@ class EnergyJudge:
         self._parts = parts
         return True
 
-    def _evaluate_exchanged(self) -> None:
-        """Take the energies of the first and of the fastest state so far into account."""
-        if self._parts.size and self._speed <= _FASTER * self._speed_evaluated:
-            return
-        if not self._parts.size:
-            self._total = float(self._exchange(*self._first).total[0])
-        if self._fastest is not self._first:
-            self._exchange(*self._fastest)
+    def _not_evaluated(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Return times and states of the first and of the fastest state so far, unless their energies are known."""
+        first, fastest = [] if self._parts else [self._first], [self._fastest]
+        if not first and self._speed <= _FASTER * self._speed_evaluated:
+            return []
         self._speed_evaluated = self._speed
+        return first + (fastest if self._fastest is not self._first else [])
 
-    def _exchange(self, times: np.ndarray, states: np.ndarray) -> Energy:
-        """Return the energies of a state (1, 3, n), taken into account."""
-        energy = self._solution(times, states).energy()
-        self._parts = _extremes(self._parts, energy.kinetic, energy.strain, energy.potential)
-        return energy
+    def _exchange(self, energy: Energy, count: int) -> None:
+        """Take the energies of the first `count` states into account, of which the first may be that of the motion."""
+        if count and not self._parts:
+            self._total, self._parts = float(energy.total[0]), [(inf, -inf)] * 3
+        values = [own[:count].tolist() for own in (energy.kinetic, energy.strain, energy.potential)]
+        known = zip(self._parts, values, strict=True)
+        self._parts = [(min(low, *own), max(high, *own)) if own else (low, high) for (low, high), own in known]
 
     def _solution(self, times: np.ndarray, states: np.ndarray) -> Solution:
         p, v, a = states.swapaxes(0, 1)
         return Solution(self._system.model, False, times, p, v, a, Statistics(0, 0, 0, ""))
-
-
-def _extremes(known: np.ndarray, *parts: np.ndarray) -> np.ndarray:
-    """Return the smallest and largest values (parts, 2) of known ones (parts, k) and others."""
-    values = np.concatenate([known, parts], axis=1)
-    return np.array([values.min(axis=1), values.max(axis=1)]).T
 
 
 def _adjacent(chunks: list[tuple[int, int]]) -> list[list[tuple[int, int]]]:

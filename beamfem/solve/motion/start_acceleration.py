@@ -4,7 +4,7 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from beamfem.equations.bound_connector import Motion
-from beamfem.equations.equations import INERTIA, linearise, residual
+from beamfem.equations.equations import INERTIA, linearise, residual, residuals
 from beamfem.equations.system import System
 from beamfem.equations.viscosity import viscous_tangent
 from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
@@ -49,11 +49,9 @@ def mean_acceleration(system: System, state: np.ndarray, time: float, step: floa
     free, zeros = system.free_dofs, np.zeros(len(start))
     if len(system.connectors.multipliers):
         return start
-    slower, resting, faster = (residual(system, p, v + way * step * start, zeros, time) for way in (-1.0, 0.0, 1.0))
-    quadratic, inertia = (
-        (0.5 * (slower + faster) - resting)[free],
-        (residual(system, p, v, start, time) - resting)[free],
-    )
+    rates = (v - step * start, zeros), (v, zeros), (v + step * start, zeros), (v, start)
+    slower, resting, faster, accelerated = residuals(system, p, rates, time)[:, free]
+    quadratic, inertia = 0.5 * (slower + faster) - resting, accelerated - resting
     mass = linearise(system, p, v, zeros, time, INERTIA)[1]
     if quadratic @ mass.solve(quadratic, system.rotated) <= _NEGLIGIBLE**2 * (inertia @ start[free]):
         return start

@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import eigh
 
 import beamfem as bf
-from beamfem.equations.equations import INERTIA, STATICS, linearise, residual
+from beamfem.equations.equations import INERTIA, STATICS, linearise, residual, residuals
 from beamfem.equations.system import system_of
 from beamfem.linalg.tangent import UNROTATED
 
@@ -220,3 +220,15 @@ def test_bad_input_is_named():
     damped = model.with_(connectors=[bf.SpringDamper(rod.end, (1.0, 1.0), 0.0, 1.0)])
     with pytest.raises(bf.InputError, match="resists the rotation"):
         bf.solve_static(damped)
+
+
+@pytest.mark.parametrize("frame", [None, bf.RotatingFrame(40.0, about=(0.1, 0.1))], ids=["at rest", "rotating"])
+def test_residuals_of_several_rates_are_those_of_each(frame):
+    arm, random = beam_of((0.2, 0), (0.2, 0.6)), np.random.default_rng(1)
+    loads = [bf.Gravity((0.0, -9.81)), bf.PointMoment(arm.end, 0.3)]
+    model = bf.Model([arm], [bf.Clamp(arm.start)], loads, masses=[bf.PointMass(arm.end, 0.2)], frame=frame)
+    system, rates = system_of(model, static=False), random.normal(size=(3, 2, model.size))
+    p = system.reference + 0.01 * random.normal(size=model.size)
+    found = residuals(system, p, rates, 0.1)
+    np.testing.assert_array_equal(found, [residual(system, p, *pair, 0.1) for pair in rates])
+    assert np.abs(found[0] - found[1]).max() > 1e-3

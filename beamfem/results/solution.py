@@ -422,9 +422,9 @@ class Solution:
     def history(self, connector: Contribution) -> dict[str, np.ndarray]:
         """Return the history variables of a connector in each row by name, those of a user-defined one by number.
 
-        Of friction, "slip" [m or rad] and "dissipated" [J]; of stops with a coefficient of restitution, the "deepest"
-        [m or rad] since they were hit, of `HingeStop` and `SliderStop` "low_deepest" and "high_deepest". Raises
-        InputError for a connector without history, or of another model.
+        Of friction, "slip" [m or rad], "dissipated" [J] and, if it varies, the "limit" [N] at which it slips; of stops
+        with a coefficient of restitution, the "deepest" [m or rad] since they were hit, of `HingeStop` and `SliderStop`
+        "low_deepest" and "high_deepest". Raises InputError for a connector without history, or of another model.
 
         Parameters
         ----------
@@ -441,7 +441,7 @@ class Solution:
         >>> table = bf.Stop(beam.end, (0.0, -0.01), (0, 1), stiffness=1e8, friction=0.3)
         >>> held = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0, -1e4))], connectors=[table])
         >>> sorted(bf.solve_static(held).history(table))
-        ['dissipated', 'slip']
+        ['dissipated', 'limit', 'slip']
         """
         from beamfem.results.reactions import history
 

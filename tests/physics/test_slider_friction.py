@@ -40,6 +40,18 @@ def test_a_sled_stops_where_friction_has_dissipated_its_energy():
     assert np.all(np.diff(energy.dissipated) >= 0.0)
 
 
+def test_losses_under_a_normal_force_that_swings_are_what_the_steps_take_from_the_other_energies():
+    """It swings by once the weight; the trapezoidal rule itself keeps the energy."""
+    model, bar = sled()
+    motion = bf.simulate(
+        model, 0.3, 2e-4, velocity=lambda place: (float(place[0] > 0.0), 0.0), integrator=bf.Trapezoidal()
+    )
+    normal = motion.multipliers(model.connectors[0])[:, 0]
+    assert np.ptp(normal) > MASS * GRAVITY
+    assert np.abs(motion.energy().error).max() < 1e-9 * 0.5 * MASS
+    assert np.all(np.diff(motion.energy().dissipated) >= 0.0)
+
+
 @pytest.mark.parametrize("slope", [0.0, 0.5])
 def test_the_work_of_a_slow_push_forth_and_back_is_lost(slope):
     """The push is m g (sin + friction cos) / (cos - friction sin), back with other signs; losses are friction |N|."""

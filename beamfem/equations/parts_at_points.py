@@ -25,6 +25,8 @@ from beamfem.parts.at_points import ANALYTIC
 from beamfem.physics.compiled_connections import in_python, passes_of, remembering
 from beamfem.physics.connections import COORDINATE_SPRING, Connection
 
+_IMAGINARY = 1e-30j  # step of complex differences, which are exact
+
 
 class Alike(NamedTuple):
     """Parts of one kind: numbers (n, u) of coordinates and unknowns, history (n, h), and data (n, k).
@@ -81,24 +83,31 @@ class Alike(NamedTuple):
         assert self.connection.potential is not None
         return np.asarray(self.connection.potential(points, self.data.T, (0.0, 0.0), ANALYTIC).sum(axis=-1))
 
-    def kinks(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    def kinks(self, q: np.ndarray, v: np.ndarray, history: np.ndarray, changed: np.ndarray) -> np.ndarray:
         """Return the numbers (rows, k) whose positive parts forces contain, for its coordinates and rates (rows, n, u).
 
-        Forces have kinks where these change their sign. Parts with history or multipliers are left out.
+        Forces have kinks where these change their sign, and those of a part that dissipates where its rate is 0, as it
+        sticks or turns back. history (rows, n, h): at the start of the step; changed (rows, n, h): whether it changes
+        in it.
         """
-        own, found = self.connection, [np.empty((len(q), 0))]
+        own, rows, found = self.connection, q.shape[:2], [np.empty((len(q), 0))]
 
         def positive(x: np.ndarray) -> np.ndarray:
-            found.append(np.broadcast_to(x, q.shape[:2]))
+            found.append(np.broadcast_to(x, rows))
             return np.asarray(ANALYTIC.positive(x))
 
-        if not (own.memory or own.multipliers or self.alternatives > 1):
+        if self.alternatives == 1:
             f = ANALYTIC._replace(positive=positive, rate=np.zeros_like)
-            places, rates = (own.split(np.moveaxis(x, -1, 0)) for x in (q, v))
+            q, v = (np.moveaxis(x, -1, 0) for x in (q, v))
+            places, data = own.split(q), [*self.data.T, *np.moveaxis(history, -1, 0)]
             if own.potential is not None:
-                own.potential(places, self.data.T, (0.0, 0.0), f)
+                own.potential(places, data, (0.0, 0.0), f)
             if own.force is not None:
-                own.force(places, rates, self.data.T, f)
+                own.force(places, own.split(v), [*data, *q[own.size :]], f)
+            if own.along is not None and own.memory:
+                rate = own.along(own.split(q + _IMAGINARY * v), data, ANALYTIC).imag / _IMAGINARY.imag
+                dissipates = changed[..., own.memory.index("dissipated") if "dissipated" in own.memory else 0]
+                found.append(np.where(dissipates, rate, 0.0))
         return np.concatenate(found, axis=1)
 
 

@@ -165,7 +165,7 @@ def take_pair(system: System, solver: MotionSolver, doubled: Doubled, h: float) 
         if solve_step(system, solver, fine, step) == 0:
             return -1.0
         fine.routines.complete(system, solver, fine, step)
-        end_step(solver, fine, doubled.filled + step)
+        end_step(system, solver, fine, doubled.filled + step)
         _gather(doubled, step)
         doubled.ends[doubled.filled + step + 1] = doubled.time + (step + 1) * h
     solver.routines, solver.kept_directions = doubled.coarse_routines, doubled.coarse_directions

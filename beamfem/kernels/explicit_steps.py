@@ -73,5 +73,5 @@ def march_explicit(system: System, solver: MotionSolver, stages: Stages) -> int:
                 for j in range(4 * n):
                     state[j] = before[j]
                 return step
-        end_step(solver, stages, step)
+        end_step(system, solver, stages, step)
     return stages.steps

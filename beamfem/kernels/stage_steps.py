@@ -13,7 +13,7 @@ from beamfem.kernels.pointers import at, small_code
 from beamfem.kernels.record import System
 from beamfem.kernels.simd import WIDTH, as_rows, larger, largest, zeros
 from beamfem.kernels.stage_record import Stages
-from beamfem.kernels.time_loop import load_row, save_end
+from beamfem.kernels.time_loop import load_row, remember, save_end
 
 _ITERATIONS = 15
 _SLOW = 0.8  # rate of convergence above which an iteration is given up
@@ -341,9 +341,10 @@ def start_step(solver, stages):
 
 
 @inlined
-def end_step(solver, stages, step):
+def end_step(system, solver, stages, step):
     """Save the end of a step, whose accelerations are known from now on."""
     stages.known = 1
+    remember(system, solver)
     save_end(solver, step)
 
 
@@ -379,5 +380,5 @@ def march_stages(system: System, solver: MotionSolver, stages: Stages) -> int:
             return step
         stages.solved = 0
         own.complete(system, solver, stages, step)
-        end_step(solver, stages, step)
+        end_step(system, solver, stages, step)
     return stages.steps

@@ -51,6 +51,17 @@ def load_row(system, solver, row):
 
 
 @inlined
+def remember(system, solver):
+    """Replace the history variables of compiled parts by those after a step to the state."""
+    if solver.remembers != 0:
+        system.p, system.v, system.a = solver.state, at(solver.state, solver.size), at(solver.state, 2 * solver.size)
+        for kind in range(system.part_kinds):
+            parts = system.parts[kind]
+            if parts.history_size > 0:
+                parts.commit(parts, system)
+
+
+@inlined
 def save_end(solver, step):
     """Count rotations in a step, and save its end if it is wanted."""
     n, state, count = solver.size, solver.state, solver.rotation_count
@@ -151,10 +162,6 @@ def march(system: System, solver: MotionSolver) -> int:
                 state[i] = before[i]
             return step
         statistics.change = call.complete(solver) / system.weight_a
-        if solver.remembers != 0:
-            for kind in range(system.part_kinds):
-                parts = system.parts[kind]
-                if parts.history_size > 0:
-                    parts.commit(parts, system)
+        remember(system, solver)
         save_end(solver, step)
     return solver.steps

@@ -66,7 +66,7 @@ def connection_source(connection: Connection, what: str) -> str:
     potential = connection.potential(at, data, gravity, f) if connection.potential else 0.0
     lost = connection.dissipation(at, rates, data, f) if connection.dissipation else 0.0
     given = connection.force(at, rates, (*data, *own[:k]), f) if connection.force else [0.0] * len(q)
-    if connection.along is not None:
+    if connection.along is not None and connection.force is not None:
         measure = connection.along(at, data, f)
         given = [given * changed([measure], {x: 1.0})[0] for x in q]
     conditions = list[Any](connection.conditions(at, data, f) if connection.conditions else ())

@@ -59,6 +59,7 @@ class Connection(NamedTuple):
         Multipliers follow the history variables in data, here and in `remember`.
     along : callable, optional
         Length or angle u(q, data, f) along which `force` acts; it then returns one number F, and resists with F du/dq.
+        Of parts with history, that whose reversal changes their law.
     stored : callable, optional
         Energy E(q, data, f) [J] that `force` stores, such as that of the spring with which friction sticks.
     remember : callable, optional
@@ -316,7 +317,7 @@ def _with_friction(
         return trial - over, (over + back) / data[stiffness]
 
     def remember(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
-        friction, slipped = slipping(q, data, f)
+        slipped = slipping(q, data, f)[1]
         most, way = limit(q, data, f), f.positive(slipped) + f.positive(-slipped)
         before = data[slip + 2] if memory else most
         return (data[slip] + slipped, data[slip + 1] + (before + most) / 2 * way, most)[: 2 + len(memory)]
@@ -368,7 +369,7 @@ def _barrier(
     damped = Connection(name, points, coordinates, names, None, potential, dissipation)
     memory = *deepest, "dissipated"
     bouncing = Connection(
-        f"bouncing_{name}", points, coordinates, names, None, rebound, memory=memory, remember=remember
+        f"bouncing_{name}", points, coordinates, names, None, rebound, memory=memory, remember=remember, along=measure
     )
     return damped, bouncing
 

@@ -42,7 +42,7 @@ def test_a_sled_stops_where_friction_has_dissipated_its_energy():
 
 def test_losses_under_a_normal_force_that_swings_are_what_the_steps_take_from_the_other_energies():
     """It swings by once the weight; the trapezoidal rule itself keeps the energy."""
-    model, bar = sled()
+    model = sled()[0]
     motion = bf.simulate(
         model, 0.3, 2e-4, velocity=lambda place: (float(place[0] > 0.0), 0.0), integrator=bf.Trapezoidal()
     )
@@ -102,3 +102,29 @@ def test_friction_needs_a_stiffness():
     stub = sled()[0].beams[0]
     with pytest.raises(bf.InputError, match="friction of a Slider needs a stiffness"):
         bf.Slider(stub.start, stub.end, (1, 0), friction=0.1)
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-5])
+def test_steps_that_follow_a_tolerance_end_where_a_sled_on_a_spring_slips_and_sticks(tolerance):
+    """Each half swing is shorter by 2 friction m g / k, until it ends within friction m g / k and rests."""
+    model, bar = sled()
+    stiffness, begin, lost = 200.0, 0.05, FRICTION * MASS * GRAVITY / 200.0
+    anchor = bf.SpringDamper(bar.start, (-50.0, 0.0), stiffness, length=50.0 + 1e-3)
+    held = bf.Model(
+        model.beams,
+        [*model.supports, bf.Prescribed(bar.start, ux=lambda factor: begin * factor)],
+        [bf.Gravity((0, -GRAVITY), scale=False)],
+        connectors=[*model.connectors, anchor],
+    )
+    free = bf.Model(model.beams, model.supports, model.loads, connectors=held.connectors)
+    ends = [begin]
+    while abs(ends[-1]) > lost:
+        ends.append(-(abs(ends[-1]) - 2.0 * lost) * np.sign(ends[-1]))
+    times = np.pi * np.sqrt(MASS / stiffness) * np.arange(1, len(ends) + 2)
+    motion = bf.simulate(
+        free, times[-1], save_at=times, tolerance=tolerance, integrator=bf.Radau(), start=bf.solve_static(held, steps=4)
+    )
+    turned = motion.displacement(bar.start)[1:, 0] if len(motion) > len(times) else motion.displacement(bar.start)[:, 0]
+    assert turned[: len(ends) - 1] == pytest.approx(ends[1:], abs=10.0 * tolerance * 0.3)
+    assert turned[-1] == pytest.approx(ends[-1], abs=10.0 * tolerance * 0.3)
+    assert np.all(np.diff(motion.energy().dissipated) >= 0.0)

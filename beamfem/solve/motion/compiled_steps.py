@@ -21,7 +21,7 @@ class StepsInCalls:
         self._system, self._space, self._statistics, self._step = system, space, statistics, step
         self._deferred: Deferred | None = None
         self._error: BaseException | None = None
-        space.solver.remembers = 0
+        space.solver.remembers = system.history.compiled
 
     @property
     def why(self) -> str:
@@ -109,7 +109,6 @@ class CompiledSteps(StepsInCalls):
             rule=Rule(time_step=h, alpha_m=alpha_m, alpha_f=alpha_f, gamma=gamma, beta=beta),
             limits=self._limits,
             statistics=statistics,
-            remembers=system.history.compiled,
         )
         space.solver.differences[:] = 0.0
         space.assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))), self._step)

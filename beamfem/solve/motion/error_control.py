@@ -64,7 +64,8 @@ def march_to_tolerance(
     so that errors add up to the tolerance at most. That of an integrator with steps of its own is the difference of two
     steps and one of double size, over 2^k - 1 with its order k.
     """
-    if is_implicit(cutter.integrator) and not len(cutter.system.history.numbers):
+    history = cutter.system.history
+    if is_implicit(cutter.integrator) and (history.compiled or not len(history.numbers)):
         return _march_pairs(
             cutter, cutter.integrator, parts, state, rotations, tolerance, saved, record, reached or Reached(), most
         )

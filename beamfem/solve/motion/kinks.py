@@ -1,4 +1,4 @@
-"""Kinks of forces in a motion: where cables become taut or slack, stops are hit, and laws of springs have corners."""
+"""Kinks of forces in a motion: cables become taut, stops are hit, laws of springs have corners, friction slips."""
 
 import numpy as np
 
@@ -7,43 +7,50 @@ from beamfem.equations.system import System
 from beamfem.solve.motion.dense_output import interpolated
 
 _SHARES = np.linspace(0.0, 1.0, 33)  # of a step, between which measures are straight enough
-_AT_END = 1e-3  # of a step: a kink this close to its end is there
+_AT_END = 1e-3  # of a step: a kink this close to one of its ends is there
 
 
 def kinked(system: System) -> tuple[Alike, ...]:
     """Return the parts of a model whose forces have kinks."""
-    parts = [(each, system.reference[None, each.numbers]) for each in system.parts if isinstance(each, Alike)]
-    return tuple(each for each, q in parts if each.kinks(q, np.zeros_like(q)).size)
+    parts, p = [each for each in system.parts if isinstance(each, Alike)], system.reference[None]
+    return tuple(each for each in parts if _measures((each,), p, 0.0 * p, p, p != p).size)
 
 
 def first_kink(system: System, times: np.ndarray, states: np.ndarray) -> tuple[int, float] | None:
     """Return the first step that a kink is in, and its time [s], or None.
 
     times (m + 1,) [s], states (m + 1, 3, n): of the ends of m steps of a method with stages. Steps are looked into if a
-    measure changes its sign to their ends, or would to their middle with its rate at an end.
+    measure changes its sign to their ends, or would to their middle with its rate at an end, with their history at the
+    beginning.
     """
-    parts = system.table(kinked)
-    own, steps = states[:, :, np.concatenate([part.numbers.ravel() for part in parts])], np.diff(times)
-    p, v, half = own[:, 0], own[:, 1], 0.5 * steps[:, None]
-    p = np.concatenate([p, p[:-1] + half * v[:-1], p[1:] - half * v[1:]])
-    taut = _measures(parts, p, np.concatenate([v, v[:-1], v[1:]])) > 0.0
-    begin, others = taut[: len(steps)], (taut[1 : len(times)], *np.split(taut[len(times) :], 2))
-    for step in np.flatnonzero(np.any([(begin != other).any(axis=1) for other in others], axis=0)).tolist():
-        at = times[step] + _SHARES * steps[step]
-        near = interpolated(times[step : step + 2], own[step : step + 2], at, smooth=True)
-        found = _measures(parts, near[:, 0], near[:, 1])
-        for number in np.flatnonzero(((found[1:] > 0.0) != (found[:-1] > 0.0)).any(axis=1)).tolist():
-            before, after = found[number : number + 2]
-            crossed = (before > 0.0) != (after > 0.0)
-            share = _SHARES[number] + _SHARES[1] * float((before / (before - after))[crossed].min())
-            if _AT_END < share < 1.0 - _AT_END:
-                return step, float(times[step] + share * steps[step])
+    parts, steps, past = system.table(kinked), np.diff(times), states[:-1, 0]
+    changed, half = past != states[1:, 0], 0.5 * steps[:, None]
+    (p0, v0), (p1, v1) = (states[rows, :2].swapaxes(0, 1) for rows in (slice(-1), slice(1, None)))
+    rows = (p0, v0), (p1, v1), (p0 + half * v0, v0), (p1 - half * v1, v1)
+    begin, *others = (_measures(parts, p, v, past, changed) for p, v in rows)
+    for step in np.flatnonzero(np.any([_crossings(begin, other) >= _AT_END for other in others], axis=(0, 2))).tolist():
+        at, same = times[step] + _SHARES * steps[step], np.zeros(len(_SHARES), dtype=int) + step
+        p, v, _ = interpolated(times[step : step + 2], states[step : step + 2], at, smooth=True).swapaxes(0, 1)
+        found = _measures(parts, p, v, past[same], changed[same])
+        shares = _SHARES[:-1, None] + _SHARES[1] * _crossings(found[:-1], found[1:])
+        shares = shares[(shares > _AT_END) & (shares < 1.0 - _AT_END)]
+        if shares.size:
+            return step, float(times[step] + shares.min() * steps[step])
     return None
 
 
-def _measures(parts: tuple[Alike, ...], p: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Return the measures (rows, k) of parts whose coordinates (rows, j) stand one after another."""
-    ends = np.cumsum([part.numbers.size for part in parts])[:-1]
-    pairs = zip(parts, np.split(p, ends, axis=1), np.split(v, ends, axis=1), strict=True)
-    shaped = ((part, (x.reshape(-1, *part.numbers.shape) for x in motion)) for part, *motion in pairs)
-    return np.concatenate([part.kinks(*motion) for part, motion in shaped], axis=1)
+def _crossings(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """Return the share at which measures that are straight in between change their sign, nan if they do not."""
+    changed = (before > 0.0) != (after > 0.0)
+    return np.divide(before, before - after, out=np.full(before.shape, np.nan), where=changed)
+
+
+def _measures(
+    parts: tuple[Alike, ...], p: np.ndarray, v: np.ndarray, past: np.ndarray, changed: np.ndarray
+) -> np.ndarray:
+    """Return the measures (rows, k) of parts in states p, p' (rows, n); past, changed: see `Alike.kinks`."""
+    own = ((each, each.numbers, each.history) for each in parts)
+    return np.concatenate(
+        [each.kinks(p[:, at], v[:, at], past[:, kept], changed[:, kept]) for each, at, kept in own],
+        axis=1,
+    )

@@ -82,7 +82,7 @@ def usual_integrator(model: Model, tolerance: float | None) -> AnyIntegrator:
 
     Of random motions Radau's method of three stages meets tolerances from 1e-4 to 1e-6 with the least work, see
     `studies.benchmarks.random_tolerances`; at looser ones its iterations limit the steps, and two stages suffice, while
-    four take less time up to 1e-7. Steps with history are compiled for the generalized-alpha family only.
+    four take less time up to 1e-7. With history, hinges are followed more closely by the generalized-alpha method.
     """
     if tolerance is None or len(system_of(model, static=False).history.numbers):
         return GeneralizedAlpha()

@@ -12,12 +12,14 @@ from beamfem.solve.motion.consistent_rows import finished_rows
 from beamfem.solve.motion.constraints import _change_of_rates, _rates
 
 STEEL, SQUARE = bf.Material(2.1e11, 0.3, 7850.0), bf.Rectangle(0.02, 0.02)
+QUADRATIC = bf.CRBF(2)
+BESIDE = bf.Layered([bf.Layer(STEEL, 0.02)], 0.02, axis=0.06)  # its axis lies above it
 
 
-def flying(supports=()):
+def flying(supports=(), element=QUADRATIC, section=SQUARE):
     """Three bars with a link, a slider and a gear between them, and a body beside the axis; it may fly freely."""
     one, two, three = (
-        bf.Beam(bf.Line(a, b), 2, bf.CRBF(2), SQUARE, STEEL)
+        bf.Beam(bf.Line(a, b), 2, element, section, None if section is BESIDE else STEEL)
         for a, b in (((0, 0), (1, 0)), ((1.3, 0.2), (2, 0.4)), ((2.2, 0.3), (2.8, 0.1)))
     )
     joints = [
@@ -49,9 +51,13 @@ def test_positions_velocities_and_accelerations_satisfy_all_conditions(driven, i
         assert np.abs(forces).max() < 1e-4 * np.abs(motion.a).max()  # what iterations leave
 
 
-def test_corrections_change_no_momentum_where_a_body_is_beside_the_axis():
-    """They are impulses of the joints, in a state that is turned by some rad."""
-    motion = bf.simulate(flying(), 0.2, 2e-3, velocity=bf.RigidVelocity((0.3, -0.2), angular=4.0))
+@pytest.mark.parametrize(
+    "element", [QUADRATIC, bf.ANCFCRBF(bf.Structural()), bf.ANCF(bf.Structural()), bf.ShearRigid()]
+)
+@pytest.mark.parametrize("section", [SQUARE, BESIDE], ids=["centred", "beside the axis"])
+def test_corrections_change_no_momentum_where_bodies_or_beams_are_beside_the_axis(element, section):
+    """They are impulses of the joints, in a state turned by some rad, with which the inertia of some elements turns."""
+    motion = bf.simulate(flying((), element, section), 0.2, 2e-3, velocity=bf.RigidVelocity((0.3, -0.2), angular=4.0))
     off = motion.v + 1e-3 * np.random.default_rng(0).standard_normal(motion.v.shape)
     off[:, -3 - 1 :] = 0.0  # of multipliers
     states = np.stack([motion.p, off, motion.a], axis=1)

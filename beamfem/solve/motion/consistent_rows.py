@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csc_array
 
 from beamfem.equations.bound_connector import COMPLEX_STEP, Connector
 from beamfem.equations.equations import INERTIA, linearise
 from beamfem.equations.system import System
+from beamfem.linalg.bordered import BorderedTangent
 from beamfem.linalg.lapack import LinAlgError
-from beamfem.linalg.tangent import UNROTATED, SparseTangent
+from beamfem.linalg.tangent import SaddleTangent, Tangent
 from beamfem.parts.at_points import ANALYTIC
 from beamfem.physics.connections import MASS
 from beamfem.solve.motion.constraints import CENTRAL
@@ -20,12 +20,15 @@ _OFF = 1e-12  # of the model: gap of a condition that is corrected
 _CORRECTIONS = 3  # of positions, at most
 _NEAR = 2.0**-7  # of the model, or rad: step of differences along the velocity
 _LARGEST = 1e6  # ratio of impulses to rates, above which conditions depend on each other in a state
+_TURN = 1.0  # [rad], by which the inertia of beams is compared
+_ROUND_OFF = 1e-9  # of accelerations, which coordinates with other natural units may lose
 _SINGULAR = 1e-10  # of the largest compliance of the conditions
 
 
 class _Compliance(NamedTuple):
     """Coordinates (u,) that conditions and bodies act on, and the accelerations (n, u) by forces on them.
 
+    varies: whether these change as beams turn, as shear-rigid ones and those beside their axes do, not by bodies alone;
     conditions, bodies: their parts with the places of their coordinates among these; of a part with conditions also
     which of them count, and their rows among all; still: inertia (u, u) of the bodies in the reference; numbers (k,):
     those of the multipliers.
@@ -33,6 +36,7 @@ class _Compliance(NamedTuple):
 
     dofs: np.ndarray
     moved: np.ndarray
+    varies: bool
     conditions: tuple[tuple[Connector, np.ndarray, np.ndarray, slice], ...]
     bodies: tuple[tuple[Connector, np.ndarray], ...]
     still: np.ndarray
@@ -40,7 +44,14 @@ class _Compliance(NamedTuple):
 
 
 def finished_rows(system: System, times: Sequence[float], states: np.ndarray) -> np.ndarray:
-    """Return states p, p', p'' (rows, 3, n) at times [s] on the conditions, changed in place.
+    """Return states p, p', p'' (rows, 3, n) at times [s] on all conditions, changed in place."""
+    states = on_conditions(system, states)
+    states[:, 0] = system.finished(states[:, 0], times)
+    return states
+
+
+def on_conditions(system: System, states: np.ndarray) -> np.ndarray:
+    """Return states p, p', p'' (rows, 3, n) on the conditions with multipliers, changed in place.
 
     Steps satisfy conditions of positions; those of p' and p'', G p' + dg/dt = 0 and its rate, are met to the error of
     the integrator only. What is added is M^-1 G' times multipliers, which changes neither momentum nor the motion
@@ -52,19 +63,18 @@ def finished_rows(system: System, times: Sequence[float], states: np.ndarray) ->
         some = max(1, _ENTRIES // (len(found.numbers) * len(found.dofs)))
         for first in range(0, len(states), some):
             _put_onto_conditions(system, found, *states[first : first + some].swapaxes(0, 1))
-    states[:, 0] = system.finished(states[:, 0], times)
     return states
 
 
 def _put_onto_conditions(system: System, found: _Compliance, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> None:
-    """Do what `finished_rows` does for p, p' and p'' (rows, n)."""
+    """Do what `on_conditions` does for p, p' and p'' (rows, n)."""
     for _ in range(_CORRECTIONS):
         gaps = _values(found, p)
         off = np.flatnonzero(np.abs(gaps).max(axis=1) > _OFF * system.extent)
         if not len(off):
             break
-        p[off] -= _Impulses(found, p[off]).by(gaps[off])[0]
-    impulses = _Impulses(found, p)
+        p[off] -= _Impulses(found, system, p[off]).by(gaps[off])[0]
+    impulses = _Impulses(found, system, p)
     v -= impulses.by(impulses.rates(v))[0]
     change, multipliers = impulses.by(impulses.rates(a) + _turning(found, system, p, v))
     a -= change
@@ -83,20 +93,15 @@ def _compliance(system: System) -> _Compliance | None:
             return None
         if item.compiled is not None and item.compiled.kinetic is not None and item.compiled != MASS:
             bodies.append(item)
-    dofs = np.unique(np.concatenate([item.dofs for item in (*kept, *bodies)]))
-    mass, multipliers = (
-        linearise(system, system.reference, zeros, zeros, 0.0, INERTIA)[1],
+    dofs, multipliers = (
+        np.unique(np.concatenate([item.dofs for item in (*kept, *bodies)])),
         system.connectors.multipliers,
     )
-    inertia = SparseTangent(csc_array(mass.sparse(UNROTATED)[: -len(multipliers), : -len(multipliers)]))
-    moved, free = np.zeros((len(zeros), len(dofs))), system.free_dofs[: -len(multipliers)]
+    units, turned = np.eye(system.model.size)[dofs], np.where(system.positions, 0.0, _TURN) + system.reference
     try:
-        factors = inertia.factorised(system.rotated)
+        moved, elsewhere = (_accelerations(system, p, units) for p in (system.reference, turned))
     except LinAlgError:
         return None
-    for column, number in enumerate(system.unknowns.free[dofs].tolist()):
-        if number >= 0:
-            moved[free, column] = factors.solve(np.eye(1, len(free), number)[0])
     if not np.isfinite(moved).all():
         return None
     chosen = [np.flatnonzero(np.isin(item.multipliers, multipliers)) for item in kept]
@@ -106,8 +111,27 @@ def _compliance(system: System) -> _Compliance | None:
         for item, own, end in zip(kept, chosen, ends, strict=True)
     )
     moving = tuple((item, np.searchsorted(dofs, item.dofs)) for item in bodies)
-    found = _Compliance(dofs, moved, conditions, moving, np.zeros((len(dofs), len(dofs))), multipliers)
-    return found._replace(still=_inertia(found, system.reference[None])[0])
+    found = _Compliance(dofs, moved, False, conditions, moving, np.zeros((len(dofs), len(dofs))), multipliers)
+    still, inertia = _inertia(found, np.array([system.reference, turned]))
+    by_beams = elsewhere + elsewhere @ (inertia - still) @ moved[dofs]
+    varies = bool(np.any(np.abs(by_beams - moved).max(axis=0) > _ROUND_OFF * np.abs(moved).max(axis=0)))
+    return found._replace(still=still, varies=varies)
+
+
+def _accelerations(system: System, p: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    """Return the accelerations (n, c) of a state p (n,) at rest by forces (c, n). Raises LinAlgError."""
+    zeros, free, k = np.zeros(len(p)), system.free_dofs, len(system.connectors.multipliers)
+    mass, result = linearise(system, p, zeros, zeros, 0.0, INERTIA)[1], np.zeros((len(p), len(forces)))
+    coordinates: Tangent
+    assert isinstance(mass, BorderedTangent | SaddleTangent)
+    if isinstance(mass, BorderedTangent) and not mass.border.entries.any():
+        free, coordinates = free[:-k], mass.band
+    else:
+        coordinates = mass.without(np.arange(-k, 0), np.ones(k))
+    factors = coordinates.factorised(system.rotated)
+    for column, force in enumerate(forces):
+        result[free, column] = factors.solve(force[free])
+    return result
 
 
 def _conditions(item: Connector, chosen: np.ndarray, q: np.ndarray, p: np.ndarray) -> np.ndarray:
@@ -165,7 +189,7 @@ def _inertia(found: _Compliance, p: np.ndarray) -> np.ndarray:
 class _Impulses:
     """Changes of rates in states p (rows, n) by impulses along the gradients of conditions."""
 
-    def __init__(self, found: _Compliance, p: np.ndarray) -> None:
+    def __init__(self, found: _Compliance, system: System, p: np.ndarray) -> None:
         self._found, self.gradients = found, np.zeros((len(p), len(found.numbers), len(found.dofs)))
         for item, places, chosen, rows in found.conditions:
             q = p[:, item.dofs].astype(complex)
@@ -173,13 +197,21 @@ class _Impulses:
                 q[:, column] += 1j * COMPLEX_STEP
                 self.gradients[:, rows, place] += _conditions(item, chosen, q, p).imag / COMPLEX_STEP
                 q[:, column] = q[:, column].real
-        here, self._along = found.moved[found.dofs], self.gradients.swapaxes(1, 2)
+        here, along = found.moved[found.dofs], self.gradients.swapaxes(1, 2)
         few = [(np.unique(places), rows) for _, places, _, rows in found.conditions]  # coordinates of each condition
-        if found.bodies:
-            self._along = np.linalg.solve(np.eye(len(here)) + (_inertia(found, p) - found.still) @ here, self._along)
+        self._moved: np.ndarray = found.moved[None]
+        self._along: np.ndarray = along
+        if found.varies:
+            forces = np.zeros((len(p), len(found.numbers), p.shape[1]))
+            forces[:, :, found.dofs] = self.gradients
+            self._moved = np.array([_accelerations(system, *each) for each in zip(p, forces, strict=True)])
+            self._along, moved = np.eye(len(found.numbers)), self._moved[:, found.dofs]
+        elif found.bodies:
+            change = (_inertia(found, p) - found.still) @ here
+            self._along = np.linalg.solve(np.eye(len(here)) + change, along)
             moved = here @ self._along
         else:
-            moved = np.concatenate([here[:, own] @ self._along[:, own, rows] for own, rows in few], axis=2)
+            moved = np.concatenate([here[:, own] @ along[:, own, rows] for own, rows in few], axis=2)
         self._compliance = np.concatenate([self.gradients[:, rows, own] @ moved[:, own] for own, rows in few], axis=1)
 
     def rates(self, rates: np.ndarray) -> np.ndarray:
@@ -206,4 +238,4 @@ class _Impulses:
             turned = vectors.swapaxes(1, 2) @ wanted[singular][..., None]
             found[singular] = (vectors @ (inverse[..., None] * turned))[..., 0]
         impulses = found / sizes
-        return (self._found.moved @ (self._along @ impulses[..., None]))[..., 0], impulses
+        return (self._moved @ (self._along @ impulses[..., None]))[..., 0], impulses

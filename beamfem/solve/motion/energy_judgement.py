@@ -13,6 +13,7 @@ from beamfem.results.energies import Energy
 from beamfem.results.energy_balance import balance, driven, masses
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics
+from beamfem.solve.motion.consistent_rows import on_conditions
 
 CHUNK = 8  # steps that are judged together
 _UNRESOLVED = 0.005  # (w h)^6 of vibrations times their share of the kinetic energy; below, energies are not evaluated
@@ -190,7 +191,7 @@ class EnergyJudge:
         self._parts = [(min(low, *own), max(high, *own)) if own else (low, high) for (low, high), own in known]
 
     def _solution(self, times: np.ndarray, states: np.ndarray) -> Solution:
-        p, v, a = states.swapaxes(0, 1)
+        p, v, a = on_conditions(self._system, states.copy()).swapaxes(0, 1)
         return Solution(self._system.model, False, times, p, v, a, Statistics(0, 0, 0, ""))
 
 

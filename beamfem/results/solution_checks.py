@@ -168,11 +168,13 @@ def _strain_per_utilisation(mesh: BeamMesh) -> float:
 def _strained(solution: Solution) -> str:
     """Return a sentence on the largest strain, empty if it is small."""
     rows, largest, where = np.arange(len(solution))[rows_looked_at(solution)], _LARGE, ""
-    for number, mesh in enumerate(solution.model.meshes):
+    for number, (mesh, at) in enumerate(
+        zip(solution.model.meshes, loading(solution)[0].table(_strained_points), strict=True)
+    ):
         if mesh.beam.law is not None:
             continue
-        element, xi, _ = energy_points(mesh)
-        strains = _strains(solution, mesh, rows)
+        element, xi, *_ = at
+        strains = _strains(solution, mesh, at, rows)
         row, point = np.unravel_index(int(strains.argmax()), strains.shape)
         if strains[row, point] > largest:
             largest = float(strains[row, point])
@@ -186,12 +188,21 @@ def _strained(solution: Solution) -> str:
     )
 
 
-def _strains(solution: Solution, mesh: BeamMesh, rows: np.ndarray) -> np.ndarray:
+def _strained_points(system: System) -> list[tuple[np.ndarray, ...]]:
+    """Return element, xi (points,), reference strains (points, ns) and y of the faces (points, 2) of each beam."""
+    meshes = system.model.meshes
+    places = [energy_points(mesh)[:2] for mesh in meshes]
+    return [
+        (*at, energy_stiffness_at(mesh, *at)[1], layers(mesh, *at)[:, [0, -1], [0, 1]])
+        for mesh, at in zip(meshes, places, strict=True)
+    ]
+
+
+def _strains(solution: Solution, mesh: BeamMesh, at: tuple[np.ndarray, ...], rows: np.ndarray) -> np.ndarray:
     """Return the largest normal strain at the faces, or the shear strain if larger (rows, points), at energy points."""
-    element, xi, _ = energy_points(mesh)
+    element, xi, reference, y = at
     now, forces = axis_at(mesh, solution.p[rows], element, xi), mesh.beam.element.forces
-    strains = forces.strains(now) - energy_stiffness_at(mesh, element, xi)[1] - imposed_measures(solution, mesh, rows)
-    y = layers(mesh, element, xi)[:, [0, -1], [0, 1]]
+    strains = forces.strains(now) - reference - imposed_measures(solution, mesh, rows)
     components = np.moveaxis(strains, -1, 0)[..., None]
     if forces.code == GREEN_LAGRANGE:
         along, sheared = components[0] + y * (components[1] + y * components[2]), 0.5 * components[4]

@@ -28,7 +28,10 @@ def initial_acceleration(
     free = system.free_dofs
     multipliers = system.connectors.multipliers
     a[free] = p[multipliers] = v[multipliers] = 0.0
-    unbalanced, mass = residual(system, p, v, a, time, elapsed), _mass(system, (p, v, a), time, step)
+    if step > 0.0:
+        unbalanced, mass = residual(system, p, v, a, time, elapsed), _damped_mass(system, (p, v, a), time, step)
+    else:
+        unbalanced, mass = linearise(system, p, v, a, time, INERTIA, dt=elapsed)
     if len(multipliers):
         a[free] = constrained_acceleration(system, (p, v, a), unbalanced, mass, time)
         state[0, multipliers], state[1, multipliers], a[multipliers] = a[multipliers], 0.0, 0.0
@@ -61,10 +64,8 @@ def mean_acceleration(system: System, state: np.ndarray, time: float, step: floa
     return mean
 
 
-def _mass(system: System, motion: Motion, time: float, step: float) -> Tangent:
+def _damped_mass(system: System, motion: Motion, time: float, step: float) -> Tangent:
     """Return M + step D in p, p', p'' at a time, with the damping D of materials, connectors and laws with history."""
-    if not step > 0.0:
-        return linearise(system, *motion, time, INERTIA)[1]
     p, v, zeros = *motion[:2], np.zeros(len(motion[0]))
     mass = linearise(system, p, zeros, zeros, time, (0.0, step, 1.0))[1]
     viscous = viscous_tangent(system, p, v, time, step)

@@ -14,7 +14,7 @@ from beamfem.model.load_shapes import ConnectorShape
 from beamfem.model.supports import Value
 from beamfem.physics.compiled_connections import in_python
 from beamfem.physics.connections import Connection, Functions
-from beamfem.validation import convert, vector
+from beamfem.validation import convert, squared, vector
 
 # of numbers and arrays, complex ones too
 ANALYTIC = Functions(np.sqrt, np.cos, np.sin, lambda x: np.where(np.real(x) > 0.0, x, 0.0 * x))
@@ -170,7 +170,7 @@ class BetweenPlaces(PartAtPoints):
         if isinstance(self.b, Point) or not self.may_end_on_ground:
             require_point_of(self, "b")
         else:
-            convert(self, vector, "b")
+            convert(self, squared(vector), "b")
         if self.apart and self.distance == 0.0:
             raise InputError(
                 f"{type(self).__name__} needs two places that are apart, but a and b are both at {self.a}; "

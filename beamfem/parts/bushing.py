@@ -10,7 +10,7 @@ from beamfem.model.load_shapes import Spiral
 from beamfem.model.part_units import UNIT
 from beamfem.parts.at_points import BetweenPlaces
 from beamfem.physics.connections import BUSHING
-from beamfem.validation import items, not_negative, shown
+from beamfem.validation import items, not_negative, shown, squared
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class Bushing(BetweenPlaces):
         BetweenPlaces.__post_init__(self)
         for name in ("stiffness", "damping"):
             what, given = f"{name} of Bushing", getattr(self, name)
-            numbers = tuple(not_negative(what, value) for value in items(what, given))
+            numbers = tuple(squared(not_negative)(what, value) for value in items(what, given))
             if len(numbers) != 3:
                 raise InputError(f"{what} must be three numbers, along x, y and against rotation, got {shown(given)}")
             object.__setattr__(self, name, numbers)

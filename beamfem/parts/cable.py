@@ -11,7 +11,7 @@ from beamfem.model.load_shapes import Coil
 from beamfem.model.part_units import UNIT
 from beamfem.parts.at_points import BetweenPlaces
 from beamfem.physics.connections import CABLE, GROUNDED_CABLE, Connection
-from beamfem.validation import convert, not_negative, positive
+from beamfem.validation import convert, not_negative, positive, squared
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,8 +48,8 @@ class Cable(BetweenPlaces):
 
     def __post_init__(self) -> None:
         BetweenPlaces.__post_init__(self)
-        convert(self, positive, "stiffness")
-        convert(self, not_negative, "pretension")
+        convert(self, squared(positive), "stiffness")
+        convert(self, squared(not_negative), "pretension")
         most = self.stiffness * self.distance
         if self.pretension >= most:
             raise InputError(

@@ -10,7 +10,7 @@ from beamfem.model.load_shapes import Bar
 from beamfem.model.part_units import UNIT
 from beamfem.parts.at_points import AtPoint, PartAlongBeam, PartAtPoints
 from beamfem.physics.connections import DRAG
-from beamfem.validation import convert, not_negative
+from beamfem.validation import convert, not_negative, squared
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class Drag(PartAlongBeam):
 
     def __post_init__(self) -> None:
         require_beam("Drag", self.beam)
-        convert(self, not_negative, "coefficient")
+        convert(self, squared(not_negative), "coefficient")
 
     def at_nodes(self, points: Sequence[Point], lengths: np.ndarray) -> tuple[PartAtPoints, ...]:
         """Return the parts at the nodes of the beam, with their tributary lengths (n,) [m]."""

@@ -6,16 +6,16 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.parts.at_points import BetweenPlaces
-from beamfem.validation import convert, finite, not_negative, optional, positive
+from beamfem.validation import convert, finite, not_negative, optional, positive, squared
 
 _NEVER = 1e300  # [rad] or [m], far away in all units
 
 
 def require_rebound(part: Any) -> None:
     """Raise InputError for an invalid stiffness, damping or coefficient of restitution, or for both of the last two."""
-    convert(part, positive, "stiffness")
-    convert(part, not_negative, "damping")
-    convert(part, optional(positive), "restitution")
+    convert(part, squared(positive), "stiffness")
+    convert(part, squared(not_negative), "damping")
+    convert(part, optional(squared(positive)), "restitution")
     kind = type(part).__name__
     if part.restitution is not None and part.restitution > 1.0:
         raise InputError(f"restitution of {kind} is at most 1, got {part.restitution:g}")

@@ -6,7 +6,7 @@ from beamfem.errors import InputError
 from beamfem.model.beam import Point
 from beamfem.parts.at_points import BetweenPlaces
 from beamfem.physics.connections import GEAR
-from beamfem.validation import convert, finite
+from beamfem.validation import convert, finite, squared
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +39,6 @@ class Gear(BetweenPlaces):
 
     def __post_init__(self) -> None:
         BetweenPlaces.__post_init__(self)
-        convert(self, finite, "ratio")
+        convert(self, squared(finite), "ratio")
         if self.ratio == 0.0:
             raise InputError("the ratio of a Gear must not be zero")

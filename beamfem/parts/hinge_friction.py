@@ -8,7 +8,7 @@ from beamfem.model.load_shapes import Spiral
 from beamfem.model.part_units import UNIT
 from beamfem.parts.at_points import BetweenPlaces
 from beamfem.physics.connections import HINGE_FRICTION
-from beamfem.validation import convert, positive
+from beamfem.validation import convert, positive, squared
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ class HingeFriction(BetweenPlaces):
 
     def __post_init__(self) -> None:
         BetweenPlaces.__post_init__(self)
-        convert(self, positive, "torque", "stiffness")
+        convert(self, squared(positive), "torque", "stiffness")
 
     def shapes(self) -> tuple[Spiral, ...]:
         """Return the shape to draw."""

@@ -9,7 +9,7 @@ from beamfem.model.load_shapes import Disc
 from beamfem.model.part_units import UNIT
 from beamfem.parts.at_points import AtPoint
 from beamfem.physics.connections import BODY, MASS, Connection
-from beamfem.validation import convert, not_negative, positive
+from beamfem.validation import convert, not_negative, positive, squared
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +39,8 @@ class PointMass(AtPoint):
 
     def __post_init__(self) -> None:
         AtPoint.__post_init__(self)
-        convert(self, positive, "mass")
-        convert(self, not_negative, "inertia")
+        convert(self, squared(positive), "mass")
+        convert(self, squared(not_negative), "inertia")
 
     @property
     def connection(self) -> Connection:

@@ -14,7 +14,7 @@ from beamfem.parts.rigid import Rigid
 from beamfem.parts.weld import Weld
 from beamfem.physics.connections import BODY
 from beamfem.section import StiffnessSection
-from beamfem.validation import convert, not_negative, positive, vector
+from beamfem.validation import convert, not_negative, positive, squared, vector
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,9 +50,9 @@ class RigidBody(AtPoint):
 
     def __post_init__(self) -> None:
         AtPoint.__post_init__(self)
-        convert(self, positive, "mass")
-        convert(self, not_negative, "inertia")
-        convert(self, vector, "offset")
+        convert(self, squared(positive), "mass")
+        convert(self, squared(not_negative), "inertia")
+        convert(self, squared(vector), "offset")
 
     def at(self, x: float, y: float) -> Point:
         """Return a point of the body, at (x, y) [m] from its `point` in the reference, for any other part.

@@ -51,11 +51,11 @@ class Slider(BetweenPlaces):
         convert(self, squared(vector), "axis")
         if not any(self.axis):
             raise InputError("the axis of a Slider must not be zero")
-        convert(self, not_negative, "friction")
+        convert(self, squared(not_negative), "friction")
         if self.friction and self.stiffness is None:
             raise InputError("friction of a Slider needs a stiffness with which it sticks")
         if self.stiffness is not None:
-            convert(self, positive, "stiffness")
+            convert(self, squared(positive), "stiffness")
 
     @property
     def conservative(self) -> bool:  # type: ignore[override]

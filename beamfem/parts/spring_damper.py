@@ -15,7 +15,7 @@ from beamfem.model.time_functions import Interpolated
 from beamfem.parts.at_points import BetweenPlaces
 from beamfem.physics.connections import GROUNDED_SPRING, SPRING, Connection, Functions, spring_with_law
 from beamfem.quadrature import gauss
-from beamfem.validation import convert, not_negative, optional, takes
+from beamfem.validation import convert, not_negative, optional, squared, takes
 
 _PARTS, _POINTS = 256, 3  # of the quadrature of a law, which may have kinks
 _OF_ARRAYS = Functions(np.sqrt, np.cos, np.sin, lambda x: np.maximum(x, 0.0))
@@ -75,11 +75,11 @@ class SpringDamper(BetweenPlaces):
     def __post_init__(self) -> None:
         BetweenPlaces.__post_init__(self)
         if not callable(self.stiffness):
-            convert(self, not_negative, "stiffness")
+            convert(self, squared(not_negative), "stiffness")
         elif not isinstance(self.stiffness, Interpolated) and not takes(self.stiffness, 2):
             raise InputError("a law of a SpringDamper is a function of the elongation and f: lambda e, f: 1e3 * e**3")
-        convert(self, not_negative, "damping")
-        convert(self, optional(not_negative), "length")
+        convert(self, squared(not_negative), "damping")
+        convert(self, optional(squared(not_negative)), "length")
 
     @property
     def _law(self) -> Callable[[Any, Any], Any] | None:

@@ -57,10 +57,10 @@ class Stop(AtPoint):
 
     def __post_init__(self) -> None:
         AtPoint.__post_init__(self)
-        convert(self, vector, "place")
+        convert(self, squared(vector), "place")
         convert(self, squared(vector), "normal")
         require_rebound(self)
-        convert(self, not_negative, "friction")
+        convert(self, squared(not_negative), "friction")
         if self.restitution is not None and self.friction:
             raise InputError("Stop takes a coefficient of restitution or friction, got both")
         if not any(self.normal):

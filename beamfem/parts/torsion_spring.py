@@ -7,7 +7,7 @@ from beamfem.model.load_shapes import Spiral
 from beamfem.model.part_units import UNIT
 from beamfem.parts.at_points import BetweenPlaces
 from beamfem.physics.connections import TORSION_SPRING
-from beamfem.validation import convert, not_negative
+from beamfem.validation import convert, not_negative, squared
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ class TorsionSpring(BetweenPlaces):
 
     def __post_init__(self) -> None:
         BetweenPlaces.__post_init__(self)
-        convert(self, not_negative, "stiffness", "damping")
+        convert(self, squared(not_negative), "stiffness", "damping")
 
     def shapes(self) -> tuple[Spiral, ...]:
         """Return the shape to draw."""

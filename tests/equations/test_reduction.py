@@ -71,7 +71,52 @@ def test_bad_input_is_named():
         bf.reduce(CLAMPED, [BEAM.end], 1000)
     with pytest.raises(bf.InputError, match="moves rigidly"):
         bf.reduce(bf.Model([BEAM]), [], 2)
+
+
+PAIR = [bf.Beam(bf.Line((0, y), (1, y)), 2, bf.CRBF(3), bf.Rectangle(0.02, 0.02), STEEL) for y in (0.0, 0.5)]
+ENDS = [beam.end for beam in PAIR]
+CLAMPS = [bf.Clamp(beam.start) for beam in PAIR]
+JOINING = {
+    "link": bf.Link(*ENDS),
+    "weld": bf.Weld(*ENDS),
+    "gear": bf.Gear(*ENDS, -2.0),
+    "slider": bf.Slider(*ENDS, (1, 0)),
+}
+
+
+@pytest.mark.parametrize("name", JOINING)
+@pytest.mark.parametrize("end", [0, 1])
+def test_interfaces_may_have_conditions(name, end):
+    """Either end of a joint is an interface: the conditions determine the other one."""
+    model = bf.Model(PAIR, CLAMPS, connectors=[JOINING[name]])
+    small = bf.reduce(model, [ENDS[end]], 12)
+    at = model.mesh_of(ENDS[end])
+    own = at.coordinates_of(at.node_at(1.0)).values()
+    assert set(small.coordinates[:3].tolist()) == set(own)
+    assert small.modes(3).frequencies == pytest.approx(bf.solve_modes(model, 3).frequencies, rel=2e-4)
+
+
+@pytest.mark.parametrize("name", JOINING)
+def test_interfaces_that_a_part_ties_to_each_other_are_named_with_it(name):
+    kind = type(JOINING[name]).__name__
+    with pytest.raises(bf.InputError, match=rf"not independent: conditions of {kind} at \(1, 0\) and \(1, 0.5\)"):
+        bf.reduce(bf.Model(PAIR, CLAMPS, connectors=[JOINING[name]]), ENDS, 2)
+
+
+@pytest.mark.parametrize("place", ["point", "arm"])
+def test_interfaces_may_be_points_of_a_rigid_body(place):
+    beam = PAIR[0]
+    body = bf.RigidBody(beam.end, 0.5, 1e-3, (0.1, 0.0))
+    tip = body.at(0.2, 0.1)
+    model = bf.Model([beam], [bf.Clamp(beam.start)], masses=[body], connectors=[bf.SpringDamper(tip, (2, 1), 1e3)])
+    small = bf.reduce(model, [{"point": beam.end, "arm": tip}[place]], 8)
+    assert small.modes(3).frequencies == pytest.approx(bf.solve_modes(model, 3).frequencies, rel=2e-4)
+    with pytest.raises(bf.InputError, match="conditions of Weld"):
+        bf.reduce(model, [beam.end, tip], 2)
+
+
+def test_an_interface_on_an_inclined_roller_is_named():
     other = bf.Beam(bf.Line((2, 0), (2, 1)), 2, bf.CRBF(3), bf.Rectangle(0.02, 0.02), STEEL)
     supports = [bf.Clamp(BEAM.start), bf.Roller(other.start, normal=(0.6, 0.8)), bf.Pin(other.end)]
-    with pytest.raises(bf.InputError, match="determine a coordinate"):
+    with pytest.raises(bf.InputError, match="conditions of an inclined Roller"):
         bf.reduce(bf.Model([BEAM, other], supports), [other.start], 2)

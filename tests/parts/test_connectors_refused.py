@@ -215,6 +215,32 @@ def test_what_is_no_connector_is_refused():
         cantilever(own, [], [Nowhere(own.end, stiffness)])
 
 
+OWN = beam()
+TOP, FOOT = OWN.end, OWN.start
+HUGE = {
+    "stiffness of SpringDamper": lambda k: bf.SpringDamper(TOP, (9.0, 9.0), k),
+    "damping of SpringDamper": lambda k: bf.SpringDamper(TOP, (9.0, 9.0), 1.0, k),
+    "b of SpringDamper": lambda k: bf.SpringDamper(TOP, (9.0, k), 1.0),
+    "stiffness of Cable": lambda k: bf.Cable(TOP, (9.0, 9.0), k),
+    "stiffness of TorsionSpring": lambda k: bf.TorsionSpring(FOOT, TOP, k),
+    "damping of Bushing": lambda k: bf.Bushing(FOOT, TOP, (1.0, 1.0, 1.0), (0.0, 0.0, k)),
+    "stiffness of Slider": lambda k: bf.Slider(FOOT, TOP, (1, 0), 0.1, k),
+    "ratio of Gear": lambda k: bf.Gear(FOOT, TOP, k),
+    "stiffness of Stop": lambda k: bf.Stop(TOP, (0, 0), (0, 1), k),
+    "stiffness of HingeStop": lambda k: bf.HingeStop(FOOT, TOP, low=0.0, stiffness=k),
+    "torque of HingeFriction": lambda k: bf.HingeFriction(FOOT, TOP, k, 1.0),
+    "coefficient of Drag": lambda k: bf.Drag(OWN, k),
+    "mass of PointMass": lambda k: bf.PointMass(TOP, k),
+    "inertia of RigidBody": lambda k: bf.RigidBody(TOP, 1.0, k),
+}
+
+
+@pytest.mark.parametrize("name", HUGE)
+def test_numbers_that_would_overflow_within_a_solve_are_refused_before_it(name):
+    with pytest.raises(bf.InputError, match=rf"{name} is 1e\+308, which double precision cannot square"):
+        HUGE[name](1e308)
+
+
 def test_starts_that_break_a_condition_are_refused():
     two, model = crossbar(RigidLink)
     apart = bf.Model(model.beams, model.supports, [bf.PointMoment(two.start, 1.0)], connectors=())

@@ -13,7 +13,8 @@ from beamfem.model.beam import Point
 from beamfem.model.model import Model
 from beamfem.results.solution import Solution, State
 from beamfem.solve.linear.linear_model import LinearModel
-from beamfem.solve.linear.linearise import linearise
+from beamfem.solve.linear.linearise import linearised
+from beamfem.solve.modes.modes import meshed_for_modes
 from beamfem.validation import items, number_below
 
 _SPARE = 4  # modes found beyond those asked for, so that the last ones are accurate
@@ -60,8 +61,10 @@ def reduce(model: Model, interfaces: Sequence[Point], modes: int, about: State |
     >>> len(small), small.modes(2).frequencies.round(2)
     (7, array([ 20.85, 129.15]))
     """
-    linear = linearise(model, about)
-    boundary = _numbers(linear, interfaces)
+    model, about = meshed_for_modes(model, about)
+    kept = _coordinates(model, interfaces)
+    linear = linearised(model, about, None, kept)
+    boundary = np.flatnonzero(np.isin(linear.coordinates, kept))
     inner = np.setdiff1d(np.arange(len(linear)), boundary)
     count = number_below("modes", modes, len(inner) + 1)
     if not len(inner):
@@ -92,11 +95,11 @@ def reduce(model: Model, interfaces: Sequence[Point], modes: int, about: State |
     )
 
 
-def _numbers(linear: LinearModel, interfaces: Sequence[Point]) -> np.ndarray:
-    """Return the numbers of the coordinates z at points, without prescribed ones. Raises InputError."""
+def _coordinates(model: Model, interfaces: Sequence[Point]) -> np.ndarray:
+    """Return the numbers of the coordinates at points. Raises InputError."""
     nodes: dict[frozenset[int], Point] = {}
     for point in items("interfaces", interfaces):
-        mesh = linear.model.mesh_of(point)
+        mesh = model.mesh_of(point)
         node = mesh.node_near(point.fraction)
         if node is None:
             raise InputError(
@@ -107,9 +110,4 @@ def _numbers(linear: LinearModel, interfaces: Sequence[Point]) -> np.ndarray:
         if own in nodes:
             raise InputError(f"the interfaces {nodes[own]} and {point} are one; list it once")
         nodes[own] = point
-    dofs = np.array(sorted(frozenset().union(*nodes)), dtype=np.int64)
-    found = np.flatnonzero(np.isin(linear.coordinates, dofs))
-    movable = csr_array(linear.transformation[dofs])
-    if np.count_nonzero(np.abs(movable).sum(axis=1)) > len(found):
-        raise InputError("conditions of connectors or inclined rollers determine a coordinate of an interface")
-    return found
+    return np.array(sorted(frozenset().union(*nodes)), dtype=np.int64)

@@ -8,9 +8,10 @@ from scipy.sparse import coo_array, csr_array
 
 from beamfem.equations import equations
 from beamfem.equations.equations import INERTIA, STATICS
+from beamfem.equations.redundant_conditions import in_words
 from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError
-from beamfem.linalg.lapack import qr, solve_triangular
+from beamfem.linalg.lapack import qr
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.beam import beam_in_words
 from beamfem.model.imposed_strains import ImposedStrain
@@ -63,11 +64,21 @@ def linearise(model: Model, about: State | Solution | None = None, loads: Sequen
     """
     if system_of(model, static=True).model.automatic:
         model, about = meshed_for_modes(model, about)
+    return linearised(model, about, loads, np.empty(0, dtype=np.int64))
+
+
+def linearised(
+    model: Model, about: State | Solution | None, loads: Sequence[Load] | None, kept: np.ndarray
+) -> LinearModel:
+    """Return a linear model as `linearise`, among whose coordinates are those of the model with the numbers `kept`.
+
+    Raises InputError if conditions determine them.
+    """
     system, state = _state(model, about)
     inputs = tuple(model.loads if loads is None else items("loads", loads))
     loaded = _with_inputs(system, inputs)
     stiffness = _matrix(system, state, STATICS)
-    independent, basis = independent_motions(system, state.p, stiffness)
+    independent, basis = independent_motions(system, state.p, stiffness, kept)
     free = system.free_dofs
     order = np.argsort(free[independent])
     independent, basis = independent[order], basis[:, order]
@@ -159,20 +170,23 @@ _DEPENDENT = 1e-10  # of a condition of unit size: its part that is independent 
 _NOTHING = 1e-14  # of the largest entry of a basis
 
 
-def independent_motions(system: System, p: np.ndarray, tangent: csr_array) -> tuple[np.ndarray, csr_array]:
+def independent_motions(
+    system: System, p: np.ndarray, tangent: csr_array, kept: np.ndarray
+) -> tuple[np.ndarray, csr_array]:
     """Return the independent coordinates (m,) of the unknowns in a state p (n,), and a basis T (unknown, m).
 
-    They are x = T x[independent].
+    They are x = T x[independent]; kept: numbers of coordinates that are to be independent.
 
     The conditions G x = 0 are those of multipliers, the last rows of the tangent [K, G^T; G, 0], and of inclined
     rollers. They are solved for as many coordinates, which pivoting selects. Multipliers have zero rows. Raises
-    InputError if conditions are redundant.
+    InputError if conditions are redundant or determine a coordinate that is kept.
     """
     unknown, conditions = len(system.free_dofs), _conditions(system, tangent)
     size = conditions.shape[1]
     constrained = np.flatnonzero(conditions.any(axis=0))
-    scale = system.scale[system.free_dofs[constrained]]
-    solved, free, solution = _solved_for(conditions[:, constrained] * scale, system, p)
+    dofs = system.free_dofs[constrained]
+    scale = system.scale[dofs]
+    solved, free, solution = _solved_for(conditions[:, constrained] * scale, dofs, np.isin(dofs, kept), system, p)
     solution *= scale[solved][:, None] / scale[free]
     dependents, drivers = constrained[solved], constrained[free]
     independent = np.setdiff1d(np.arange(size), dependents)
@@ -224,20 +238,45 @@ def _rates_of_basis(system: System, state: State, independent: np.ndarray) -> tu
     return found[0], found[1]
 
 
-def _solved_for(conditions: np.ndarray, system: System, p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _solved_for(
+    conditions: np.ndarray, dofs: np.ndarray, kept: np.ndarray, system: System, p: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the columns that conditions (k, n) are solved for, the others, and the solution (k, n - k) X with x = X y.
 
-    Raises InputError if conditions are redundant.
+    dofs (n,): numbers of their coordinates; kept (n,): columns that are among the others. Raises InputError if
+    conditions are redundant or determine them.
     """
     count = len(conditions)
     sizes = np.linalg.norm(conditions, axis=1, keepdims=True)
-    triangle, order = qr(conditions / np.where(sizes > 0.0, sizes, 1.0), mode="r", pivoting=True)
-    diagonal = np.abs(np.diagonal(triangle))
-    if len(diagonal) < count or np.any(diagonal <= _DEPENDENT):
+    conditions = conditions / np.where(sizes > 0.0, sizes, 1.0)
+    enough, order = _independent(conditions)
+    if not enough:
         raise InputError(dependent(system, p))
-    solution = -solve_triangular(triangle[:, :count], triangle[:, count:])
+    if kept.any():
+        enough, order = _independent(np.where(kept, 0.0, conditions))
+        if not enough:
+            raise InputError(_determined(system, dofs[kept]))
+    solution = -np.linalg.solve(conditions[:, order[:count]], conditions[:, order[count:]])
     solution[np.abs(solution) <= _NOTHING * np.abs(solution).max(initial=0.0)] = 0.0
     return order[:count], order[count:], solution
+
+
+def _independent(conditions: np.ndarray) -> tuple[bool, np.ndarray]:
+    """Return whether conditions (k, n) of unit size are independent, and the columns, first k to solve them for."""
+    triangle, order = qr(conditions, mode="r", pivoting=True)
+    diagonal = np.abs(np.diagonal(triangle))
+    return len(diagonal) == len(conditions) and bool(np.all(diagonal > _DEPENDENT)), order
+
+
+def _determined(system: System, dofs: np.ndarray) -> str:
+    """Return the message that conditions determine some of the coordinates with these numbers."""
+    parts = [item for item in system.connectors.items if len(item.own) and np.isin(item.dofs, dofs).any()]
+    names = [in_words(parts)] if parts else []
+    names += ["an inclined Roller"] if np.isin(dofs, system.free_dofs[system.rotated[0]]).any() else []
+    return (
+        f"the coordinates of the interfaces are not independent: conditions of {' and of '.join(names)} determine some "
+        "by others; leave out one of the interfaces"
+    )
 
 
 _LARGE = 2.0**30  # factor of a load beside which internal forces are round-off

@@ -175,7 +175,8 @@ class Loads:
 
     def factors(self, time: float) -> np.ndarray:
         """Return the factors (k,) of `model.acting` at a time."""
-        return np.array([factor(load, time, self.static) for load in self.model.acting], dtype=float)
+        named = ((load, self.model.name_of(load)) for load in self.model.acting)
+        return np.array([factor(load, time, self.static, name) for load, name in named], dtype=float)
 
     def of(self, time: float, factors: np.ndarray) -> LoadsAt:
         """Return the loads at a time with given factors (k,) of `model.acting`."""

@@ -44,6 +44,7 @@ class Connector:
     memory: np.ndarray
     reference: np.ndarray
     given: Contribution
+    name: str
 
     @cached_property
     def all(self) -> np.ndarray:
@@ -77,7 +78,7 @@ class Connector:
     def alone(self) -> "Connector":
         """The same contribution with coordinates, multipliers and history variables numbered from 0, in this order."""
         dofs, own, memory = np.split(np.arange(self.variables), np.cumsum([len(self.dofs), len(self.own)]))
-        return Connector(self.item, dofs, own, memory, self.reference, self.given)
+        return Connector(self.item, dofs, own, memory, self.reference, self.given, self.name)
 
     @property
     def variables(self) -> int:
@@ -87,10 +88,6 @@ class Connector:
     @cached_property
     def _used(self) -> np.ndarray:
         return np.concatenate([self.dofs, self.own, self.memory])
-
-    @property
-    def name(self) -> str:
-        return type(self.given).__name__
 
     @cached_property
     def compiled(self) -> Connection | None:

@@ -45,7 +45,7 @@ def checked_connectors(model: Model) -> tuple[Connector, ...]:
             memory = np.arange(behind, behind + len(remembered(item)))
             behind += len(memory)
             place = np.array(dofs, dtype=np.int64), own, memory, np.array(positions)
-            connectors.append(Connector(item, *place, given))
+            connectors.append(Connector(item, *place, given, model.name_of(given)))
     for connector in connectors:
         if connector.compiled is None:
             _require_finite(connector.alone)

@@ -10,7 +10,6 @@ from beamfem.equations.connector_nodes import first_value
 from beamfem.errors import InputError
 from beamfem.kernels.block import ROTATED_GRADIENTS, Block
 from beamfem.mesh.beam_mesh import BeamMesh
-from beamfem.model.beam import Point
 from beamfem.model.contribution import prescribed_by, uses_rotations
 from beamfem.model.model import Model
 from beamfem.model.supports import PointSupport, Value
@@ -64,18 +63,18 @@ COORDINATES = {"ux": "r^x", "uy": "r^y", "rotation": "theta"}  # nodal coordinat
 class PrescribedCoordinate(NamedTuple):
     """A coordinate that a support prescribes.
 
-    value: its change from the reference, a number or a function of time; rotation: whether it is a rotation; place:
-    that of the support in messages, of functions.
+    value: its change from the reference, a number or a function of time; rotation: whether it is a rotation; source:
+    the part that prescribes it and its place, for messages about functions.
     """
 
     dof: int
     value: Value
     rotation: bool
-    place: str
+    source: str
 
     @property
     def name(self) -> str:
-        return f"value prescribed at {self.place}"
+        return f"value prescribed by {self.source}"
 
     def change(self, time: float, static: bool) -> float:
         """Return the change from the reference at a time, in statics at a load factor."""
@@ -101,25 +100,20 @@ def prescribed_coordinates(model: Model) -> tuple[PrescribedCoordinate, ...]:
     for support in model.point_supports:
         mesh = model.mesh_of(support.point)
         dofs = mesh.coordinates_of(mesh.node_at(support.point.fraction))
+        source = f"{model.name_of(support)} at {support.point}"
         for direction, value in support.prescribed().items():
             name = coordinate_of(support, direction)
             if name is None:
                 continue
             dof = dofs[name]
             if dof in coordinates:
-                what = type(support).__name__
-                raise InputError(
-                    f"{what} at {support.point}: another support already prescribes {direction} there; one is enough"
-                )
-            coordinates[dof] = _prescribed(dof, value, direction == "rotation", support.point)
+                raise InputError(f"{source}: another support already prescribes {direction} there; one is enough")
+            coordinates[dof] = PrescribedCoordinate(dof, value, direction == "rotation", source)
     values = ((item, value) for item in model.at_points for value in prescribed_by(item))
     for dof, (item, value) in enumerate(values, first_value(model)):
-        coordinates[dof] = _prescribed(dof, value, uses_rotations(item), item.points[-1])
+        source = f"{model.name_of(item)} at {item.points[-1]}"
+        coordinates[dof] = PrescribedCoordinate(dof, value, uses_rotations(item), source)
     return tuple(coordinates[dof] for dof in sorted(coordinates))
-
-
-def _prescribed(dof: int, value: Value, rotation: bool, point: Point) -> PrescribedCoordinate:
-    return PrescribedCoordinate(dof, value, rotation, str(point) if callable(value) else "")
 
 
 def inclined_normals(model: Model, prescribed: set[int]) -> tuple[tuple[int, np.ndarray], ...]:
@@ -130,7 +124,7 @@ def inclined_normals(model: Model, prescribed: set[int]) -> tuple[tuple[int, np.
         if normal is not None and _axis_of(normal) is None:
             mesh = model.mesh_of(support.point)
             dofs = mesh.coordinates_of(mesh.node_at(support.point.fraction))
-            dof, inclined = dofs["r^x"], f"inclined {type(support).__name__}"
+            dof, inclined = dofs["r^x"], f"inclined {model.name_of(support)}"
             if dof in found:
                 raise InputError(f"two {inclined}s stand at the same point", remedy="one support can hold ux and uy")
             if dof in prescribed or dof + 1 in prescribed:

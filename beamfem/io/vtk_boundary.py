@@ -11,14 +11,15 @@ from beamfem.io.vtk_cells import VERTEX, Content, legend_of_beams
 from beamfem.mesh.reference import length_points
 from beamfem.model.beam import Beam, Point
 from beamfem.model.joint_base import Joint
-from beamfem.model.load_base import Load, factor
+from beamfem.model.load_base import Load, PointLoad, factor
 from beamfem.model.model import Model
 from beamfem.model.state_protocols import in_plane
 from beamfem.model.supports import DIRECTIONS, LineSupport, PointSupport
 from beamfem.parts.at_points import PartAlongBeam
+from beamfem.parts.motor import Motor
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.full_turns import StationsOfRows
-from beamfem.results.reactions import connector_force, is_determined, joint_force, reaction_of
+from beamfem.results.reactions import connector_force, force_of_load, is_determined, joint_force, reaction_of
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import loading
 from beamfem.validation import require_known
@@ -62,12 +63,11 @@ def _along(model: Model, beam: Beam) -> AxisPoints:
 def _supports(model: Model) -> Iterator[_Vertices]:
     """Yield one vertex for each point that is supported, since its reaction is that of all supports there."""
     at_node: dict[tuple[int, int], list[PointSupport]] = {}
-    of_loads = {id(part): load for load in model.loads for part in load.parts}
     for support in model.point_supports:
         beam, fraction = support.point.beam, support.point.fraction
         at_node.setdefault((id(beam), model.mesh_of(support.point).node_at(fraction)), []).append(support)
     for supports in at_node.values():
-        kind = " + ".join(dict.fromkeys(type(of_loads.get(id(each), each)).__name__ for each in supports))
+        kind = " + ".join(dict.fromkeys(model.name_of(each) for each in supports))
         fixed = _fixed(supports)
         points = _at(model, supports[0].point)
         yield _Vertices(
@@ -99,9 +99,8 @@ def _of_foundation(foundation: LineSupport, points: AxisPoints, part: Solution) 
 
 def _loads(model: Model) -> Iterator[_Vertices]:
     """Yield the vertices of the loads; strains that are imposed act nowhere from outside."""
-    named = [(type(load).__name__, part) for load in model.loads for part in load.parts if isinstance(part, Load)]
-    for kind, load in named:
-        where = load.place
+    for load in (part for whole in model.loads for part in whole.parts if isinstance(part, Load)):
+        kind, where = model.name_of(load), load.place
         if where is None:  # all mass, drawn in the middle of every beam
             places = [_at(model, beam.at(0.5)) for beam in model.beams]
         else:
@@ -124,9 +123,8 @@ def _of_load(load: Load, acting: Mapping[str, np.ndarray], points: AxisPoints, p
 
 
 def _connectors(model: Model) -> Iterator[_Vertices]:
-    of_loads = {id(part): load for load in model.loads for part in load.parts}
     for connector in model.at_points:
-        kind, points = type(of_loads.get(id(connector), connector)).__name__, list(enumerate(connector.points))
+        kind, points = model.name_of(connector), list(enumerate(connector.points))
         if isinstance(connector, PartAlongBeam):  # what acts on its nodes, or on the point that slides along the beam
             items = (item.item for item in connectors_of(model, static=True).items if item.given is connector)
             nodes = (point for item in items for point in item.points)
@@ -162,9 +160,17 @@ def _acting(forces: Callable[[Solution], np.ndarray], besides: _Values, part: So
     return {"force": _flat(both[..., :2]), "moment": both[..., 2:], **constant}
 
 
+def _torques(model: Model) -> Iterator[_Vertices]:
+    """Yield the vertices of motors whose torque does not depend on the state."""
+    for load in (part for motor in model.loads if isinstance(motor, Motor) for part in motor.parts):
+        if isinstance(load, PointLoad):
+            acting = partial(_acting, partial(force_of_load, load=load), {})
+            yield _Vertices(model.name_of(load), _LOAD, _ACTION, _at(model, load.point), acting)
+
+
 def points_of_forces(model: Model) -> list[_Vertices]:
-    """Return a vertex for each point at which a support, connector or joint acts, all with force and moment."""
-    groups = [*_supports(model), *_connectors(model), *_joints(model, model.shared_joints)]
+    """Return a vertex for each point at which a support, motor, connector or joint acts, with force and moment."""
+    groups = [*_supports(model), *_torques(model), *_connectors(model), *_joints(model, model.shared_joints)]
     return [each for each in groups if "force" in each.fields]
 
 

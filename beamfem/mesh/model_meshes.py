@@ -104,7 +104,7 @@ def required_nodes(model: "Model") -> list[list[tuple[float, str]]]:
     points += [(load, load.point) for load in model.point_loads]
     points += [(connector, point) for connector in model.at_points for point in connector.points]
     for part, point in points:
-        result[model.number_of(point.beam)].append((point.fraction, type(part).__name__))
+        result[model.number_of(point.beam)].append((point.fraction, model.name_of(part)))
     for beam, nodes in zip(model.beams, result, strict=True):
         nodes += [(jump / beam.curve.length, "section") for jump in beam.jumps]
     lines: tuple[AlongBeam, ...] = (*model.line_loads, *(load for _, load in model.imposing))

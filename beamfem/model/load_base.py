@@ -101,13 +101,13 @@ class Load(ABC):
         Load.__post_init__(self)
 
 
-def factor(load: Load, time: float, static: bool) -> float:
-    """Return the factor of a load at a time, in statics at a load factor.
+def factor(load: Load, time: float, static: bool, name: str | None = None) -> float:
+    """Return the factor of a load at a time, in statics at a load factor; name: see `Model.name_of`.
 
     It is amplitude(time) if there is one, or else, in statics, the load factor for loads with `scale`, or else 1.
     """
     if load.amplitude is not None:
-        return function_value(f"amplitude of {type(load).__name__}", load.amplitude, time)
+        return function_value(f"amplitude of {name or type(load).__name__}", load.amplitude, time)
     return time if static and load.scale else 1.0
 
 

@@ -410,6 +410,14 @@ class Model:
     def _parts_of_loads(self) -> tuple[Any, ...]:
         return tuple(part for load in self.loads for part in load.parts)
 
+    def name_of(self, part: object) -> str:
+        """Return the name of the kind of a part for messages, that of the load if a load consists of it."""
+        return type(self._loads_of_parts.get(id(part), part)).__name__
+
+    @cached_property
+    def _loads_of_parts(self) -> dict[int, Load]:
+        return {id(part): load for load in self.loads for part in load.parts}
+
     @cached_property
     def acting(self) -> tuple[Load, ...]:
         """The loads, compound ones replaced by their parts; loads that no table depends on come last."""

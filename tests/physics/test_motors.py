@@ -278,3 +278,54 @@ def test_a_controlled_hinge_is_a_torsion_spring_and_its_work_is_counted():
     assert one_motion.position(two.end) == pytest.approx(other.position(two.end), abs=1e-8)
     energy = one_motion.energy()
     assert energy.error == pytest.approx(np.zeros(len(energy.error)), abs=1e-4 * np.abs(energy.work).max())
+
+
+@pytest.mark.parametrize("in_hinge", [False, True])
+def test_torques_of_motors_are_in_the_table_of_forces(in_hinge):
+    crank, rod = line((0, 0), (CRANK, 0)), line((CRANK, 0), (CRANK + ROD, 0))
+    hinge = bf.Hinge(crank.end, rod.start)
+    motor = bf.Motor(hinge if in_hinge else crank.start, torque=lambda time: 2.0 + time)
+    motion = bf.simulate(bf.Model([crank, rod], [bf.Pin(crank.start)], [motor], [hinge]), 0.003, 1e-3)
+    table = motion.to_pandas(forces=True)
+    found = table[table["kind"] == "Motor"]["moment"].to_numpy().reshape(len(motion), -1)
+    torque = 2.0 + motion.time
+    assert found == pytest.approx(np.column_stack([-torque, torque] if in_hinge else [torque]))
+
+
+WRONG = {
+    "an angle that is not finite": (lambda at: bf.Motor(at, angle=lambda time: np.nan), "by Motor at .* finite"),
+    "a speed that is not finite": (lambda at: bf.Motor(at, speed=lambda time: np.nan), "by Motor at .* finite"),
+    "a speed that is none": (lambda at: bf.Motor(at, speed=lambda time: None), "by Motor at .*NoneType"),
+    "a torque that is not finite": (lambda at: bf.Motor(at, torque=lambda time: np.nan), "of Motor at .* finite"),
+    "a torque that stops": (lambda at: bf.Motor(at, torque=lambda t: t if t < 2e-3 else np.nan), "of Motor.* finite"),
+    "an angle that jumps": (lambda at: bf.Motor(at, angle=1.0), r"^Motor at .* would\s+jump by 1"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+@pytest.mark.parametrize("in_hinge", [False, True])
+def test_messages_name_the_motor(name, in_hinge):
+    crank, rod = line((0, 0), (CRANK, 0)), line((CRANK, 0), (CRANK + ROD, 0))
+    hinge = bf.Hinge(crank.end, rod.start)
+    make, words = WRONG[name]
+    model = bf.Model([crank, rod], [bf.Pin(crank.start)], [make(hinge if in_hinge else crank.start)], [hinge])
+    with pytest.raises(bf.InputError, match=words):
+        bf.simulate(model, 0.01, 1e-3)
+
+
+def test_static_messages_and_those_of_conditions_name_the_motor():
+    crank, rod = line((0, 0), (CRANK, 0)), line((CRANK, 0), (CRANK + ROD, 0))
+    hinge, spring = bf.Hinge(crank.end, rod.start), bf.TorsionSpring(crank.end, rod.start, 10.0)
+
+    def model(*motors, parts=(spring,)):
+        return bf.Model([crank, rod], [bf.Clamp(crank.start)], motors, [hinge], connectors=parts)
+
+    with pytest.raises(bf.InputError, match="amplitude of Motor at 0 must be finite"):
+        bf.solve_static(model(bf.Motor(hinge, torque=lambda factor: np.nan)))
+    with pytest.raises(bf.InputError, match=r"^Motor at .*another support already prescribes rotation"):
+        bf.solve_static(model(bf.Motor(rod.end, angle=0.1), bf.Motor(rod.end, angle=0.2)))
+    twice = [bf.Motor(hinge, angle=lambda time: time**2) for _ in range(2)]
+    with pytest.raises(bf.InputError, match=r"conditions of connectors \(Motor at"):
+        bf.simulate(model(*twice, parts=()), 0.01, 1e-3)
+    with pytest.raises(bf.InputError, match="the force of Motor depends on velocities"):
+        bf.solve_modes(model(bf.Motor(hinge, torque=lambda time, angle, speed: -speed)), 1)

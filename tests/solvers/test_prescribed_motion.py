@@ -187,7 +187,7 @@ def test_functions_are_asked_within_the_motion_only(kinked):
 def test_a_prescribed_motion_within_a_step_is_named():
     _, model = post(STEEL, lambda t: 1e-3 * np.sin(2.0 * np.pi * 1000.0 * t))
     with pytest.warns(
-        UserWarning, match=r"motion prescribed at \(0, 0\).*varies more within the step from 0 s to 0.001"
+        UserWarning, match=r"motion prescribed by Prescribed at \(0, 0\).*varies more within the step from 0 s to 0.001"
     ):
         solution = bf.simulate(model, 0.01, 1e-3)
     assert "varies within steps" in solution.statistics.ended

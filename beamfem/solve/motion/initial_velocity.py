@@ -189,8 +189,9 @@ def _jumping(
             sizes[unit] = float(np.hypot(sizes[unit], jumps[dof]))
             driven = driven or callable(prescribed[direction])
     jump = " and ".join(f"{size:.4g} {unit}" for unit, size in sizes.items() if size > 0.0)
+    name = system.model.name_of(support)
     message = (
-        f"{type(support).__name__} at {support.point}, prescribes {', '.join(imposed)} when the motion begins, but "
+        f"{name} at {support.point}, prescribes {', '.join(imposed)} when the motion begins, but "
         f"{'start' if given else 'the reference'} has {', '.join(there)} there: it would jump by {jump}. "
     )
     if not given:
@@ -209,8 +210,9 @@ def _sliding(system: System, support: PointSupport, beside: float) -> str:
     """Return the message that an inclined roller holds its point on a line that is a distance [m] away."""
     assert support.direction is not None
     x, y = support.direction.tolist()
+    name = system.model.name_of(support)
     return (
-        f"{type(support).__name__} at {support.point}, holds the displacement along ({x:.4g}, {y:.4g}) at 0, but start "
+        f"{name} at {support.point}, holds the displacement along ({x:.4g}, {y:.4g}) at 0, but start "
         f"has {beside:.4g} {system.model.unit('m')} there, by which it would jump; start from what solve_static finds "
         "with this support"
     )

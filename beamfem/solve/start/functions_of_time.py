@@ -98,7 +98,7 @@ def functions_of_time(system: System) -> list[FunctionOfTime]:
             by_id.setdefault(id(amplitude), FunctionOfTime(f"amplitude of {_name(load, model)}", amplitude, True))
     for item in system.prescribed:
         if callable(item.value):
-            by_id.setdefault(id(item.value), FunctionOfTime(f"motion prescribed at {item.place}", item.value, False))
+            by_id.setdefault(id(item.value), FunctionOfTime(f"motion prescribed by {item.source}", item.value, False))
     return list(by_id.values())
 
 

@@ -221,6 +221,10 @@ class MovingLoad(Load):
     def place_at(self, time: float) -> float:
         """Return the arc length [m] at a time [s] or load factor; off the beam there is no force."""
 
+    def presence(self, time: float) -> float:
+        """Return 1 at times [s] or load factors at which it is on the beam, 0 at others."""
+        return float(0.0 <= self.place_at(time) / self.beam.curve.length <= 1.0)
+
     @abstractmethod
     def moved(self, position: Callable[[float], float]) -> "MovingLoad":
         """Return the load at the arc lengths of another function of time."""
@@ -237,9 +241,10 @@ class MovingLoad(Load):
 
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
         """Return the force to draw, see `Load.shapes`."""
-        fraction = self.place_at(placed.time) / self.beam.curve.length
-        on_beam = 0.0 <= fraction <= 1.0
-        return (Force(self.beam.at(fraction), weight * np.array(self.vector)),) if on_beam else ()
+        if not self.presence(placed.time):
+            return ()
+        point = self.beam.at(self.place_at(placed.time) / self.beam.curve.length)
+        return (Force(point, weight * np.array(self.vector)),)
 
 
 class CompositeLoad(Load):

@@ -94,3 +94,27 @@ def test_refused_with_a_reason():
         bf.MovingForce(beam, 1.0, (0.0, -1.0))
     with pytest.raises(bf.InputError, match="vector of MovingForce"):
         bf.MovingForce(beam, lambda time: time, 1.0)
+
+
+def test_a_path_crosses_a_bridge_from_outside_to_outside():
+    beam, model = bridge(elements=4)
+    wheel = bf.MovingForce(beam, lambda load: LENGTH * (1.2 * load - 0.1), (0.0, -FORCE))
+    loaded = model.with_loads([wheel])
+    path = bf.trace_equilibrium(loaded, until=0.5)
+    static = bf.solve_static(loaded, at=[0.5])
+    assert path.position(beam.at(0.5))[-1] == pytest.approx(static.position(beam.at(0.5))[-1], abs=1e-9)
+    across = bf.trace_equilibrium(loaded, until=1.0)
+    assert across.position(beam.at(0.5))[-1] == pytest.approx((0.5 * LENGTH, 0.0), abs=1e-9)
+
+
+def test_a_path_ends_where_a_force_leaves_a_free_end():
+    beam = bridge(elements=4)[0]
+    wheel = bf.MovingForce(beam, lambda load: 2.0 * LENGTH * load, (0.0, -0.1 * FORCE))
+    cantilever = bf.Model([beam], [bf.Clamp(beam.start)], [wheel])
+    with pytest.raises(bf.ConvergenceError, match=r"at load factor 0.5, where presence of MovingForce .* from 1 to 0"):
+        bf.trace_equilibrium(cantilever, until=1.0)
+    solution = bf.solve_static(cantilever)
+    assert solution.at == pytest.approx([0.0, 0.5, 0.5, 1.0])
+    tip = solution.displacement(beam.end)[:, 1]
+    alone = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -0.1 * FORCE))]))
+    assert tip == pytest.approx([0.0, alone.displacement(beam.end)[-1, 1], 0.0, 0.0], abs=1e-9)

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.linalg import LinAlgError
 
+from beamfem.equations.equations import residual_at_rest
 from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
@@ -327,7 +328,7 @@ def _traced(
         if start is None:
             point = replace(point, tangent=direction * point.tangent)
             record.add(point.y, point.negative_pivots == 0)
-            _require_no_jump_at_start(line, direction, record)
+            _require_no_jump_at_start(line, direction, record, point)
         else:
             record.add(np.append(start.p, start.at), stable=False, turned=start.turned)
             if points > 1:
@@ -349,7 +350,7 @@ def _traced(
                 record.end("the branch is closed: it has come back to the bifurcation from which it starts")
                 break
             if point.load_factor == kink and not landed:
-                if jump is not None:
+                if jump is not None and _is_felt(jump, system, point):
                     _end_at(jump, record)
                 line, point = _beyond(line, point)
             line, rescaled = line.rescaled(point)
@@ -404,13 +405,26 @@ def _piece(
     return replace(line, piece=(low, high)), kink, jump
 
 
-def _require_no_jump_at_start(line: Continuation, direction: int, record: PathRecord) -> None:
+def _require_no_jump_at_start(line: Continuation, direction: int, record: PathRecord, point: PathPoint) -> None:
     """Raise ConvergenceError if a function jumps from its value at load factor 0."""
     with suppress(InputError):  # from a function that is not defined so far
         low, high = sorted((0.0, direction * _NEAR_START))
         for jump in jumps_between(line.functions_of_time, low, high):
-            if 0.0 in (jump.before, jump.after):
+            if 0.0 in (jump.before, jump.after) and _is_felt(jump, line.system, point):
                 _end_at(jump, record)
+
+
+_FELT = 1e-6  # of the largest force: change of those that supports do not take up; of a prescribed displacement
+
+
+def _is_felt(jump: Jump, system: System, point: PathPoint) -> bool:
+    """Return whether a jump moves the model, unlike that of a force which arrives at a support."""
+    moved = [system.prescribed_changes(at) for at in (jump.before, jump.after)]
+    if np.any(np.abs(moved[1] - moved[0]) > _FELT * np.abs(moved).max(axis=0)):
+        return True
+    ends = [residual_at_rest(system, point.y[:-1], at) for at in (jump.before, jump.after)]
+    change, largest = np.abs(system.along_free(ends[1] - ends[0])), max(float(np.abs(end).max()) for end in ends)
+    return bool(change.max(initial=0.0) > _FELT * largest)
 
 
 def _end_at(jump: Jump, record: PathRecord) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from beamfem.equations.system import System
 from beamfem.errors import warn
 from beamfem.model.beam import Beam, beam_in_words
-from beamfem.model.load_base import Load
+from beamfem.model.load_base import Load, MovingLoad
 from beamfem.model.model import Model
 from beamfem.model.time_functions import Integral, kinks_of
 from beamfem.validation import function_value
@@ -96,6 +96,8 @@ def functions_of_time(system: System) -> list[FunctionOfTime]:
         amplitude = load.amplitude  # a method is a new object at each access
         if amplitude is not None:
             by_id.setdefault(id(amplitude), FunctionOfTime(f"amplitude of {_name(load, model)}", amplitude, True))
+        if isinstance(load, MovingLoad):
+            by_id[id(load)] = FunctionOfTime(f"presence of {_name(load, model)}", load.presence, True)
     for item in system.prescribed:
         if callable(item.value):
             by_id.setdefault(id(item.value), FunctionOfTime(f"motion prescribed by {item.source}", item.value, False))

@@ -149,3 +149,38 @@ def test_a_strip_that_leaves_its_floors_is_told_to_be_held(load):
     words = r"one way only are open \(Floor at .*\), beam 0 can move freely: it translates along y, .*: add a support"
     with pytest.raises(bf.ConvergenceError, match=words):
         bf.solve_static(model)
+
+
+def unbalanced(solution, beam, ground, pretension, force):
+    """Return the moment about the pin of a bar with a cable of 1e5 N/m at its end and a force downwards there."""
+    end, start = solution.position(beam.end)[-1], np.array(beam.end.reference)
+    way = np.array(ground) - end
+    free = np.linalg.norm(np.array(ground) - start) - pretension / 1e5
+    pull = 1e5 * (np.linalg.norm(way) - free) * way / np.linalg.norm(way)
+    return end[0] * (pull[1] - force) - end[1] * pull[0]
+
+
+@pytest.mark.filterwarnings("ignore:round-off leaves")  # what is left of the pretension in the cable
+@pytest.mark.parametrize("pretension", [1e-3, 1.0, 100.0])
+@pytest.mark.parametrize("ground", [(1.0, 1.0), (2.0, 1.0)])
+def test_a_pretension_that_turns_a_bar_until_its_cable_is_slack_is_no_equilibrium(pretension, ground):
+    """A pinned bar hangs on a cable that nothing holds taut, unless its load acts from the start."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(3), SECTION, STEEL)
+    cable = bf.Cable(beam.end, ground, 1e5, pretension)
+    pinned = bf.Model([beam], [bf.Pin(beam.start)], [bf.PointForce(beam.end, (0.0, -500.0))], connectors=[cable])
+    words = r"^no unique equilibrium at load factor 0; where .* open \(Cable at .*with scale=False"
+    for solve in (bf.solve_static, lambda model: bf.trace_equilibrium(model, until=1.0)):
+        with pytest.raises(bf.ConvergenceError, match=words):
+            solve(pinned)
+    hung = bf.solve_static(pinned.with_loads([bf.PointForce(beam.end, (0.0, -500.0), scale=False)]))
+    assert unbalanced(hung, beam, ground, pretension, 500.0) == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("pretension", [1.0, 100.0])
+def test_a_pretension_along_a_bar_holds_it(pretension):
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(3), SECTION, STEEL)
+    cable = bf.Cable(beam.end, (2.0, 0.0), 1e5, pretension)
+    loads = [bf.PointForce(beam.end, (0.0, -10.0))]
+    held = bf.solve_static(bf.Model([beam], [bf.Pin(beam.start)], loads, connectors=[cable]))
+    assert unbalanced(held, beam, (2.0, 0.0), pretension, 10.0) == pytest.approx(0.0, abs=1e-6)
+    assert held.displacement(beam.end)[-1, 1] < -0.01

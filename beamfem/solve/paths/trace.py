@@ -26,7 +26,7 @@ from beamfem.solve.continuation.steps import Refused, Step, longest_accepted, lo
 from beamfem.solve.newton.newton import Newton, require_newton
 from beamfem.solve.paths.path_error import path_attempt
 from beamfem.solve.start.functions_of_time import SAME, Jump, functions_of_time, jumps_between, kinks_between
-from beamfem.solve.start.mechanisms import free_when_open, no_equilibrium_at_start, require_independent, require_support
+from beamfem.solve.start.mechanisms import lost_at, no_equilibrium_at_start, require_independent, require_support
 from beamfem.solve.start.start_checks import left_over, refuse_memory
 from beamfem.solve.statics.statics import first_equilibrium, nothing_acts
 from beamfem.validation import count, finite, function_of_one, optional, positive, shown
@@ -511,12 +511,11 @@ def _step(
     record.cuts += len(reasons)
     if found is None:
         record.ended = max(reasons, key=reasons.count)
-        raise ConvergenceError(
+        message = (
             f"the path ends at load factor {point.load_factor:.6g} after {len(record.rows)} points: "
             f"{record.ended}, with steps along it down to {size:.1e}{advice(record.model, point.y[:-1])}"
-            + free_when_open(line.system),
-            record.path(),
         )
+        raise ConvergenceError(lost_at(line.system, point.load_factor, message), record.path())
     step, landing = found
     return replace(step, next_size=min(step.next_size, size)) if reasons else step, landing
 

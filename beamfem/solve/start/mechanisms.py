@@ -180,10 +180,19 @@ def free_when_open(system: System) -> str:
 
 def no_equilibrium_at_start(system: System, why: str) -> str:
     """Return the message that there is no equilibrium at load factor 0."""
-    loaded, opened = system.loads.at(0.0).any, free_when_open(system)
-    if opened and not loaded:
+    acting = "under the loads that do not scale" if system.loads.at(0.0).any else "at load factor 0"
+    return lost_at(system, 0.0, f"no equilibrium {acting}: {why}")
+
+
+def lost_at(system: System, load_factor: float, message: str) -> str:
+    """Return the message that there is no state or path beyond a load factor, and where parts that are open cause it.
+
+    Without a load, pretension of parts that hold one way only moves what it does not clamp, until they are open.
+    """
+    opened = free_when_open(system)
+    if opened and abs(load_factor) <= NEGLIGIBLE and not system.loads.at(0.0).any:
         return f"no unique equilibrium at load factor 0{opened}"
-    return f"no equilibrium {'under the loads that do not scale' if loaded else 'at load factor 0'}: {why}{opened}"
+    return message + opened
 
 
 def free_motion(system: System) -> FreeMotion | None:

@@ -16,7 +16,7 @@ from beamfem.progress import progress
 from beamfem.results.solution_checks import advice, may_turn_back, turned_back
 from beamfem.solve.continuation.steps import leaves_arc
 from beamfem.solve.newton.newton import Newton, NewtonResult, Termination, largest_change, solve_equilibrium
-from beamfem.solve.start.mechanisms import free_when_open
+from beamfem.solve.start.mechanisms import lost_at
 from beamfem.solve.statics.load_path import (
     BESIDE,
     BifurcatesError,
@@ -314,12 +314,9 @@ def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float],
         lost_near_by = len(done.rows) > 1 and not isinstance(lost, OutOfReachError)
         if lost_near_by and _merges(follower, done, reached, 2.0 * reached - np.append(done.rows[-2][1], 0.0), to[1]):
             return
-        raise ConvergenceError(
-            f"the path could not be followed beyond load factor {done.reached:.6g}: {lost}"
-            + advice(done.model, done.state)
-            + free_when_open(follower.system),
-            done.solution(),
-        ) from lost
+        message = f"the path could not be followed beyond load factor {done.reached:.6g}: {lost}"
+        message = lost_at(follower.system, done.reached, message + advice(done.model, done.state))
+        raise ConvergenceError(message, done.solution()) from lost
 
 
 def _start(done: StaticRecord, follower: PathFollower) -> tuple[np.ndarray, float]:

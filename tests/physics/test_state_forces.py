@@ -103,6 +103,5 @@ def test_a_function_that_fails_is_named_with_its_own_arguments(part, message):
 
 
 def test_numbers_beyond_those_of_the_computer_are_refused_before_a_solve():
-    spring = bf.SpringDamper(ROD.end, (1.0, 1.0), 1e308)
-    with pytest.raises(bf.InputError, match="force of SpringDamper is not finite in the reference: a number of it is"):
-        bf.solve_static(bf.Model([ROD], [CLAMP], connectors=[spring]))
+    with pytest.raises(bf.InputError, match=r"stiffness of SpringDamper is 1e\+308, .* cannot square"):
+        bf.SpringDamper(ROD.end, (1.0, 1.0), 1e308)

@@ -124,7 +124,7 @@ def test_steps_that_follow_a_tolerance_end_where_a_sled_on_a_spring_slips_and_st
     motion = bf.simulate(
         free, times[-1], save_at=times, tolerance=tolerance, integrator=bf.Radau(), start=bf.solve_static(held, steps=4)
     )
-    turned = motion.displacement(bar.start)[1:, 0] if len(motion) > len(times) else motion.displacement(bar.start)[:, 0]
+    turned = motion.displacement(bar.start)[:, 0]
     assert turned[: len(ends) - 1] == pytest.approx(ends[1:], abs=10.0 * tolerance * 0.3)
     assert turned[-1] == pytest.approx(ends[-1], abs=10.0 * tolerance * 0.3)
     assert np.all(np.diff(motion.energy().dissipated) >= 0.0)

@@ -20,7 +20,8 @@ _LARGEST, _SMALLEST = 4.0, 0.2  # changes of the step at once
 _RECOVERED = 1.25  # after a step was refused, the largest change grows by
 _SHORTER = 0.7  # change of the step if its iterations do not converge
 _ROUND_OFF = 2e-14  # of the model: error of a step that may be round-off
-_ITERATED = 1e-2  # of the error allowed: that of iterations
+_ITERATED = 0.02  # of the error allowed: what iterations may move the model by up to the end
+_FINEST = 1e-16  # of the model: error of iterations
 _LINEAR = 0.1  # share of the difference, or of the one allowed, that is left to iterations
 _FAST = 0.4  # rate of convergence of the next steps: it grows with their square, as sections turn within them
 _USELESS = 0.5  # rate of convergence with which a tangent ends
@@ -146,7 +147,8 @@ def take_pair(system: System, solver: MotionSolver, doubled: Doubled, h: float) 
     small_code()
     fine, coarse, samples, n = doubled.fine, doubled.coarse, doubled.fine.samples, solver.size
     allowed = max(2.0 * h * doubled.rate, _ROUND_OFF)
-    fine.accuracy = _ITERATED * allowed
+    # their error in a position is one in the velocity besides, in as many steps as there are
+    fine.accuracy = max(_ITERATED * allowed * h / doubled.duration, _FINEST)
     for step in range(3):
         begin, size = doubled.time + step % 2 * h, 2.0 * h if step == 2 else h
         for i in range(samples):

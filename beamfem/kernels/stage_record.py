@@ -60,6 +60,8 @@ class Stages(Record):
     error_factor: float  # error of a step by the size of its first correction: factor size^power
     error_power: float
     accuracy: float  # error of an iteration, of the model, where it is given
+    per_work: float  # 1 / (mass of the model times the square of its size), where it is given
+    work: float  # of the forces before a correction on it
     kept_rate: float  # of convergence, above which the next step gets new tangents
     rate: float  # of the last step
     iteration: int
@@ -73,6 +75,7 @@ class Stages(Record):
     a: Annotated[Reals, "stages", "stride"]
     last: Annotated[Reals, "stages", "stride"]
     change: Annotated[Reals, "stages", "stride"]
+    forces: Annotated[Reals, "stages", "height"]  # out of balance
     right: Annotated[Reals, "stages", "height"]
     planes: Annotated[Reals, "stages", "height"]
     entries: int
@@ -122,6 +125,7 @@ class Doubled(Record):
     ratio: float  # of both, for which accelerations are extrapolated
     shortest: float
     longest: float
+    duration: float  # of the motion
     rate: float  # error of positions per time, of the model, that is allowed
     saved: float  # error of earlier steps that was allowed and not made, which one step may make at once
     most_saved: float

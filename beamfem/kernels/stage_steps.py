@@ -109,9 +109,10 @@ def residual(system: System, solver: MotionSolver, stages: Stages, step: int, i:
     usual, solver.rotations = solver.rotations, at(stages.rotations, i * 2 * solver.node_stride)
     solver.routines.assemble(system, solver)
     solver.rotations = usual
-    right, forces, free = at(stages.right, i * stages.height), system.residual, solver.free_dofs
+    right, kept = at(stages.right, i * stages.height), at(stages.forces, i * stages.height)
+    forces, free = system.residual, solver.free_dofs
     for k in range(solver.unknown):
-        right[k] = -forces[free[k]]
+        right[k] = kept[k] = -forces[free[k]]
 
 
 @routine()
@@ -206,6 +207,19 @@ def solve_planes(solver: MotionSolver, stages: Stages) -> None:
         stages.routines.solve_complex(n, half, re, im, at(planes, plane * height), at(planes, (plane + 1) * height))
 
 
+@inlined
+def _work(stages, unknown):
+    """Return the work of the forces out of balance on the corrections of all stages."""
+    s, height, total = stages.stages, stages.height, 0.0
+    for i in range(s):
+        for j in range(s):
+            own, found, work = at(stages.forces, i * height), at(stages.planes, j * height), 0.0
+            for k in range(unknown):
+                work += own[k] * found[k]
+            total += stages.of_p[i * s + j] * work
+    return total
+
+
 @routine(fastmath=FAST)
 def correct(solver: MotionSolver, stages: Stages) -> float:
     """Add corrections to the stages; return the largest change of p, relative to its scale."""
@@ -214,6 +228,7 @@ def correct(solver: MotionSolver, stages: Stages) -> float:
         found, change = at(stages.planes, i * stages.height), at(stages.change, i * stride)
         for k in range(unknown):
             change[free[k]] = found[k]
+    stages.work = _work(stages, unknown) if stages.per_work > 0.0 else 0.0
     changes, p, v, a = as_rows(stages.change), as_rows(stages.p), as_rows(stages.v), as_rows(stages.a)
     scale, size = as_rows(solver.inverse_scale), zeros()
     for k in range(0, stride, WIDTH):
@@ -292,7 +307,8 @@ def complete(system: System, solver: MotionSolver, stages: Stages, step: int) ->
 def iterate(system: System, solver: MotionSolver, stages: Stages, step: int, fresh: int) -> int:
     """Iterate from the stages predicted; return whether they converge.
 
-    Iterations end where their estimated error is a share of that of the step, or where corrections are round-off.
+    Iterations end where their estimated error is a share of that of the step, or where corrections are round-off. Where
+    an accuracy is given, the energy of a correction, as a velocity, may move the model in a step by no more than it.
     """
     small_code()
     own, statistics, size, tolerance, ratio = stages.routines, solver.statistics, 0.0, _FINEST, 1.0
@@ -329,7 +345,9 @@ def iterate(system: System, solver: MotionSolver, stages: Stages, step: int, fre
                     return 0
                 statistics.noise = max(statistics.noise, 2.0 * before)
                 return 1
-        if rate < 1.0 and rate * size <= (1.0 - rate) * tolerance:
+        # stiff vibrations that a correction excites move the model by their velocity, far more than the correction does
+        excited = stages.time_step * math.sqrt(abs(stages.work) * stages.per_work)
+        if rate < 1.0 and rate * max(size, excited) <= (1.0 - rate) * tolerance:
             if corrections > 1:
                 stages.rate = rate
                 stages.factored = rate <= stages.kept_rate

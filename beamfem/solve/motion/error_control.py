@@ -148,7 +148,7 @@ def _march_pairs(
     with progress("time [s]", cutter.end) as report, motion_workspace(system) as space:
         motion = DoubledSteps(system, space, coefficients(method), method.order, cutter.statistics)
         own = motion.record
-        own.fill(time=reached.time, step=reached.step, rate=_SUM * tolerance / cutter.end)
+        own.fill(time=reached.time, step=reached.step, duration=cutter.end, rate=_SUM * tolerance / cutter.end)
         own.shortest, own.most_saved = _SHORTEST * cutter.end, _SAVED * tolerance
         own.saved = min(reached.saved, own.most_saved)
         for number, part in enumerate(parts):

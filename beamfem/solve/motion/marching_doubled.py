@@ -11,6 +11,7 @@ from beamfem.kernels.doubled_steps import march_doubled
 from beamfem.kernels.motion_record import MotionLimits, MotionStatistics
 from beamfem.kernels.predictor import padded
 from beamfem.kernels.stage_record import Doubled, DoubledRoutines, Stages
+from beamfem.results.energy_balance import masses
 from beamfem.solve.motion.compiled_steps import StepsInCalls
 from beamfem.solve.motion.coupled_planes import CoupledPlanes, is_coupled
 from beamfem.solve.motion.cut_steps import Rows
@@ -65,11 +66,13 @@ class DoubledSteps(StepsInCalls):
     def _method(self, which: str) -> Stages:
         """Return the method, with workspace of its own, without a step yet."""
         space, key, s = self._space, (self._rule, which), len(self._rule.nodes)
+        mass = 0.5 * float(self._system.table(masses)[self._system.positions].sum())
         own = space.stages.pop(key, None)
         own = space.stages[key] = workspace_of(self._system, space, self._rule) if own is None else own
         own.fill(
             time_step=0.0,
             elapsed=0.0,
+            per_work=1.0 / (self._system.extent**2 * mass),
             rate=0.0,
             known=0,
             factored=0,

@@ -25,6 +25,7 @@ from beamfem.solve.motion.stage_coefficients import Coefficients
 from beamfem.solve.motion.stored_states import Saving
 
 _KEPT = 0.1  # rate of convergence up to which factors are kept for the next step
+_WORKSPACE = ("begin", "p", "v", "a", "last", "change", "forces", "right", "planes", "matrices", "rotations")
 _TOGETHER = 1e-11  # of the model: correction that ends an iteration on all stages
 
 
@@ -48,7 +49,7 @@ class StageSteps(StepsInCalls):
         self._routine = march_explicit if rule.explicit else march_stages
         found = space.stages.pop(rule, None)
         self._stages = own = space.stages[rule] = workspace_of(system, space, rule) if found is None else found
-        own.fill(elapsed=0.0, accuracy=0.0, rate=0.0, known=0, factored=0, solved=0)
+        own.fill(elapsed=0.0, accuracy=0.0, per_work=0.0, rate=0.0, known=0, factored=0, solved=0)
         if own.time_step != h:
             _fill_step(own, rule, h)
         self._coupled = CoupledPlanes(system, space, own) if is_coupled(system) else None
@@ -194,6 +195,6 @@ def workspace_of(system: System, space: MotionWorkspace, rule: Coefficients) -> 
         into=rule.into,
         back=rule.of_p @ rule.back,
         to_accelerations=rule.of_p if rule.explicit else np.linalg.inv(rule.of_p),
-        **aligned(own.shapes("begin", "p", "v", "a", "last", "change", "right", "planes", "matrices", "rotations")),
+        **aligned(own.shapes(*_WORKSPACE)),
     )
     return own

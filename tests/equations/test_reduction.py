@@ -118,5 +118,5 @@ def test_interfaces_may_be_points_of_a_rigid_body(place):
 def test_an_interface_on_an_inclined_roller_is_named():
     other = bf.Beam(bf.Line((2, 0), (2, 1)), 2, bf.CRBF(3), bf.Rectangle(0.02, 0.02), STEEL)
     supports = [bf.Clamp(BEAM.start), bf.Roller(other.start, normal=(0.6, 0.8)), bf.Pin(other.end)]
-    with pytest.raises(bf.InputError, match="conditions of an inclined Roller"):
+    with pytest.raises(bf.InputError, match="conditions of an inclined roller"):
         bf.reduce(bf.Model([BEAM, other], supports), [other.start], 2)

@@ -127,4 +127,4 @@ def test_steps_that_follow_a_tolerance_end_where_a_sled_on_a_spring_slips_and_st
     turned = motion.displacement(bar.start)[:, 0]
     assert turned[: len(ends) - 1] == pytest.approx(ends[1:], abs=10.0 * tolerance * 0.3)
     assert turned[-1] == pytest.approx(ends[-1], abs=10.0 * tolerance * 0.3)
-    assert np.all(np.diff(motion.energy().dissipated) >= 0.0)
+    assert np.all(np.diff(motion.energy().dissipated) >= -1e-15)  # J of 0.3 J, round-off

@@ -272,7 +272,7 @@ def _determined(system: System, dofs: np.ndarray) -> str:
     """Return the message that conditions determine some of the coordinates with these numbers."""
     parts = [item for item in system.connectors.items if len(item.own) and np.isin(item.dofs, dofs).any()]
     names = [in_words(parts)] if parts else []
-    names += ["an inclined Roller"] if np.isin(dofs, system.free_dofs[system.rotated[0]]).any() else []
+    names += ["an inclined roller"] if np.isin(dofs, system.free_dofs[system.rotated[0]]).any() else []
     return (
         f"the coordinates of the interfaces are not independent: conditions of {' and of '.join(names)} determine some "
         "by others; leave out one of the interfaces"

@@ -233,7 +233,7 @@ def test_no_two_kernels_share_a_name():
     found = {routine.name for half_width in range(20) for routine in band(half_width)}
     for half_width in range(20):
         found |= {routine.name for short in (True, False) for routine in bidirectional_lu(half_width, short)}
-    assert len(found) == 3 * 7 + 2 * (7 + 6)
+    assert len(found) == 3 * 10 + 2 * (10 + 9)
     for nodes in (2, 3):
         inertia.add_inertia.fixed(nodes=nodes, vectors=2, others=4)
     names = [routine.name for routine in compiling.Routine.made if routine.__module__.startswith("beamfem.kernels")]

@@ -17,6 +17,7 @@ from connectors import (
     crossbar,
 )
 from section_laws import LinearLaw
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.equations import equation_numbering as layout
@@ -174,7 +175,7 @@ def test_a_connector_at_a_clamp_changes_nothing(part):
 
 @pytest.mark.filterwarnings("ignore::beamfem.EnergyWarning")  # long steps damp nearly all of the vibration
 @pytest.mark.parametrize("step", [1e-3, 0.1, 1.0])
-@pytest.mark.parametrize("density", [1.0, 1e-6, 1e-9])
+@mostly_slow("density", [1.0, 1e-6, 1e-9], quick=(2,))
 def test_connectors_may_hold_and_load_a_beam_of_hardly_any_mass(density, step):
     """A rotor: a light shaft with a disc between springs; without them the band would have no digits."""
     shaft = beam(bf.CRBF(2), elements=6, density=density)

@@ -9,6 +9,7 @@ from random_models import random_recipe
 from recipes import View
 from scipy.optimize import brentq
 from scipy.sparse.linalg import ArpackNoConvergence
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.equations.system import system_of
@@ -166,7 +167,7 @@ def test_a_path_that_is_lost_at_once_hands_back_its_start_as_stopped(monkeypatch
     assert caught.value.solution.load_factor.tolist() == [0.0]
 
 
-@pytest.mark.parametrize(("seed", "points"), [(177, 100), (582, 60)])
+@mostly_slow(("seed", "points"), [(177, 100), (582, 60)], quick=(1,))
 @pytest.mark.parametrize("half_width", [64, -1], ids=["band", "sparse"])
 def test_a_tie_under_a_large_load_has_the_limit_point_of_its_path(widest_band, seed, points, half_width):
     """One step went over a pair of limit points 3e-7 apart: its length was all load, and counts were equal behind."""
@@ -318,7 +319,7 @@ def test_buckling_is_found_where_the_iteration_does_not_converge(monkeypatch, el
     assert found.linearised == pytest.approx(exact.linearised, rel=1e-8)
 
 
-@pytest.mark.parametrize("led", [0.005, 0.01, 0.02])
+@mostly_slow("led", [0.005, 0.01, 0.02], quick=(1,))
 def test_a_search_that_finds_the_same_place_again_ends(led):
     """It went on for ever: behind a step onto another path the tangent seemed to change wherever it was looked."""
     curve, rubber = bf.Line((0, 0), (1.029752878431586, -0.41368336197898953)), bf.Material(2e9, 0.3, 1000.0)

@@ -3,13 +3,14 @@
 import pytest
 from random_models import random_recipe
 from recipes import View
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.linalg import eigenpairs
 from beamfem.solve.stability import linearised
 
 
-@pytest.mark.parametrize("seed", [107, 123, 147])
+@mostly_slow("seed", [107, 123, 147], quick=(2,))
 def test_a_search_ends_where_the_beam_would_be_turned_inside_out(seed):
     """Arches that are led far away from their supports, whose stable path was said to be lost there."""
     found = bf.solve_buckling(random_recipe(seed).build().model, 3)
@@ -23,6 +24,7 @@ def test_a_search_ends_where_the_beam_would_be_turned_inside_out(seed):
     assert found.ended == f"beyond load factor {path.load_factor[-1]:.6g} the beam would be turned inside out"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [179])
 def test_a_search_that_is_lost_where_an_element_is_bent_by_half_a_turn_asks_for_more_elements(seed):
     model = random_recipe(seed).build().model

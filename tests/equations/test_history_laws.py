@@ -20,6 +20,7 @@ from history_laws import (
     there_and_back,
 )
 from section_laws import LinearLaw
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.equations.equations import STATICS, linearise, residual
@@ -293,7 +294,7 @@ class Same(Plastic):
     """A law that is compared by what its base knows."""
 
 
-@pytest.mark.parametrize("kind", [Plastic, Same])
+@mostly_slow("kind", [Plastic, Same])
 def test_a_history_that_is_not_continued_is_warned_of(kind):
     def bent(limit):
         section = kind(**SECTION, limit=limit, hardening=30.0)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from judged import outcome, reference
 from random_models import random_recipe
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.equations.system import system_of
@@ -50,7 +51,7 @@ def test_a_step_of_a_cantilever_that_rolls_up_is_on_its_path(turns):
         assert not leaves_path(system, one, other)
 
 
-@pytest.mark.parametrize("steps", [5, 10, 20])
+@mostly_slow("steps", [5, 10, 20], quick=(1,))
 def test_a_wave_under_a_prescribed_motion_does_not_pass_its_limit_point_in_silence(steps):
     """Seed 469: from 0.55 to 0.75 over 0.6624 in nine iterations, with one count of negative pivots everywhere."""
     recipe = random_recipe(469)

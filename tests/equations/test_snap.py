@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.equations.system import System, system_of
@@ -236,7 +237,7 @@ def test_the_limit_point_of_a_deep_arch_is_found_from_any_load(load):
 
 @pytest.mark.filterwarnings("ignore:1 of:beamfem.UnstableWarning")  # a row within 1e-9 of the point where paths meet
 @pytest.mark.parametrize("side", [1.0, -1.0])
-@pytest.mark.parametrize("steps", [1, 2, 5, 10, 50])
+@mostly_slow("steps", [1, 2, 5, 10, 50], quick=(1,))
 def test_a_buckled_column_straightens_when_it_is_unloaded(steps, side):
     """The load factor has its largest value on the buckled branch where the straight column takes over."""
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 16, bf.CRBF(3), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))

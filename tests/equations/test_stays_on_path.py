@@ -16,7 +16,7 @@ from beamfem.solve.statics.load_steps import skips_limit_points
 from beamfem.solve.statics.static_record import StaticRecord
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
-STEPS = (1, 10, 100, 1000)
+STEPS = (1, 10, 100, pytest.param(1000, marks=pytest.mark.slow))
 
 
 @contextmanager

@@ -9,6 +9,7 @@ import h5py
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.io import hdf5
@@ -146,7 +147,7 @@ def test_an_interrupted_store_has_all_results_so_far(times, raising, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["a.h5", "a.vtkhdf"])
-@pytest.mark.parametrize("call", [1, 3, 10])
+@mostly_slow("call", [1, 3, 10], quick=(1,))
 def test_a_signal_while_hdf5_writes_is_raised(name, call, raising, tmp_path, monkeypatch):
     write, read, _ = WRITERS[name]
     write(motion(401, 0.0), tmp_path / name)

@@ -172,6 +172,7 @@ def test_the_deep_arch_from_a_file_meets_its_limit_load():
     assert path.limit_points[0].load_factor == pytest.approx(8.97308996972, rel=1.5e-6)
 
 
+@pytest.mark.slow
 def test_the_lattice_of_five_thousand_members_solves():
     mesh = read_mesh(MESHES / "lattice.vtu")
     found = mesh.frame(2, bf.CRBF(1), bf.Rectangle(0.05, 0.05), bf.Material(1e7, 0.3, 1000.0))

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from bad_inputs import BEAM, CANTILEVER, END, NAN, a_beam, require_named
+from slow_values import mostly_slow
 
 import beamfem as bf
 
@@ -183,7 +184,7 @@ def test_rows_beyond_the_last_end_a_loop(solution):
     assert len(list(solution)) == 2
 
 
-@pytest.mark.parametrize("modulus", [2e15, 2e31])
+@mostly_slow("modulus", [2e15, 2e31], quick=(1,))
 def test_stiffnesses_too_far_apart_are_named_or_do_no_harm(modulus):
     """A bent cantilever with a rigid end has no critical load; 1e20 to 1 may leave the tangent no digits to tell."""
     arm, stiff = bf.Line((0, 0), (1, 0)), bf.Material(modulus, 0.3, 7800.0)

@@ -8,6 +8,7 @@ from fibre_beam import axial_force
 from fibre_laws import SIDE, STEEL, moment, square
 from history_laws import SECTION, Plastic
 from scipy.optimize import brentq
+from slow_values import mostly_slow
 
 import beamfem as bf
 
@@ -99,7 +100,7 @@ def restrained(elements, steps):
     return bent.section_forces(beam).normal[-1].mean()
 
 
-@pytest.mark.parametrize("steps", [1, 2, 5, 10])
+@mostly_slow("steps", [1, 2, 5, 10], quick=(1,))
 def test_a_restrained_bar_yields_under_displacement_control(steps):
     # 25692.9 N with 80 elements and 200 steps of fibre_beam.py; four elements resolve the hinges at the clamps coarsely
     assert restrained(4, steps) == pytest.approx(25692.9, rel=1e-2)

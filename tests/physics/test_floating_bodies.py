@@ -15,7 +15,7 @@ def rod(modulus, end=(1.0, 0.0), start=(0.0, 0.0), damping=None):
     return bf.Beam(bf.Line(start, end), 8, bf.CRBF(3), SQUARE, bf.Material(modulus, 0.3, 7850.0), damping=damping)
 
 
-def floating(beam, modes=4):
+def floating(beam, modes=2):
     return bf.reduce(bf.Model([beam]), [beam.start, beam.end], modes).floating_body()
 
 
@@ -30,12 +30,12 @@ def swings(modulus, duration=1.0, step=1e-3):
 
 
 def test_energies_and_forces_belong_together():
-    check_connector(floating(rod(2.1e11), 3))
+    check_connector(floating(rod(2.1e11), 2))
     check_connector(floating(rod(2.1e11, damping=bf.Rayleigh(stiffness=1e-3)), 2))
 
 
 def test_a_stiff_pendulum_meets_the_rigid_body_equation():
-    body = floating(rod(2.1e15), 1)
+    body = floating(rod(2.1e15), 2)
     model = bf.Model([], [bf.Pin(body.points[0])], [GRAVITY], masses=[body])
     motion = bf.simulate(model, 1.0, step=1e-3)
     rate = 1.5 * G / (1.0 + SQUARE.height**2 / 4.0)  # J = m (L^2 / 3 + h^2 / 12)
@@ -61,7 +61,7 @@ def test_free_flight_keeps_energy_and_momenta():
     start, end = body.points
     push = bf.PointForce(end, (-300.0, 900.0), amplitude=lambda time: 1.0 if time < 0.01 else 0.0)
     thrown = bf.simulate(bf.Model([], [], [push], masses=[body]), 0.01, step=2.5e-4)
-    motion = bf.simulate(bf.Model([], masses=[body]), 0.1, step=2.5e-5, start=thrown, integrator=bf.Gauss(stages=4))
+    motion = bf.simulate(bf.Model([], masses=[body]), 0.03, step=2.5e-5, start=thrown, integrator=bf.Gauss(stages=4))
     energy, total = motion.energy(), motion.energy().total
     assert np.ptp(energy.potential) > 0.1 * total[0]
     assert np.ptp(motion.rotation(start)) > 0.5
@@ -123,7 +123,7 @@ def test_three_interfaces_masses_and_offsets_are_reduced_with_it():
         [bf.PointMass(low.at(0.5), 1.0), bf.RigidBody(high.at(0.5), 2.0, 0.1, (0.1, 0.2))],
     )
     whole = bf.Model([low, high], [], joints=joints, masses=masses)
-    body = bf.reduce(whole, [low.start, high.end, low.end], 6).floating_body()
+    body = bf.reduce(whole, [low.start, high.end, low.end], 4).floating_body()
     assert body.mass == pytest.approx(whole.mass, rel=1e-12)
     for place, end in ((low.start, body.points[0]), (high.end, body.points[1])):
         full = bf.Model([low, high], [bf.Clamp(place)], joints=joints, masses=masses)
@@ -139,7 +139,7 @@ def test_a_spinning_eccentric_body_bends_its_arm_outwards():
     """Half a turn a frame: the centrifugal force of the body acts at its centre of mass."""
     beam = rod(2.1e11)
     part = bf.RigidBody(beam.end, 2.0, 0.1, (0.1, 0.2))
-    body = bf.reduce(bf.Model([beam], masses=[part]), [beam.start, beam.end], 4).floating_body()
+    body = bf.reduce(bf.Model([beam], masses=[part]), [beam.start, beam.end], 2).floating_body()
     frame = bf.RotatingFrame(2.0)
     small = bf.Model([], [bf.Clamp(body.points[0])], masses=[body], frame=frame)
     full = bf.Model([beam], [bf.Clamp(beam.start)], masses=[part], frame=frame)
@@ -169,7 +169,7 @@ def test_it_is_saved_loaded_and_drawn(tmp_path):
     assert np.array_equal(loaded.p, solution.p)
     assert again.p == pytest.approx(solution.p, rel=1e-12, abs=1e-15)
     solution.plot(tmp_path / "hung.png")
-    assert bf.linearise(model).names[-1] == "FloatingBody, mode 3"
+    assert bf.linearise(model).names[-1] == "FloatingBody, mode 1"
 
 
 def test_what_is_no_free_body_is_refused():

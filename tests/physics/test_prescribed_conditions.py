@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from integrators import Radau
+from slow_values import mostly_slow
 
 import beamfem as bf
 
@@ -65,7 +66,7 @@ def driven(value, **other):
     return joined, held, link
 
 
-@pytest.mark.parametrize("integrator", [None, bf.GeneralizedAlpha(0.0), Radau()])
+@mostly_slow("integrator", [None, bf.GeneralizedAlpha(0.0), Radau()], quick=(0, 1))
 @pytest.mark.parametrize("value", [swing, lambda time: 2.0 * time], ids=["smooth", "with an impact"])
 def test_driven_hinge_moves_as_a_support_does(value, integrator):
     joined, held, link = driven(value)

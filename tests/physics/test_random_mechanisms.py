@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from slow_values import mostly_slow
 
 import beamfem as bf
 
@@ -127,7 +128,7 @@ def compare(seed, buckling=False):
         assert found[4] == pytest.approx(known[4], rel=1e-6), name
 
 
-@pytest.mark.parametrize("seed", range(6))
+@mostly_slow("seed", range(6), quick=(0, 3))
 def test_some_random_mechanisms(seed):
     compare(seed)
 

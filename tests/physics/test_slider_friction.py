@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.testing import check_connector
@@ -104,7 +105,7 @@ def test_friction_needs_a_stiffness():
         bf.Slider(stub.start, stub.end, (1, 0), friction=0.1)
 
 
-@pytest.mark.parametrize("tolerance", [1e-4, 1e-5])
+@mostly_slow("tolerance", [1e-4, 1e-5])
 def test_steps_that_follow_a_tolerance_end_where_a_sled_on_a_spring_slips_and_sticks(tolerance):
     """Each half swing is shorter by 2 friction m g / k, until it ends within friction m g / k and rests."""
     model, bar = sled()

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from slow_values import mostly_slow
 
 import beamfem as bf
 
@@ -51,7 +52,7 @@ def test_small_deflections_of_a_cantilever_under_the_slider(element):
     assert np.ptp(place[:, 0]) > 0.4
 
 
-@pytest.mark.parametrize("element", ELEMENTS[::2], ids=lambda element: element.name)
+@mostly_slow("element", ELEMENTS[::2], ids=lambda element: element.name)
 def test_large_deflections_do_not_depend_on_elements_and_are_in_balance(element):
     slider, fine = pushed(bf.CRBF(6), 0.2)
     own, found = pushed(element, 0.2, elements=16 if element.name == "CRBF-3" else 64)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.testing import check_connector
@@ -97,8 +98,8 @@ def test_a_mass_bounces_with_the_coefficient_of_restitution_at_any_mass_and_spee
     assert np.abs(np.diff(energy.total + energy.dissipated)).max() < 4e-3 * energy.total[0]
 
 
-@pytest.mark.parametrize("bounce", [{"restitution": 0.6}, {"damping": 0.0}])
-@pytest.mark.parametrize("axis", [(1.0, 0.0), (1.0, 0.3)])
+@mostly_slow("bounce", [{"restitution": 0.6}, {"damping": 0.0}])
+@mostly_slow("axis", [(1.0, 0.0), (1.0, 0.3)], quick=(1,))
 def test_a_slider_that_moves_bounces_off_its_end_stops(bounce, axis):
     """Two bodies on an axis that flies: momentum is kept, and relative speed falls by e each time."""
     angle = np.arctan2(axis[1], axis[0])

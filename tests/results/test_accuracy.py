@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from scipy.special import ellipk
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.solve.accuracy.adapted_mesh import refined
@@ -220,7 +221,7 @@ def test_critical_loads_are_as_accurate_as_asked_for(accuracy):
     assert found.load_factors == pytest.approx(bf.solve_buckling(fine, 2).load_factors, rel=1.2 * (accuracy or 1e-4))
 
 
-@pytest.mark.parametrize("accuracy", [1e-3, 1e-4, 1e-6])
+@mostly_slow("accuracy", [1e-3, 1e-4, 1e-6], quick=(1,))
 def test_limit_points_are_as_accurate_as_asked_for(accuracy):
     """Lee's frame; near its limit points displacements at a given load have errors without bound."""
     section, material = bf.Section(area=6.0, second_moment=2.0), bf.Material(7.2e6, 0.3, 2.7e-5)
@@ -254,7 +255,7 @@ def test_limits_of_a_toggle_are_as_accurate_as_asked_for(accuracy):
         assert -found.displacement(toggle.beams[0].end)[1] == pytest.approx(deflection, abs=accuracy * 25.886)
 
 
-@pytest.mark.parametrize("accuracy", [1e-4, 1e-6])
+@mostly_slow("accuracy", [1e-4, 1e-6])
 def test_limits_of_a_deep_arch_are_as_accurate_as_asked_for(accuracy):
     """The clamped-hinged arch of 215 degrees, the elastica by collocation; L / h = 1e4, so that it hardly stretches."""
     arch = deep_arches.arch("clamped-hinged", 1, 1, 1e4).meshed("auto")
@@ -277,7 +278,7 @@ def columns(**mesh):
         yield bf.Model([beam], [bf.Clamp(beam.start), *guide], [bf.PointForce(beam.end, (0.0, -force))])
 
 
-@pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-4, 1e-6])
+@mostly_slow("accuracy", [1e-2, 1e-3, 1e-4, 1e-6], quick=(0, 2))
 def test_critical_points_of_straight_columns_are_found_on_any_mesh(accuracy):
     for fine, model in zip(columns(elements=12, element=bf.CRBF(8)), columns(), strict=True):
         exact = critical_loads(bf.trace_equilibrium(fine, 1.0))
@@ -286,7 +287,7 @@ def test_critical_points_of_straight_columns_are_found_on_any_mesh(accuracy):
 
 
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-4])
-@pytest.mark.parametrize(("stiffness", "end"), [(1.0, 2.5), (100.0, 20.4)])
+@mostly_slow(("stiffness", "end"), [(1.0, 2.5), (100.0, 20.4)])
 def test_bifurcations_into_waves_shorter_than_the_first_elements_are_found(stiffness, end, accuracy):
     """N_m = EI (m pi / L)^2 + k (L / m pi)^2, inextensible: paths on both meshes were straight, and stable, beyond."""
     length, height = 10.0, 1e-3
@@ -801,6 +802,7 @@ def test_beams_without_elements_follow_curves_of_several_turns(turns):
     assert np.linalg.norm(found[0] - found[1]) < 1e-4
 
 
+@pytest.mark.slow
 def test_the_best_mesh_is_reported_where_no_accuracy_is_met():
     """Finer meshes than those with errors of round-off end with larger ones, which were reported."""
     beam = auto()
@@ -882,6 +884,7 @@ def test_frequencies_and_critical_loads_refine_only_where_shapes_bend():
         assert post < 0.8 * mast
 
 
+@pytest.mark.slow
 def test_critical_loads_refine_the_beams_whose_stress_resultants_are_off():
     """A column between hinges buckles, whose force depends on how the rest of a portal bends; it had 22 elements."""
 

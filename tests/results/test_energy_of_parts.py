@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+from slow_values import mostly_slow
 
 import beamfem as bf
 
 SQUARE, STEEL = bf.Rectangle(0.02, 0.02), bf.Material(2.1e11, 0.3, 7850.0)
 
 
-@pytest.mark.parametrize("element", [bf.CRBF(2), bf.ANCF()], ids=lambda element: element.name)
+@mostly_slow("element", [bf.CRBF(2), bf.ANCF()], ids=lambda element: element.name)
 @pytest.mark.parametrize("in_hinge", [False, True])
 def test_a_driven_arm_with_spring_damper_and_mass(element, in_hinge):
     post = bf.Beam(bf.Line((0, -0.3), (0, 0)), 1, element, SQUARE, STEEL)

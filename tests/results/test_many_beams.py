@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.io import results_hdf5
@@ -50,7 +51,7 @@ FIELDS = {
 FIELDS |= {"forces": _all_forces, "stresses": _all_stresses}
 
 
-@pytest.mark.parametrize("motion", [False, True])
+@mostly_slow("motion", [False, True], quick=(1,))
 @pytest.mark.parametrize("values", FIELDS.values(), ids=FIELDS)
 def test_fields_of_beams_evaluated_together_are_those_of_each(solutions, values, motion):
     solution = solutions[motion]

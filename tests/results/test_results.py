@@ -7,6 +7,7 @@ from contextlib import nullcontext
 import h5py
 import numpy as np
 import pytest
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.io import description
@@ -191,7 +192,7 @@ results.save(solution, sys.argv[1])
 """
 
 
-@pytest.mark.parametrize("blocks", [0, 3])
+@mostly_slow("blocks", [0, 3], quick=(1,))
 def test_killed_writer_leaves_the_rows_before(tmp_path, blocks):
     path = tmp_path / "killed.h5"
     ended = subprocess.run([sys.executable, "-c", KILLED, str(path), str(blocks)], check=False)
@@ -254,7 +255,7 @@ SECTIONS = {
 MADE = [bf.CRBF(3), bf.ANCFCRBF(bf.ElasticLine()), bf.ShearRigid(), bf.CRBF(2, bf.SplitContinuum()), bf.ANCF()]
 
 
-@pytest.mark.parametrize("section", SECTIONS)
+@mostly_slow("section", SECTIONS, quick=(1, 4))
 @pytest.mark.parametrize("curve", CURVES)
 def test_every_curve_section_and_element_comes_back(tmp_path, curve, section):
     material = STEEL if section in ("tube", "tapered") else None

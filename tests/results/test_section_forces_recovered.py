@@ -7,6 +7,7 @@ import pytest
 from conftest import ELEMENTS, identify
 from drawn import EI as DRAWN
 from drawn import cantilever
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.results.axis_fields import section_forces as along_axis
@@ -172,7 +173,7 @@ def test_what_acts_beyond_a_cut_is_carried_by_it(element):
         assert found == pytest.approx(exact, abs=2e-3), share[i]
 
 
-@each_kind
+@mostly_slow("element", KINDS, quick=(0, 3, 7, 9), ids=identify)
 def test_what_acts_beyond_a_cut_of_a_moving_beam(element):
     """Inertia by differences over neighbouring rows, good to 5e-5: d'Alembert.
 

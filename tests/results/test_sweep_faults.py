@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from slow_values import mostly_slow
 
 import beamfem as bf
 
@@ -85,7 +86,7 @@ def alive(number):
 
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="tells processes by /proc")
-@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
+@mostly_slow("how", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
 def test_a_sweep_that_is_killed_leaves_no_workers(tmp_path, how):
     (tmp_path / "pids").mkdir()
     script = tmp_path / "script.py"

@@ -11,6 +11,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from slow_values import mostly_slow
 
 import beamfem as bf
 
@@ -36,7 +37,8 @@ SCRIPT = """
 """
 
 
-@pytest.mark.parametrize("where", ["here", "pool"])
+@pytest.mark.slow
+@mostly_slow("where", ["here", "pool"], quick=(1,))
 def test_the_first_point_does_not_count_what_is_compiled_for_it(where, tmp_path):
     (tmp_path / "swept.py").write_text(textwrap.dedent(SCRIPT))
     root = os.path.dirname(os.path.dirname(bf.__file__))

@@ -5,6 +5,7 @@ import warnings
 import numpy as np
 import pytest
 from section_laws import LinearLaw
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.section import StiffnessSection
@@ -85,7 +86,7 @@ def test_modes_warn_of_locking_and_count_it():
     assert len(modes.warnings) == 1
 
 
-@pytest.mark.parametrize("make", [bf.ANCF, bf.ANCFCRBF, bf.BilinearANCF, lambda: bf.CRBF(2, integration="full")])
+@mostly_slow("make", [bf.ANCF, bf.ANCFCRBF, bf.BilinearANCF, lambda: bf.CRBF(2, integration="full")], quick=(0, 2))
 def test_no_locking_of_one_per_cent_escapes_the_bound(make):
     """What the chords of elements say decides whether the estimate is made; it may look in vain, never miss."""
     for slenderness in (2.0, 10.0, 100.0, 1000.0):

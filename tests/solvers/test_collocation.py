@@ -8,6 +8,7 @@ import pytest
 from history_laws import SECTION as STIFFNESSES
 from history_laws import Creeping
 from own_bushing import Mount
+from slow_values import mostly_slow
 
 import beamfem as bf
 
@@ -115,13 +116,14 @@ def test_order_with_moved_supports_of_positions_and_reactions(integrator, expect
         assert order(found) == pytest.approx(expected, abs=0.35)
 
 
-@pytest.mark.parametrize(
+@mostly_slow(
     ("make", "integrator", "expected"),
     [
         *((linked_twice, each, (order,) * 3) for each, order in (*GAUSS, *RADAU[1:], BATHE)),
         *((motored, each, (order,) * 3) for each, order in (*GAUSS, *RADAU[1:], BATHE)),
         (motored, bf.Gauss(4), (8, 8)),  # its forces are exact to round-off
     ],
+    quick=(3, 4, 5, 9, 10, 11, 12),
 )
 def test_orders_of_positions_velocities_and_multipliers(make, integrator, expected):
     one, model = make(bf.CRBF(2))
@@ -241,6 +243,7 @@ def test_stable_methods_go_on_where_steps_resolve_no_vibration_and_never_gain_en
     assert np.min(energy.total - energy.total[0]) > -0.01 * np.ptp(energy.kinetic)
 
 
+@pytest.mark.slow
 def test_history_is_committed_once_a_step():
     law = Creeping(**STIFFNESSES, relaxation=0.3)
     rod = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(3), law)

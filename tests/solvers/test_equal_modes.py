@@ -105,6 +105,7 @@ def test_no_copy_of_a_mode_beside_a_follower_load_is_missed():
         assert bf.solve_modes(model, count, about).frequencies == pytest.approx(exact[:count], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_hundred_equal_columns_buckle_at_the_same_load():
     """Linearised, some of them seemed to buckle at the second load of a column, nine times the first."""
     steel, section = bf.Material(2e11, 0.3, 7800.0), bf.Circle(0.01)

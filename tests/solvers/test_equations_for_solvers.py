@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from slow_values import mostly_slow
 
 import beamfem as bf
 
@@ -26,7 +27,7 @@ def linked():
 
 
 @pytest.mark.parametrize("made", [pendulum, linked])
-@pytest.mark.parametrize("method", ["DOP853", "Radau"])
+@mostly_slow("method", ["DOP853", "Radau"])
 @pytest.mark.filterwarnings("ignore::beamfem.errors.CoarseMeshWarning")
 def test_a_pendulum_moves_as_with_short_steps(made, method):
     model = made()

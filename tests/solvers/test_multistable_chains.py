@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from scipy.optimize import brentq
+from slow_values import mostly_slow
 
 import beamfem as bf
 
@@ -169,7 +170,7 @@ def test_two_bistable_springs_in_series_snap_one_after_the_other(apart):
     require_exact(*springs([1.0, 1.0 + apart]), 200, complete=True)
 
 
-@pytest.mark.parametrize(("small", "apart", "points"), [(0.5, 1e-3, 110), (0.2, 1e-3, 80), (0.05, 1e-4, 150)])
+@mostly_slow(("small", "apart", "points"), [(0.5, 1e-3, 110), (0.2, 1e-3, 80), (0.05, 1e-4, 150)], quick=(1,))
 def test_springs_of_different_travel_do_not_change_over_together(small, apart, points):
     """Found in review: three modes changed sign in one step, two of them in opposite directions.
 

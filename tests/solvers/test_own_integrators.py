@@ -7,6 +7,7 @@ import pytest
 from connectors import Rest, RigidLink, SpringDamper, crossbar
 from history_laws import Creeping, Plastic
 from integrators import EnergyMomentum, Radau
+from slow_values import mostly_slow
 
 import beamfem as bf
 
@@ -30,7 +31,7 @@ def test_radau_is_of_third_order(element):
     assert 2.8 < np.log2(ratio) < 3.2
 
 
-@pytest.mark.parametrize("element", [bf.CRBF(2), bf.ANCF(), bf.BilinearCRBF()], ids=["CRBF(2)", "ANCF", "bilinear"])
+@mostly_slow("element", [bf.CRBF(2), bf.ANCF(), bf.BilinearCRBF()], ids=["CRBF(2)", "ANCF", "bilinear"])
 def test_radau_comes_to_where_generalized_alpha_comes(element):
     beam, model = pendulum(element)
     own = bf.simulate(model, 0.3, 1e-3, integrator=Radau(), save_every=30)
@@ -68,7 +69,7 @@ def test_a_discrete_gradient_keeps_the_energy_of_springs():
     assert 0.0 < errors[0] < 2.0 * errors[1] < 5e-3
 
 
-@pytest.mark.parametrize(("step", "every"), [(1e-4, 10), (5e-5, 20), (2.5e-5, 40)])
+@mostly_slow(("step", "every"), [(1e-4, 10), (5e-5, 20), (2.5e-5, 40)])
 def test_inclined_rollers_dashpots_and_kinks_of_loads_are_taken(step, every):
     """Short steps stay with those of order 3: extrapolated by seven differences they drifted by 2e-4, the more the
     shorter, since what iterations leave came back enlarged."""
@@ -98,8 +99,8 @@ def kinked(time):
     return 0.5 * max(time - 0.05123, 0.0)
 
 
-@pytest.mark.parametrize("moves", [smooth, kinked])
-@pytest.mark.parametrize("directions", [("uy",), ("rotation",)], ids="-".join)
+@mostly_slow("moves", [smooth, kinked], quick=(1,))
+@mostly_slow("directions", [("uy",), ("rotation",)], ids="-".join)
 def test_supports_move_a_beam_also_where_they_start_at_once(moves, directions):
     """With a kink inside a step as well: the moved coordinate satisfies p = u at the end of each stage."""
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), SECTION, RUBBER)
@@ -129,7 +130,7 @@ def test_a_point_that_goes_along_a_line_carries_its_momentum():
     assert along == pytest.approx(motions[0].position(beam.end), abs=1e-9)
 
 
-@pytest.mark.parametrize("turn", [0.0, 0.3])
+@mostly_slow("turn", [0.0, 0.3], quick=(1,))
 def test_conditions_of_a_link_hold(turn):
     """The multiplier of a step satisfies the condition at its end; velocities stay along the condition too."""
     two, model = crossbar(RigidLink, turn)
@@ -142,6 +143,7 @@ def test_conditions_of_a_link_hold(turn):
     assert np.sum((ends[1] - ends[0]) * (rates[1] - rates[0]), axis=1) == pytest.approx(np.zeros(len(own)), abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_stop_with_friction_slides_and_remembers():
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), SECTION, RUBBER)
     rest = Rest(beam.end, -1e-3, 2e3, 0.2)
@@ -154,7 +156,7 @@ def test_a_stop_with_friction_slides_and_remembers():
     assert slip[0] == pytest.approx(slip[1], abs=3e-5)
 
 
-@pytest.mark.parametrize(
+@mostly_slow(
     "section",
     [
         Plastic(1e3, 4e2, 0.83, 2.0, 1e-3, limit=0.25, hardening=0.1),

@@ -7,6 +7,7 @@ import pytest
 from connectors import RigidLink
 from history_laws import LAWS, bent_there_and_back
 from shooting import solved, swept
+from slow_values import mostly_slow
 from test_multistable_chains import bars, random_chain
 
 import beamfem as bf
@@ -57,7 +58,7 @@ def test_the_bistable_beam_of_compliant_mechanisms(steps):
         )
 
 
-@pytest.mark.parametrize("held", [True, False])
+@mostly_slow("held", [True, False])
 def test_a_path_that_turns_back_where_it_has_long_been_unstable_advises_to_leave_it(held):
     _, centre, model, _ = bistable(0.1, 0.01, [led(0.1, held)])
     with pytest.raises(bf.LimitPointError, match=r'unstable from load factor .*unstable="leave" follows the stable'):
@@ -70,7 +71,7 @@ def test_a_path_that_turns_back_where_it_has_long_been_unstable_advises_to_leave
     assert solution.reaction(centre)[-1] == pytest.approx(traced.reaction(centre)[-1], rel=1e-6, abs=1e-12)
 
 
-@pytest.mark.parametrize("rise", [0.02, 0.002, 0.00202, 0.002046])  # the last two once halved their way to the point
+@mostly_slow("rise", [0.02, 0.002, 0.00202, 0.002046], quick=(0, 3))  # the last two once halved their way to the point
 def test_a_branch_is_followed_across_the_point_where_it_merges_into_the_primary_path(rise):
     """The branch of half the bistable beam returned to the path and ended there."""
     _, _, model, _ = bistable(rise, rise / 10.0, [led(rise, ux=0.0)], half=True, elements=10)
@@ -83,7 +84,7 @@ def test_a_branch_is_followed_across_the_point_where_it_merges_into_the_primary_
 
 
 @pytest.mark.parametrize("options", [{"snap": "jump"}, {"unstable": "leave"}])
-@pytest.mark.parametrize("held", [True, False])
+@mostly_slow("held", [True, False])
 def test_a_jump_starts_at_the_bifurcation_and_rests_in_a_stable_state(held, options):
     """Found in review: under 800 E I h / L^3 the beam rested on the unstable path, with a warning."""
     rise = 0.1
@@ -264,7 +265,7 @@ def test_a_row_may_lie_on_the_bifurcation_that_is_left(row, options, off):
     assert abs(end) == pytest.approx(abs(expected), rel=1e-6, abs=1e-9)  # either side of a symmetric bifurcation
 
 
-@pytest.mark.parametrize(("slender", "elements"), [(5, 11), (5, 19), (6, 19), (7, 11)])
+@mostly_slow(("slender", "elements"), [(5, 11), (5, 19), (6, 19), (7, 11)], quick=(0, 2))
 def test_the_way_of_a_table_turns_near_the_end_of_a_step(slender, elements):
     """Steps along the path once became ever shorter towards the kink of the table.
 

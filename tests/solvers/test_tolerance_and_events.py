@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from slow_values import mostly_slow
 
 import beamfem as bf
 from studies.benchmarks.random_motions import case
@@ -157,7 +158,7 @@ def test_what_does_not_fit_is_refused(pendulum, options, message):
         bf.simulate(pendulum[1], 1.0, **options)
 
 
-@pytest.mark.parametrize("integrator", [bf.Radau(3), bf.Gauss(2)], ids=["Radau", "Gauss"])
+@mostly_slow("integrator", [bf.Radau(3), bf.Gauss(2)], ids=["Radau", "Gauss"])
 @pytest.mark.parametrize("motion_of", [None, slow_links], ids=["pendulum", "link"])
 def test_collocation_follows_a_tolerance(pendulum, motion_of, integrator):
     """Rows between its long steps are of degree 5."""

@@ -8,6 +8,7 @@ import pytest
 from judged import NoReference, followed, outcome
 from random_models import random_recipe
 from recipes import KINDS, Recipe, View
+from slow_values import mostly_slow
 
 import beamfem as bf
 
@@ -141,7 +142,7 @@ def test_a_random_model_has_the_same_answers_in_every_view(check, seed):
         CHECKS[check](recipe, QUICK_VIEWS)
 
 
-@pytest.mark.parametrize("name", VIEWS)
+@mostly_slow("name", VIEWS, quick=(3,))
 def test_a_tie_pulled_to_twice_its_length_has_one_limit_point_in_every_view(name):
     """Its load is 230 times what bends it by its length: changes of direction were lost beside those of the load."""
     buckling(random_recipe(582), (name,))

@@ -15,6 +15,8 @@ from docs.page_code import blocks_of, run
 pytestmark = pytest.mark.filterwarnings("error::beamfem.LargeStrainWarning")
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+SWEEPS = ROOT / "docs" / "howto" / "convergence_and_sweeps.md"  # starts processes many times
+LISTED = [pytest.param(page, marks=pytest.mark.slow if page == SWEEPS else ()) for page in PAGES]
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?")
 _TINY = 1e-8  # two numbers below this are round-off of zero
 
@@ -48,7 +50,7 @@ def _close(shown: str, printed: str) -> bool:
     return abs(a - b) <= 0.5001 * unit or max(abs(a), abs(b)) < _TINY
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+@pytest.mark.parametrize("page", LISTED, ids=lambda page: str(page.relative_to(ROOT)))
 def test_code_of_a_page_runs(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)

@@ -65,6 +65,7 @@ def test_growth_measures_a_chain(analysis):
     assert len(found) + 4 == len(chain_growth.HEADER)
 
 
+@pytest.mark.slow
 def test_costs_of_parts_are_those_of_the_table(tmp_path, capsys):
     """The bound is what a model that leaves compiled code takes; times beside other work are not judged further."""
     rows = part_costs.main(rounds=1, folder=tmp_path, parts=("rigid link", "between two states, Python"))

@@ -203,6 +203,7 @@ def test_the_tapered_ring_by_all_kinds():
     assert runs["CRBF, order 4, split"] == pytest.approx(exact, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_paths_and_stability_are_those_of_the_literature(tmp_path):
     """The table of the page, against collocation, shooting and elliptic integrals; Beck's load is known to 6 digits."""
     with threadpool_limits(1):

@@ -174,7 +174,7 @@ def test_a_connector_at_a_clamp_changes_nothing(part):
 
 
 @pytest.mark.filterwarnings("ignore::beamfem.EnergyWarning")  # long steps damp nearly all of the vibration
-@pytest.mark.parametrize("step", [1e-3, 0.1, 1.0])
+@mostly_slow("step", [1e-3, 0.1, 1.0], quick=(0, 2))
 @mostly_slow("density", [1.0, 1e-6, 1e-9], quick=(2,))
 def test_connectors_may_hold_and_load_a_beam_of_hardly_any_mass(density, step):
     """A rotor: a light shaft with a disc between springs; without them the band would have no digits."""
@@ -190,6 +190,7 @@ def test_connectors_may_hold_and_load_a_beam_of_hardly_any_mass(density, step):
     assert motion.displacement(middle)[-1, 1] < 0.0
 
 
+@pytest.mark.slow
 def test_a_force_that_is_undefined_at_an_iterate_is_tried_from_elsewhere(request):
     """A wall that is defined up to some depth: iterates are rejected; if all are, the step fails in a sentence."""
 

@@ -50,7 +50,7 @@ def test_plastic_bending_there_and_back_is_that_of_the_closed_form(element):
     assert found.energy().dissipated[-1] == pytest.approx(40.0 * (2.0 + 4.0 + 4.0) * 0.1, rel=tolerance)
 
 
-@mostly_slow("element", NEW, quick=(1, 3), **ids)
+@mostly_slow("element", NEW, quick=(1,), **ids)
 def test_the_work_on_an_arm_that_yields_is_stored_or_dissipated(element):
     """Under a transverse force, by the trapezoidal rule over the rows; where it ends depends on no steps."""
     left, ends = [], []
@@ -97,7 +97,7 @@ def test_the_tangent_is_the_derivative_of_the_forces_of_a_step(element, law, rng
         assert tangent[:, column] == pytest.approx(slope, rel=1e-6, abs=1e-6 * np.abs(tangent).max())
 
 
-@mostly_slow("element", NEW, quick=(1, 3), **ids)
+@mostly_slow("element", NEW, quick=(1,), **ids)
 def test_a_motion_that_yields_is_that_of_other_elements(element):
     """Displacement and dissipation of CRBF(order=2) on a fine mesh; what is dissipated is missed by the rest."""
     moved, lost = [], []

@@ -74,6 +74,7 @@ def test_a_constant_curvature_that_acts_at_once_keeps_the_energy():
     assert motion.rotation(own.end)[100] == pytest.approx(pushed.rotation(own.end)[100], rel=5e-2)
 
 
+@pytest.mark.slow
 def test_other_ways_to_take_steps_agree():
     """A model whose tangent is sparse, and an integrator of one's own."""
     own = straight(bf.CRBF(2), elements=4)

@@ -225,6 +225,7 @@ def taken_by_results(solution):
     return most
 
 
+@pytest.mark.slow
 def test_results_of_a_beam_take_no_memory_of_the_size_of_a_large_solution(monkeypatch):
     """Each of n members took n coordinates, loads and foundations: 8 times as much in a model of 8 times the size."""
     monkeypatch.setattr(batched_beams, "_KEPT", 0)  # as if rows had a million coordinates

@@ -214,6 +214,7 @@ def test_what_a_block_cannot_eliminate_waits_for_the_next(stiffness):
         assert negative_eigenvalues(csr_array(held)) == np.sum(np.linalg.eigvalsh(held) < 0.0)
 
 
+@pytest.mark.slow
 def test_eigenvalues_of_a_matrix_without_narrow_places_are_not_counted():
     matrix = np.zeros((3200, 3200))
     matrix[:1600, 1600:] = np.random.default_rng(0).standard_normal((1600, 1600))

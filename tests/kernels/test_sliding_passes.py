@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from slow_values import mostly_slow
 
 from beamfem.equations.equations import linearise, residual
 from beamfem.equations.system import system_of
@@ -9,7 +10,7 @@ from beamfem.linalg.tangent import UNROTATED
 from tests.physics.test_slider_on_beam import ELEMENTS, pushed
 
 
-@pytest.mark.parametrize("elements", [4, 40])
+@mostly_slow("elements", [4, 40])
 @pytest.mark.parametrize("element", ELEMENTS, ids=lambda element: element.name)
 def test_tangents_are_those_of_differences_and_the_condition_is_that_of_python(element, elements):
     """Few elements have a band with a border, 40 a sparse matrix."""

@@ -114,6 +114,7 @@ def test_peaks_of_either_sign_and_of_one_coarse_element_are_as_accurate_as_asked
     assert abs(solution.error(lambda s: of(s, beam))) <= accuracy * abs(exact)
 
 
+@pytest.mark.slow
 def test_forces_and_moments_are_each_as_accurate_as_asked_for():
     """A strut whose axial reaction is some 3000 times as large as the moment at its clamp."""
     found = []
@@ -866,6 +867,7 @@ def test_shares_of_the_error_are_drawn_and_written(tmp_path):
         motion.to_vtk(tmp_path / "moving.pvd", fields=["error_share"])
 
 
+@pytest.mark.slow
 def test_frequencies_and_critical_loads_refine_only_where_shapes_bend():
     """A slender mast on a thick post, which hardly moves."""
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from slow_values import mostly_slow
 
 import beamfem as bf
 
@@ -17,7 +18,7 @@ def column(element, elements):
     return beam, bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-EI, 0.0))])
 
 
-@kinds
+@mostly_slow(("element", "elements"), KINDS, quick=(0, 3), ids=lambda value: getattr(value, "name", None))
 def test_buckling_loads(element, elements):
     _, model = column(element, elements)
     found, fine = bf.solve_buckling(model, 2), bf.solve_buckling(column(element, 32 * elements)[1], 2)

@@ -88,6 +88,7 @@ def test_changing_what_one_gets_changes_no_later_result(solutions):
         assert np.array_equal(solution.section_forces(beam).moment, moment)
 
 
+@pytest.mark.slow
 def test_files_and_tables_are_the_same_beam_by_beam(solutions, monkeypatch, tmp_path):
     h5py = pytest.importorskip("h5py")
     solution = _fresh(solutions[1])

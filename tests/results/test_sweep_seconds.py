@@ -58,6 +58,7 @@ def slowly_wrong(x):
     raise ValueError("never right")
 
 
+@pytest.mark.slow
 def test_failed_points_tell_how_long_they_took():
     found = bf.sweep(slowly_wrong, x=[1, 2, 3], executor=partial(ProcessPoolExecutor, 1))
     assert len(found.failures) == 3

@@ -99,6 +99,7 @@ def kinked(time):
     return 0.5 * max(time - 0.05123, 0.0)
 
 
+@pytest.mark.slow
 @mostly_slow("moves", [smooth, kinked], quick=(1,))
 @mostly_slow("directions", [("uy",), ("rotation",)], ids="-".join)
 def test_supports_move_a_beam_also_where_they_start_at_once(moves, directions):

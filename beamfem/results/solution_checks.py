@@ -258,6 +258,13 @@ def warned(solution: _Solution) -> _Solution:
     return solution
 
 
+def warned_motion(solution: _Solution) -> _Solution:
+    """Return a motion that has just been found, after Python warnings of its energy and of what `warned` looks for."""
+    for sentence in solution.computed(energy_warnings):
+        warn(sentence, EnergyWarning)
+    return warned(solution)
+
+
 def warn_of(found: Iterable[Finding]) -> None:
     """Issue a Python warning for every finding with a category."""
     for finding in found:

@@ -104,6 +104,27 @@ def test_energy_that_numerical_damping_removes_is_warned_of():
     assert not bf.simulate(model, 1.0, 2e-3).warnings
 
 
+@pytest.mark.parametrize("how", ["events", "save_at", "file"])
+def test_motions_with_events_rows_at_times_and_files_have_the_same_warnings(how, tmp_path):
+    """They were silent about energy that is removed, and about resonances that their steps detune."""
+    bar, duration = straight(), 4.0
+    pulse = bf.PointForce(bar.end, (0.0, 5.0), amplitude=lambda t: np.sin(np.pi * min(t / 0.06, 1.0)))
+    omega = 2.0 * np.pi * bf.solve_modes(bf.Model([bar], [bf.Clamp(bar.start)]), 1).frequencies[0]
+    tuned = bf.PointForce(bar.end, (0.0, 0.1), amplitude=lambda t: np.sin(omega * t))
+    given = {
+        "events": [bf.Event("never", lambda state: 1.0)],
+        "save_at": np.linspace(0.0, duration, 700),
+        "file": tmp_path / "motion.h5",
+    }
+    for load, rho_inf, category in ((pulse, 0.0, EnergyWarning), (tuned, 0.9, TimeStepWarning)):
+        model = bf.Model([bar], [bf.Clamp(bar.start)], [load])
+        with pytest.warns(category) as issued:
+            motion = bf.simulate(model, duration, 5e-3, bf.GeneralizedAlpha(rho_inf), **{how: given[how]})
+        assert {str(each.message) for each in issued} == set(motion.warnings)
+        if how == "file":
+            assert bf.load(given["file"]).statistics == motion.statistics
+
+
 @pytest.mark.parametrize("every", [1, 4])
 def test_energies_are_not_evaluated_where_steps_resolve_a_motion(every):
     bar = straight()

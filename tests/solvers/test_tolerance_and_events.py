@@ -139,6 +139,24 @@ def test_an_event_may_end_the_motion(pendulum, how):
     assert motion.events[0].time == motion.time[-1]
     assert motion.events[0].row == len(motion) - 1
     assert motion.status is bf.Status.COMPLETED
+    if "step" in how:
+        assert motion.statistics.steps == np.ceil(motion.time[-1] / 1e-3)
+
+
+@pytest.mark.parametrize("how", [{"step": 1e-2}, {"tolerance": 1e-3}])
+def test_rows_that_end_before_the_motion_complete_it(pendulum, how):
+    motion = bf.simulate(pendulum[1], 0.2, save_at=[0.05, 0.1], **how)
+    assert motion.time.tolist() == [0.05, 0.1]
+    assert motion.status is bf.Status.COMPLETED
+
+
+@pytest.mark.parametrize("how", [{"step": 1e-3}, {"step": 1e-3, "save_at": np.linspace(0.0, 0.1, 41)}])
+def test_rows_before_an_event_fails_are_kept(pendulum, how):
+    event = bf.Event("fails", lambda state: 1.0 if state.time < 0.0505 else 1 / 0)
+    with pytest.raises(ZeroDivisionError) as caught:
+        bf.simulate(pendulum[1], 0.1, events=[event], **how)
+    assert caught.value.solution.time[-1] == pytest.approx(0.05)
+    assert caught.value.solution.status is bf.Status.STOPPED
 
 
 @pytest.mark.parametrize(
@@ -151,6 +169,8 @@ def test_an_event_may_end_the_motion(pendulum, how):
         ({"step": 0.1, "save_at": [0.1], "save_every": 2}, "exclude each other"),
         ({"tolerance": 1e-3, "save_every": 2}, "save_every counts fixed steps"),
         ({"step": 0.1, "events": [3]}, "must be Events"),
+        ({"step": 0.1, "events": bf.Event("one", lambda state: 1.0)}, "events must be a list"),
+        ({"step": 0.1, "save_at": ["now"]}, "ascending"),
     ],
 )
 def test_what_does_not_fit_is_refused(pendulum, options, message):

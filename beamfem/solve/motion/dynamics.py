@@ -8,15 +8,13 @@ from typing import Any
 import numpy as np
 
 from beamfem.equations.rigid_velocity import RigidVelocity
-from beamfem.equations.system import System
 from beamfem.errors import ConvergenceError, EnergyWarning, InputError, warn
 from beamfem.kernels.motion_record import MotionStatistics
 from beamfem.model.model import Model
 from beamfem.progress import ends_as_a_whole, kept, returned_on_interrupt
-from beamfem.results.energy_balance import energy_warnings
 from beamfem.results.full_turns import first_turns
 from beamfem.results.solution import Solution, State
-from beamfem.results.solution_checks import warned
+from beamfem.results.solution_checks import warned, warned_motion
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.accuracy.adapted_mesh import prepared, refined_until
 from beamfem.solve.accuracy.carried_start import carried
@@ -28,7 +26,7 @@ from beamfem.solve.motion.error_control import march_to_tolerance
 from beamfem.solve.motion.events import Event
 from beamfem.solve.motion.initial_velocity import put_onto_supports, require_on_supports, start_velocity
 from beamfem.solve.motion.motion_error import LOOSE, MOST_MESHES, motion_attempt, rows_of, with_estimate_of
-from beamfem.solve.motion.motion_plan import AnyIntegrator, planned, settings_of, usual_integrator
+from beamfem.solve.motion.motion_plan import AnyIntegrator, MotionPlan, planned, settings_of, usual_integrator
 from beamfem.solve.motion.period_error import detuned
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.saved_rows import SavedRows
@@ -170,7 +168,7 @@ def simulate(
         with ends_as_a_whole():
             refined = refined_until(model, accuracy, lambda model: motion_attempt(model, solve, quantity), MOST_MESHES)
             if loose == tolerance:
-                return _told(refined)
+                return warned_motion(refined)
             final = simulate(refined.model, start=carried(start, refined.model), tolerance=tolerance, **others, **asked)
             return with_estimate_of(refined, final)
     integrator = usual_integrator(model, tolerance) if integrator is None else integrator
@@ -210,19 +208,15 @@ def simulate(
     record = Record(table, every, MotionStatistics(), pairs, np.empty((rows, len(pairs))), plan.live_view())
     record.states[0], record.rotations[0] = state[:3], turned
     record.show(0.0, state[:3])
-    further = len(plan.ends) - len(times)
     last = Last((0, state[:3].copy(), record.rotations[0].copy()))
     saved = plan.saved_rows() if collects else None
     if saved is not None:
         saved.begin(state[:3], record.rotations[0])
 
-    def found() -> Solution | None:
+    def found(complete: bool = False) -> Solution | None:
         if saved is not None:
-            whole = not saved.stopped and tolerance is None
-            return _collected(
-                saved, record, f"{last.step[0]} steps of {plan.rows_at:g} {second}" if whole else "", times[-1]
-            )
-        return _solution(system, times, record, last, further, unresolved, plan.rule)
+            return _collected(plan, saved, record, last.step[0], unresolved, complete)
+        return _solution(plan, record, last, unresolved)
 
     with kept(found):
         if settings.tolerance is not None and saved is not None:
@@ -230,60 +224,52 @@ def simulate(
             failed = march_to_tolerance(cutter, parts, state, turned, settings.tolerance, saved, record)
         else:
             failed = march(system, settings.integrator, parts, prescribed, state, record, last, saved)
-    solution = found()
+    solution = found(failed is None)
     if failed is not None:
         raise ConvergenceError(failed.sentence(second), solution)
     if solution is None:
         raise InputError("the motion has ended before the first time of save_at")
-    if saved is not None:
+    if tolerance is not None:
         return warned(solution)
-    sentences = detuned(solution, system, acting)
-    if sentences:
-        solution = solution.with_statistics(warnings=sentences)
-    return _told(solution)
+    return warned_motion(solution.with_statistics(warnings=detuned(solution, system, acting)))
 
 
-def _told(solution: Solution) -> Solution:
-    """Return a motion that has just been found, after warnings of what is wrong with it."""
-    for sentence in solution.computed(energy_warnings):
-        warn(sentence, EnergyWarning)
-    return warned(solution)
-
-
-def _collected(saved: SavedRows, record: Record, ended: str, end: float) -> Solution | None:
-    """Return the rows that were saved, if there are any."""
+def _collected(
+    plan: MotionPlan, saved: SavedRows, record: Record, done: int, unresolved: list[str], complete: bool
+) -> Solution | None:
+    """Return the rows that were saved, if there are any; done: whole steps of a fixed size; complete: whether all."""
     if not saved.times:
         return None
     times, states, turned, events = saved.take_out(0)
-    steps = record.further + (int(ended.split()[0]) if ended else 0)
-    complete = saved.stopped or times[-1] >= end * (1.0 - 1e-9)
+    if saved.stopped:  # steps are taken some at a time
+        done = min(done, int(np.ceil(times[-1] / plan.rows_at - 1e-9)))
+    steps, fixed = record.further + done, plan.settings.tolerance is None
     status = Status.COMPLETED if complete else Status.STOPPED
-    summary = Statistics(record.statistics.iterations, steps, record.cuts, ended or f"{steps} steps", status)
+    ended, rule = (_ended(plan, done, unresolved), plan.rule) if fixed else (f"{steps} steps", ())
+    summary = Statistics(record.statistics.iterations, steps, record.cuts, ended, status, rule=rule)
     p, v, a = states.swapaxes(0, 1)
     return Solution(saved.system.model, False, times, p, v, a, summary, turned=turned, events=events)
 
 
-def _solution(
-    system: System,
-    times: np.ndarray,
-    record: Record,
-    last: Last,
-    further: int,
-    unresolved: list[str],
-    rule: tuple[float, ...],
-) -> Solution:
-    done, state, last_rotations = last.step
+def _solution(plan: MotionPlan, record: Record, last: Last, unresolved: list[str]) -> Solution:
+    system, times, (done, state, last_rotations) = plan.system, plan.times, last.step
     stored_steps = np.append(np.arange(0, done, record.every), done)
     states, rotations = record.states[: len(stored_steps)], record.rotations[: len(stored_steps)]
     if done % record.every:
         states[-1], rotations[-1] = state, last_rotations
-    ended = f"{done} step{'' if done == 1 else 's'} of {times[1]:g} {system.model.unit('s')}"
+    status = Status.COMPLETED if done == len(times) - 1 else Status.STOPPED
+    taken, ended = done + record.further, _ended(plan, done, unresolved)
+    summary = Statistics(record.statistics.iterations, taken, record.cuts, ended, status, rule=plan.rule)
+    p, v, a = finished_rows(system, times[stored_steps].tolist(), states).swapaxes(0, 1)
+    return Solution(system.model, False, times[stored_steps], p, v, a, summary, turned=rotations)
+
+
+def _ended(plan: MotionPlan, done: int, unresolved: list[str]) -> str:
+    """Return how many steps were completed; unresolved: names of functions that vary within them."""
+    second, further = plan.system.model.unit("s"), len(plan.ends) - len(plan.times)
+    ended = f"{done} step{'' if done == 1 else 's'} of {plan.times[1]:g} {second}"
     if further:
         ended += f", divided {further} times at kinks of loads"
     for name in unresolved:
         ended += f"; the {name} varies within steps, which do not resolve it"
-    status = Status.COMPLETED if done == len(times) - 1 else Status.STOPPED
-    taken = done + record.further
-    summary = Statistics(record.statistics.iterations, taken, record.cuts, ended, status, rule=rule)
-    p, v, a = finished_rows(system, times[stored_steps].tolist(), states).swapaxes(0, 1)
-    return Solution(system.model, False, times[stored_steps], p, v, a, summary, turned=rotations)
+    return ended

@@ -56,7 +56,7 @@ class Event:
 
 @dataclass
 class Watch:
-    """Looks for events in steps; found: names and times [s]; values (k,): of functions at the end of the last step.
+    """Looks for events in steps; found: names and times [s]; values (k,): of functions at the last time [s] looked at.
 
     smooth: see `between`.
     """
@@ -65,6 +65,7 @@ class Watch:
     events: Sequence[Event]
     smooth: bool = False
     found: list[tuple[str, float]] = field(default_factory=list)
+    time: float = 0.0
     values: list[float] = field(default_factory=list)
 
     def begin(self, time: float, state: np.ndarray) -> None:
@@ -85,7 +86,7 @@ class Watch:
                 if (before < 0.0 <= value and event.rising is not False)
                 or (before > 0.0 >= value and event.rising is not True)
             ]
-            self.values = now
+            self.values, self.time = now, after.time
             for time, event in sorted(crossed, key=lambda pair: pair[0]):
                 self.found.append((event.name, time))
                 if event.stop:

@@ -22,7 +22,7 @@ from beamfem.model.model import Model
 from beamfem.progress import kept, progress, returned_on_interrupt
 from beamfem.public_names import public
 from beamfem.results.solution import Solution
-from beamfem.results.solution_checks import warned
+from beamfem.results.solution_checks import warned, warned_motion
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.motion.cut_steps import StepCutter, keep_momentum
 from beamfem.solve.motion.energy_judgement import CHUNK
@@ -31,6 +31,7 @@ from beamfem.solve.motion.events import Event
 from beamfem.solve.motion.generalized_alpha import Scheme, is_scheme
 from beamfem.solve.motion.marching_by_step import Memory
 from beamfem.solve.motion.motion_plan import AnyIntegrator, MotionPlan, MotionSettings, planned, settings_of
+from beamfem.solve.motion.period_error import detuned
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.saved_rows import SavedRows
 from beamfem.solve.motion.start_acceleration import initial_acceleration
@@ -240,9 +241,15 @@ def _run(file: MotionFile, plan: MotionPlan, checkpoint: Checkpoint, saved: Save
         unit, solution = plan.system.model.unit("s"), _loaded(file)
         raise ConvergenceError(failed.sentence(unit), solution)
     file.describe(plan.system.model)
-    done = _described(plan.settings, False)
-    file.commit(saved.take_out(int(before[0])), _statistics(plan, checkpoint, True), checkpoint.arrays(), done)
-    return warned(_loaded(file))
+    no_rows, arrays = saved.take_out(int(before[0])), checkpoint.arrays()
+    file.commit(no_rows, _statistics(plan, checkpoint, True), arrays, _described(plan.settings, False))
+    solution = replace(_loaded(file), model=plan.system.model)  # functions of time in a file are known at rows only
+    if plan.settings.tolerance is not None:
+        return warned(solution)
+    solution = solution.with_statistics(warnings=detuned(solution, plan.system, plan.acting))
+    if solution.statistics.warnings:
+        file.commit(no_rows, solution.statistics, arrays)
+    return warned_motion(solution)
 
 
 def _section(
@@ -348,15 +355,16 @@ def _statistics(plan: MotionPlan, checkpoint: Checkpoint, complete: bool) -> Sta
     """Return how a run went."""
     unit, (iterations, cuts, further, _, _) = plan.system.model.unit("s"), checkpoint.counts.tolist()
     time, steps = checkpoint.reached.time, further
+    rule: tuple[float, ...] = ()
     if plan.settings.tolerance is None:
-        done = int(np.searchsorted(plan.times, time, side="right")) - 1
+        done, rule = int(np.searchsorted(plan.times, time, side="right")) - 1, plan.rule
         steps, ended = done + further, f"{done} steps of {plan.rows_at:g} {unit}"
     else:
         ended = f"{steps} steps"
     if not complete:
         ended += f", to {time:.6g} {unit} of {plan.times[-1]:g} {unit}; bf.resume goes on from there"
     status = Status.COMPLETED if complete else Status.STOPPED
-    return Statistics(iterations, steps, cuts, ended, status)
+    return Statistics(iterations, steps, cuts, ended, status, rule=rule)
 
 
 def _sampled(plan: MotionPlan) -> np.ndarray:

@@ -21,7 +21,7 @@ from beamfem.solve.motion.stage_coefficients import Explicit, Staged, has_stages
 from beamfem.solve.motion.time_steps import Stretch, stretches
 from beamfem.solve.start.functions_of_time import FunctionOfTime, functions_of_time
 from beamfem.solve.start.start_checks import refuse_frame, require_memory
-from beamfem.validation import count, positive, shown
+from beamfem.validation import count, items, positive, shown
 
 AnyIntegrator = Scheme | Integrator | Staged | EnergyMomentum  # as users give it
 _LOOSE, _TIGHT = 1e-3, 1e-7  # tolerances from and up to which methods of lower and higher order need less work
@@ -113,7 +113,7 @@ def settings_of(
             "integrator must be a GeneralizedAlpha(rho_inf=...), an object with rule(step) as it has, or one with "
             f"step(motion, begin, end) as bf.Integrator describes it, got {shown(integrator)}"
         )
-    events = tuple(events)
+    events = tuple(items("events", events))
     if not all(isinstance(event, Event) for event in events):
         raise InputError(f"events must be Events, got {shown(events)}")
     if user_defined and tolerance is not None and not isinstance(getattr(integrator, "order", None), int):
@@ -163,10 +163,11 @@ def _stable(system: System, settings: MotionSettings, method: Explicit) -> Motio
 
 def _rows_at(save_at: Sequence[float] | np.ndarray) -> tuple[float, ...]:
     """Return the times of rows. Raises InputError unless they ascend."""
-    at = np.array(save_at, dtype=float)
-    if at.ndim != 1 or not len(at) or not np.isfinite(at).all() or np.any(np.diff(at) <= 0.0):
+    at = np.asarray(save_at)
+    numbers = at.dtype.kind in "iuf" and at.ndim == 1 and np.isfinite(at).all()
+    if not (numbers and len(at) and np.all(np.diff(at) > 0.0)):
         raise InputError(f"save_at must be times in ascending order, got {shown(save_at)}")
-    return tuple(at.tolist())
+    return tuple(at.astype(float).tolist())
 
 
 def _wanted(settings: MotionSettings, times: np.ndarray) -> np.ndarray | None:

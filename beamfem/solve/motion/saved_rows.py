@@ -47,16 +47,20 @@ class SavedRows:
         """Take steps that end at times (m + 1,) [s], with the rows at these; the first row is known already."""
         if len(times) < 2:
             return
-        end = self.watch.look(times, rows.states)
+        try:
+            end = self.watch.look(times, rows.states)
+        except BaseException:  # of a function, or Ctrl-C: rows before it are kept
+            self._keep_at(times, rows, self._inside(times, self.watch.time))
+            raise
         self.stopped = end is not None
         if end is not None:
-            self._keep_at(times, rows, self._wanted(times, end), end)
+            self._keep_at(times, rows, np.union1d(self._inside(times, end), end))
         elif self.at is None:
             self.times += times[1:].tolist()
             self.states += list(rows.states[1:].copy())
             self.rotations += list(rows.rotations[1:].copy())
         else:
-            self._keep_at(times, rows, self.at[(self.at > times[0]) & (self.at <= times[-1])])
+            self._keep_at(times, rows, self._inside(times, float(times[-1])))
 
     def take_out(self, before: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[Occurrence, ...]]:
         """Return and forget times (k,), states (k, 3, n), rotations (k, m) and events.
@@ -72,11 +76,12 @@ class SavedRows:
         self.times, self.states, self.rotations, self.watch.found = [], [], [], []
         return times, states, rotations, events
 
-    def _wanted(self, times: np.ndarray, end: float) -> np.ndarray:
+    def _inside(self, times: np.ndarray, end: float) -> np.ndarray:
+        """Return the times of rows [s] in steps that end at times (m + 1,) [s], up to an end [s]."""
         own = times[1:] if self.at is None else self.at
-        return np.append(own[(own > times[0]) & (own < end)], end)
+        return own[(own > times[0]) & (own <= end)]
 
-    def _keep_at(self, times: np.ndarray, rows: Rows, at: np.ndarray, end: float | None = None) -> None:
+    def _keep_at(self, times: np.ndarray, rows: Rows, at: np.ndarray) -> None:
         if not len(at):
             return
         ends = np.searchsorted(times, at)

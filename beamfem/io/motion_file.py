@@ -50,15 +50,18 @@ class MotionFile:
             self._pages = hdf5.Pages(self.path, self._journal)
             try:
                 self._file = self.h5py.File(self._pages, "r+", libver=("v108", "v110"))
-            except OSError as error:
+                if _CHECKPOINT not in self._file:
+                    self._file.close()
+                    raise InputError(f"{path} cannot be resumed: it holds no motion that simulate wrote with file=")
+                self._tail = _last_block(self._file)
+                for name in self._file[_CHECKPOINT]:
+                    hdf5.read_checked(self._file[_CHECKPOINT], name)
+                hdf5.read_checked(self._file, "model")
+            except (OSError, LookupError, RuntimeError) as error:
                 raise InputError(f"{path} cannot be resumed: it is no HDF5 file, or damaged ({error})") from error
-            if _CHECKPOINT not in self._file:
-                self._file.close()
-                raise InputError(f"{path} cannot be resumed: it holds no motion that simulate wrote with file=")
         except BaseException:
             self._journal.close()
             raise
-        self._tail = _last_block(self._file)
 
     def close(self) -> None:
         """Close the file; what was not committed is dropped."""

@@ -294,6 +294,8 @@ def test_what_does_not_fit_a_file_is_said_in_a_sentence(short, tmp_path):
     (tmp_path / "text.h5").write_text("text")
     with pytest.raises(bf.InputError, match="it is no HDF5 file"):
         bf.resume(tmp_path / "text.h5")
+    with pytest.raises(bf.InputError, match="a Model is asked for"):
+        bf.resume(path, "model")
     with pytest.raises(bf.FileError, match="there is no file"):
         bf.resume(tmp_path / "nothing.h5")
     bf.simulate(model, 0.1, 1e-3, file=tmp_path / "text.h5")  # as save, it replaces what is no unfinished motion
@@ -302,6 +304,21 @@ def test_what_does_not_fit_a_file_is_said_in_a_sentence(short, tmp_path):
         with pytest.raises(bf.InputError, match=r"swing.h5 is being written by another process"):
             begin()
     open_file.close()
+
+
+@pytest.mark.filterwarnings("ignore:.* holds a complete motion:beamfem.LongRunWarning")
+def test_a_damaged_file_is_refused_in_a_sentence(short, tmp_path):
+    """It also stayed locked; parts of a file that are not used may be lost."""
+    path, refused = tmp_path / "swing.h5", 0
+    rows = bf.simulate(pendulum(), 0.05, 1e-3, file=path).p
+    whole = path.read_bytes()
+    for begin in range(0, len(whole), 20480):
+        path.write_bytes(whole[:begin] + bytes(4096) + whole[begin + 4096 :])
+        try:
+            np.testing.assert_array_equal(bf.resume(path).p, rows)
+        except bf.InputError as error:
+            refused += "damaged" in str(error)
+    assert refused > 1
 
 
 def test_an_unfinished_motion_is_not_replaced(short, tmp_path):

@@ -12,6 +12,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from beamfem.equations.system import system_of
 from beamfem.errors import ConvergenceError, FileError, InputError, LongRunWarning, warn
 from beamfem.installed_memory import USABLE_FRACTION, in_gib, installed_memory
 from beamfem.io.description import NotImportedError, class_of
@@ -165,6 +166,8 @@ def resume(
     >>> len(motion)
     21
     """
+    if model is not None:
+        system_of(model, static=False)
     open_file = MotionFile(file)
     try:
         begun = open_file.settings

@@ -1,5 +1,8 @@
 """Motions with constraint conditions: consistent start, initial accelerations and multipliers, impact on supports."""
 
+from contextlib import suppress
+from dataclasses import replace
+
 import numpy as np
 from scipy.linalg import LinAlgError
 from scipy.sparse import block_array, csc_array, dia_array
@@ -9,6 +12,7 @@ from beamfem.equations.connectors import SHORT_TIME
 from beamfem.equations.equations import INERTIA, STATICS, linearise, residual
 from beamfem.equations.system import System
 from beamfem.errors import InputError
+from beamfem.linalg.bordered import BorderedTangent, CondensedFactors
 from beamfem.linalg.tangent import UNROTATED, SaddleTangent, SparseTangent, Tangent
 from beamfem.model.contribution import is_one_sided
 from beamfem.solve.start.mechanisms import dependent, require_independent
@@ -108,10 +112,18 @@ def onto_conditions(system: System, state: np.ndarray, time: float) -> None:
 def _with_conditions(system: System, p: np.ndarray, mass: Tangent, right: np.ndarray, time: float) -> np.ndarray:
     """Return x and multipliers (unknown,), with [M, G'; G, 0] [x, l] = right."""
     k, zeros = len(system.connectors.multipliers), np.zeros(len(p))
+    tangent = linearise(system, p, zeros, zeros, time, STATICS)[1]
+    if isinstance(mass, BorderedTangent) and isinstance(tangent, BorderedTangent):
+        entries = tangent.border.entries.copy()
+        entries[:-k, :-k], entries[-k:, -k:] = mass.border.entries[:-k, :-k], 0.0
+        with suppress(LinAlgError):
+            factors = replace(mass, border=mass.border._replace(entries=entries)).factorised(system.rotated)
+            if isinstance(factors, CondensedFactors):
+                return factors.solve(right)
     scale = np.append(system.scale[system.free_dofs][:-k], np.ones(k))  # rotations weigh as much as lengths
     units = dia_array((scale[None, :-k], [0]), shape=(len(scale) - k,) * 2)
     inertia = units @ mass.sparse(UNROTATED)[:-k, :-k] @ units
-    conditions = linearise(system, p, zeros, zeros, time, STATICS)[1].sparse(UNROTATED)[-k:, :-k] @ units
+    conditions = tangent.sparse(UNROTATED)[-k:, :-k] @ units
     whole = SaddleTangent(SparseTangent(csc_array(block_array([[inertia, conditions.T], [conditions, None]]))), k)
     try:
         return scale * whole.solve(scale * right, system.rotated)

@@ -1,6 +1,6 @@
 """Residual and tangent of a system in a state: the interface between solvers and kernels."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -142,6 +142,20 @@ def _residuals(
         row[:] = forces
     _return_assembler(system, assembler)
     return result
+
+
+def inertias(system: System, p: np.ndarray) -> Iterator[Tangent]:
+    """Yield the inertia of states p (rows, n) at rest, in a frame at rest; the next one overwrites its numbers."""
+    matrix, assembler, place = np.empty(system.unknowns.entries), _acquired(system), np.empty(p.shape[1])
+    zeros, forces = np.zeros((2, p.shape[1]))
+    assembler.take(system.loads.at(0.0), 0.0)
+    assembler.weigh(INERTIA)
+    assembler.prepare(place, zeros, zeros, forces, matrix, False)
+    tangent = tangent_of(system, matrix)
+    for place[:] in p:
+        assembler.evaluate()
+        yield tangent
+    _return_assembler(system, assembler)
 
 
 def _residual(

@@ -4,13 +4,14 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg.lapack import dpbsv
 
 from beamfem.equations.bound_connector import COMPLEX_STEP, Connector
-from beamfem.equations.equations import INERTIA, linearise
+from beamfem.equations.equations import INERTIA, inertias
 from beamfem.equations.system import System
 from beamfem.linalg.bordered import BorderedTangent
 from beamfem.linalg.lapack import LinAlgError
-from beamfem.linalg.tangent import SaddleTangent, Tangent
+from beamfem.linalg.tangent import SaddleTangent
 from beamfem.parts.at_points import ANALYTIC
 from beamfem.physics.connections import MASS
 from beamfem.solve.motion.constraints import CENTRAL
@@ -99,7 +100,7 @@ def _compliance(system: System) -> _Compliance | None:
     )
     units, turned = np.eye(system.model.size)[dofs], np.where(system.positions, 0.0, _TURN) + system.reference
     try:
-        moved, elsewhere = (_accelerations(system, p, units) for p in (system.reference, turned))
+        moved, elsewhere = _accelerations(system, np.array([system.reference, turned]), np.array([units, units]))
     except LinAlgError:
         return None
     if not np.isfinite(moved).all():
@@ -119,18 +120,22 @@ def _compliance(system: System) -> _Compliance | None:
 
 
 def _accelerations(system: System, p: np.ndarray, forces: np.ndarray) -> np.ndarray:
-    """Return the accelerations (n, c) of a state p (n,) at rest by forces (c, n). Raises LinAlgError."""
-    zeros, free, k = np.zeros(len(p)), system.free_dofs, len(system.connectors.multipliers)
-    mass, result = linearise(system, p, zeros, zeros, 0.0, INERTIA)[1], np.zeros((len(p), len(forces)))
-    coordinates: Tangent
-    assert isinstance(mass, BorderedTangent | SaddleTangent)
-    if isinstance(mass, BorderedTangent) and not mass.border.entries.any():
-        free, coordinates = free[:-k], mass.band
-    else:
-        coordinates = mass.without(np.arange(-k, 0), np.ones(k))
-    factors = coordinates.factorised(system.rotated)
-    for column, force in enumerate(forces):
-        result[free, column] = factors.solve(force[free])
+    """Return accelerations (rows, n, c) of states p (rows, n) at rest by forces (rows, c, n). Raises LinAlgError."""
+    free, k = system.free_dofs, len(system.connectors.multipliers)
+    result = np.zeros((*p.shape, forces.shape[1]))
+    for mass, given, moved in zip(inertias(system, p), forces[:, :, free].swapaxes(1, 2), result, strict=True):
+        own, coordinates = free, mass
+        assert isinstance(mass, BorderedTangent | SaddleTangent)
+        if isinstance(mass, BorderedTangent) and not mass.border.entries.any():
+            own, coordinates = free[:-k], mass.band
+            half = mass.band.rows[:, mass.band.rows.shape[1] // 2 :]
+            _, moved[own], failed = dpbsv(half.T, given[: len(own)], lower=1)
+            if not (failed or len(system.rotated[0])):
+                continue
+        else:
+            coordinates = mass.without(np.arange(-k, 0), np.ones(k))
+        factors = coordinates.factorised(system.rotated)
+        moved[own] = np.array([factors.solve(force) for force in given[: len(own)].T]).T
     return result
 
 
@@ -204,7 +209,7 @@ class _Impulses:
         if found.varies:
             forces = np.zeros((len(p), len(found.numbers), p.shape[1]))
             forces[:, :, found.dofs] = self.gradients
-            self._moved = np.array([_accelerations(system, *each) for each in zip(p, forces, strict=True)])
+            self._moved = _accelerations(system, p, forces)
             self._along, moved = np.eye(len(found.numbers)), self._moved[:, found.dofs]
         elif found.bodies:
             change = (_inertia(found, p) - found.still) @ here

@@ -13,7 +13,6 @@ from beamfem.kernels.records import aligned
 from beamfem.linalg.lapack import LinAlgError
 from beamfem.linalg.tangent import (
     SMALLEST_PIVOT,
-    UNROTATED,
     BandTangent,
     Factorised,
     Rotated,
@@ -102,10 +101,13 @@ class BorderedTangent(Tangent):
 
     def _whole(self) -> csc_array:
         numbers, multipliers, entries = self.border
-        size = len(self.band.rows)
+        rows = self.band.rows
+        size, width = rows.shape
         own = np.concatenate([numbers, np.arange(size, size + multipliers)])
-        row, column = (places.ravel() for places in np.meshgrid(own, own, indexing="ij"))
+        row, place = np.nonzero(rows)
+        column = row + place - width // 2
+        beside = np.nonzero(entries)
         shape = size + multipliers, size + multipliers
-        band = coo_array(self.band.sparse(UNROTATED))
-        inner = coo_array((band.data, (band.row, band.col)), shape=shape)
-        return csc_array(inner + coo_array((entries.ravel(), (row, column)), shape=shape))
+        data = np.concatenate([rows[row, place], entries[beside]])
+        places = np.concatenate([row, own[beside[0]]]), np.concatenate([column, own[beside[1]]])
+        return csc_array(coo_array((data, places), shape=shape))

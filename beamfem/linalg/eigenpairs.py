@@ -153,6 +153,8 @@ def dominant_pairs(
     negligible = max(negligible, _ROUND_OFF * float(size(values[:1])[0]))
     for _ in range(_SEARCHES):
         more, beside = search(basis, further)
+        if len(values) < count:
+            break
         least = float(size(values[count - 1 : count])[0])
         if float(size(more[:1])[0]) <= max(least + _EQUAL * abs(least), negligible):
             return values, x
@@ -160,7 +162,9 @@ def dominant_pairs(
         whole, y = eig(basis.T @ (mass @ np.column_stack([times(column) for column in basis.T])))
         values, x = _largest(whole, basis @ y, size)
         further *= 2
-    raise ConvergenceError(f"some of the {count} largest eigenvalues were missed")
+    raise ConvergenceError(
+        f"some of {count} eigenvalues were missed: stiffnesses or inertias may differ by too many orders of magnitude"
+    )
 
 
 def _largest(values: np.ndarray, x: np.ndarray, size: Callable[[np.ndarray], np.ndarray]) -> Pairs:

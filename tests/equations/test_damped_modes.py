@@ -156,11 +156,75 @@ def test_effective_masses_of_a_cantilever_are_those_of_the_beam_theory():
     assert np.allclose(modes.participation((0, -1)), -modes.participation((0, 1)))
 
 
+def portal(connector, masses=()):
+    left, right = beam_of((0, 0), (0, 1)), beam_of((1, 0), (1, 1))
+    feet = [bf.Clamp(left.start), bf.Clamp(right.start)]
+    tied = [connector(left.end, right.end)]
+    return bf.Model([left, right], feet, [bf.PointForce(left.end, (1, 0))], connectors=tied, masses=masses)
+
+
+@pytest.mark.parametrize("stiffness", [1e12, 1e16, 1e18, 1e20, 1e22, 1e25, 1e30, 1e40])
+def test_a_very_stiff_spring_is_a_link_or_is_named(stiffness):
+    """Round-off of its assembled stiffness hides that of the columns: up to 3 wrong digits, or an error."""
+    stiff, link = portal(lambda a, b: bf.SpringDamper(a, b, stiffness)), portal(bf.Link)
+    for found in (
+        lambda model: bf.linearise(model).modes(3).frequencies,
+        lambda model: bf.solve_modes(model, 3).frequencies,
+        lambda model: abs(bf.frequency_response(model, model.loads[0], ("ux", model.beams[1].end), [3.0]).values),
+    ):
+        try:
+            values = found(stiff)
+        except (bf.ConvergenceError, bf.InputError) as error:
+            refused = str(error)
+        else:
+            assert values == pytest.approx(found(link), rel=2e-3)
+            continue
+        assert "SpringDamper at (0, 1) and (1, 1)" in refused or "orders of magnitude" in refused or "hidden" in refused
+        assert stiffness > 1e14
+
+
+@pytest.mark.parametrize("inertia", [1.0, 1e3, 1e6, 1e10, 1e20, 1e50, 1e100])
+def test_a_very_large_inertia_leaves_the_other_modes_or_is_named(inertia):
+    """The stiffness is that of the columns: the body turns slowly, all else vibrates as if its rotation were fixed."""
+    bare = portal(lambda a, b: bf.SpringDamper(a, b, 1e5))
+    heavy = bare.with_(masses=[bf.RigidBody(bare.beams[0].end, 1.0, inertia, (0.0, 0.0))])
+    if inertia > 1e6:
+        with pytest.raises(bf.ConvergenceError, match="orders of magnitude"):
+            bf.linearise(heavy).modes(4)
+    else:
+        assert bf.linearise(heavy).modes(4).frequencies == pytest.approx(bf.solve_modes(heavy, 4).frequencies, rel=1e-6)
+
+
+def test_a_very_slender_beam_is_not_taken_for_a_mechanism():
+    """Its bending is within the round-off of its axial stiffness, but supports hold it."""
+    wire = bf.Beam(bf.Line((0, 0), (1, 0)), 16, bf.CRBF(8), bf.Rectangle(1e-5, 1e-5), STEEL)
+    with pytest.raises(bf.ConvergenceError, match="no three digits"):
+        bf.linearise(bf.Model([wire], [bf.Clamp(wire.start)])).modes(2)
+
+
+def test_a_light_bar_beside_a_mass_has_its_own_modes():
+    """Rates of 3 and 2e9 rad/s: shapes of the fast ones have no part of the slow one, whose mass is far larger."""
+    linear = bf.linearise(oscillator(10.0, 1.0))
+    modes = linear.modes(4)
+    z = modes.modes[:, linear.coordinates]
+    assert modes.growth[0] == pytest.approx(-0.5, rel=1e-6)
+    assert np.abs(np.triu(z.conj() @ (linear.mass @ z.T), 1)).max() < 1e-6
+    without = bf.solve_modes(oscillator(10.0, 1.0).with_(connectors=[]), 4).elastic
+    assert modes.frequencies[1:] == pytest.approx(without, rel=1e-6)
+
+
+def damped_at_its_end():
+    beam = beam_of((0, 0), (1, 0))
+    return bf.linearise(
+        bf.Model([beam], [bf.Clamp(beam.start)], connectors=[bf.SpringDamper(beam.end, (1.0, 1.0), 0.0, 50.0)])
+    )
+
+
 def test_bad_input_is_named():
     model = oscillator(10.0, 1.0)
     with pytest.raises(bf.InputError, match="only 10 modes"):
         bf.linearise(model).modes(100)
     with pytest.raises(bf.InputError, match="those of undamped modes"):
-        bf.linearise(model).modes(2).effective_masses((1, 0))
+        damped_at_its_end().modes(2).effective_masses((1, 0))
     with pytest.raises(bf.InputError, match="must not be"):
         bf.solve_modes(model.with_(connectors=[]), 1).participation((0, 0))

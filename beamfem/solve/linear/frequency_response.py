@@ -14,7 +14,7 @@ from beamfem.linalg.lapack import superlu
 from beamfem.model.load_base import Load
 from beamfem.model.model import Model
 from beamfem.results.solution import Solution, State
-from beamfem.solve.linear.linear_model import LinearModel, Quantity
+from beamfem.solve.linear.linear_model import LinearModel, Quantity, require_digits
 from beamfem.solve.linear.linearise import linearise
 from beamfem.validation import items, not_negative
 
@@ -117,6 +117,8 @@ def frequency_response(
         For an invalid argument, see `linearise`, and if the response is infinite.
     UnknownPointError
         For a point on a beam that is not in the model.
+    ConvergenceError
+        If stiffnesses or inertias differ so much that round-off leaves a response no three digits.
 
     Examples
     --------
@@ -141,9 +143,12 @@ def _moved(linear: LinearModel, frequency: float) -> np.ndarray:
         # where the matrix is singular up to round-off, that of its product is as large as the load
         lost = np.finfo(float).eps * (linear.scale @ (abs(dynamic) @ np.abs(moved)))
         if lost <= linear.scale @ np.abs(force):
+            what = f"the response at {frequency:g} {linear.model.unit('Hz')}"
+            require_digits(linear, 1j * rate, moved, np.vdot(moved, force), what)
             return np.asarray(moved)
     except LinAlgError:
         pass
     raise InputError(
-        f"the response at {frequency:g} {linear.model.unit('Hz')} is infinite: a mode of this frequency has no damping"
+        f"the response at {frequency:g} {linear.model.unit('Hz')} is infinite: a mode of this frequency has no "
+        "damping, or is hidden by the round-off of much larger stiffnesses"
     )

@@ -10,20 +10,21 @@ from scipy.sparse import csc_array, csr_array, dia_array
 
 from beamfem.element.fields import cross, dot
 from beamfem.equations.system import system_of
-from beamfem.errors import InputError
+from beamfem.errors import ConvergenceError, InputError
 from beamfem.linalg.eigenpairs import digits_for, orthonormal
 from beamfem.linalg.lapack import superlu
 from beamfem.model.beam import Point
 from beamfem.model.load_base import Load
 from beamfem.model.model import Model
 from beamfem.parts.floating_body import FloatingBody
+from beamfem.precision.roundoff import LOSES
 from beamfem.results.axis_points import axis_at
 from beamfem.results.solution import State
 from beamfem.solve.linear.quadratic_modes import slowest_rates
-from beamfem.solve.modes.mode_stiffness import upright
+from beamfem.solve.modes.mode_stiffness import refuse_lost_digits, upright
 from beamfem.solve.modes.modes import Modes
 from beamfem.solve.modes.pencil import Pencil
-from beamfem.solve.modes.rigid_modes import sort_rigid
+from beamfem.solve.modes.rigid_modes import sort_rigid, unresisted
 from beamfem.validation import count as whole_number
 from beamfem.validation import items, require_known, shown
 
@@ -67,6 +68,8 @@ class LinearModel:
         Stiffness and damping of a rigid motion of unit mass that are round-off.
     interfaces : tuple of Point
         Points that it was reduced to, see `reduce`.
+    static : bool
+        Whether the state is an equilibrium, and not a state of a motion.
 
     Examples
     --------
@@ -87,6 +90,7 @@ class LinearModel:
     names: tuple[str, ...]
     round_off: tuple[float, float]
     interfaces: tuple[Point, ...] = ()
+    static: bool = False
 
     def __len__(self) -> int:
         return len(self.names)
@@ -143,7 +147,7 @@ class LinearModel:
         InputError
             For an invalid count.
         ConvergenceError
-            If modes were missed.
+            If modes were missed, or if round-off leaves one no three digits: stiffnesses or inertias differ too much.
 
         Examples
         --------
@@ -155,18 +159,26 @@ class LinearModel:
         mass = self.mass
         if whole_number("count", count) > len(self):
             raise InputError(f"count is {count}, but this model has only {len(self)} modes")
+        pencil = Pencil(system_of(self.model, static=True), self.state.p, self.state.at)
         with digits_for("modes"):
-            rates, vectors = slowest_rates(mass, self.damping, self.stiffness, self.scale, self.round_off, count)
+            known = len(unresisted(pencil)[0]) if self.static else None
+            matrices = mass, self.damping, self.stiffness
+            rates, vectors = slowest_rates(*matrices, self.scale, self.round_off, known, count)
             rigid = np.count_nonzero(rates == 0.0)
             shapes, words = np.empty((0, self.model.size)), tuple[str, ...]()
             if rigid:
                 still = orthonormal(vectors[:, :rigid].real, mass).T @ self.transformation.T
-                pencil = Pencil(system_of(self.model, static=True), self.state.p, self.state.at)
                 shapes, words = sort_rigid(pencil, still)
         rates, vectors = rates[rigid:], vectors[:, rigid:]
         order = np.lexsort((-rates.real, rates.imag))
         rates, vectors = rates[order], vectors[:, order]
         vectors = vectors / np.sqrt(np.real((np.conj(vectors) * (mass @ vectors)).sum(axis=0)))
+        if len(rates):  # a motion of the whole model, as a mode may be that is missing
+            whole = self.scale / np.sqrt(self.scale @ (mass @ self.scale))
+            fastest = rates[np.abs(rates).argmax()]
+            _refuse(self, whole, np.sqrt(LOSES) * _magnitude(self, fastest, whole), "a mode")
+        for rate, x in zip(rates, vectors.T, strict=True):
+            require_digits(self, rate, x, 0.0, f"the mode of {rate.imag / (2.0 * np.pi):g} {self.model.unit('Hz')}")
         elastic = upright(vectors.T @ self.transformation.T)
         if np.abs(elastic.imag).max(initial=0.0) <= _REAL * np.abs(elastic).max(initial=0.0):
             elastic = elastic.real
@@ -236,6 +248,27 @@ class LinearModel:
         rows = np.eye(m) if outputs is None else [self.output(own) for own in items("outputs", outputs)]
         c = np.hstack([np.reshape(rows, (-1, m)), np.zeros((len(rows), m))])
         return a, b, c, np.zeros((len(rows), len(self.loads)))
+
+
+def require_digits(linear: LinearModel, rate: complex, x: np.ndarray, work: complex, what: str) -> None:
+    """Raise ConvergenceError if round-off leaves a motion x exp(rate t) of a linear model no three digits.
+
+    work: x^H times its force; what: what is found, in words.
+    """
+    most = LOSES * max(_magnitude(linear, rate, x), abs(work))
+    _refuse(linear, x, most, what)
+    dynamic = rate**2 * linear.mass + rate * linear.damping + linear.stiffness
+    if abs(np.vdot(x, dynamic @ x) - work) > most:
+        raise ConvergenceError(f"round-off leaves {what} no three digits: inertias or stiffnesses differ too much")
+
+
+def _magnitude(linear: LinearModel, rate: complex, x: np.ndarray) -> float:
+    """Return the larger one of abs(s^2 x^H M x) and abs(s x^H C x) for a motion x exp(s t)."""
+    return float(max(abs(rate**2 * np.vdot(x, linear.mass @ x)), abs(rate * np.vdot(x, linear.damping @ x))))
+
+
+def _refuse(linear: LinearModel, x: np.ndarray, most: float, what: str) -> None:
+    refuse_lost_digits(system_of(linear.model, static=True), linear.coordinates, linear.stiffness, x, most, what)
 
 
 def output_row(model: Model, p: np.ndarray, quantity: Any) -> csr_array:

@@ -104,6 +104,7 @@ def linearised(
         coordinates=free[independent],
         names=tuple(names[dof] for dof in free[independent].tolist()),
         round_off=(_round_off(stiffness, mass, scale), _round_off(damping, mass, scale)),
+        static=system.static,
     )
 
 

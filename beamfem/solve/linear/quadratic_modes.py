@@ -9,7 +9,8 @@ from beamfem.linalg.lapack import superlu, svd
 _SPARE = 4  # eigenvalues found beyond those asked for
 _REAL = 1e-8  # of a rate: imaginary parts below this fraction are round-off, as of double roots
 _UNDAMPED = 1e-10  # of a rate: real parts below this fraction are round-off
-_SOLVES = 4  # for rigid motions, each of which reduces other parts by the ratio of rigid and elastic rates
+_SOLVES = 4  # for rigid motions and blurred vectors, each of which reduces other parts by the ratio of their rates
+_BLURRED = 1e-9  # of a force: residual above which a vector has parts of others
 
 
 def slowest_rates(
@@ -18,17 +19,19 @@ def slowest_rates(
     stiffness: csr_array,
     scale: np.ndarray,
     round_off: tuple[float, float],
+    rigid: int | None,
     count: int,
 ) -> Pairs:
     """Return the `count` slowest rates s (m,) [1/s] with Im s >= 0, by their size, and vectors x (n, m).
 
     A rigid motion, s = 0 twice, is one of them. scale (n,): sizes of the coordinates, relative to which vectors are
-    compared; round_off: of x^T K x [1/s^2] and x^T C x [1/s] for a rigid motion x with x^T M x = 1. m < count if there
-    are no more. Raises ConvergenceError, LinAlgError.
+    compared; round_off: of x^T K x [1/s^2] and x^T C x [1/s] for a rigid motion x with x^T M x = 1; rigid: number of
+    rigid motions, None for those within the round-off. m < count if there are no more. Raises ConvergenceError,
+    LinAlgError.
     """
     n = mass.shape[0]
     resting, undamped = round_off
-    rigid = _between(mass, stiffness, resting)
+    rigid = _between(mass, stiffness, resting) if rigid is None else rigid
     slow = _slowest(mass, stiffness, rigid, resting)
     motions = _rigid_motions(mass, stiffness, rigid, np.sqrt(resting**0.5 * slow))
     resisted = svd(motions.T @ damping @ motions, compute_uv=False) if rigid else np.zeros(0)
@@ -48,14 +51,35 @@ def slowest_rates(
     product = csr_array(eye_array(2 * n))
     values, y = dominant_pairs(times, product, min(2 * count + _SPARE, 2 * n), "LM")
     finite = np.abs(values) > np.finfo(float).eps * np.abs(values).max()
-    rates, x = shift + 1.0 / values[finite], scale[:, None] * y[:n, finite]
-    rates = np.where(np.abs(rates.imag) <= _REAL * np.abs(rates), rates.real, rates)
-    rates = np.where(np.abs(rates.real) <= _UNDAMPED * np.abs(rates), 1j * rates.imag, rates)
+    rates, x = _rounded(shift + 1.0 / values[finite]), scale[:, None] * y[:n, finite]
     still = 2 * rigid - len(resisted)
     moving = np.argsort(np.abs(rates), kind="stable")[still:]
     moving = moving[rates[moving].imag >= 0.0]
-    rates = np.append(np.zeros(rigid), rates[moving])
-    return rates[:count], np.column_stack([motions, x[:, moving]])[:, :count]
+    moving = moving[: max(count - rigid, 0)]
+    pairs = [_sharpened(mass, damping, stiffness, rates[number], x[:, number]) for number in moving.tolist()]
+    rates = np.append(np.zeros(rigid), [rate for rate, _ in pairs])
+    return _rounded(rates)[:count], np.column_stack([motions, *(vector for _, vector in pairs)])[:, :count]
+
+
+def _rounded(rates: np.ndarray) -> np.ndarray:
+    """Return rates (m,) whose real or imaginary parts are 0 where they are round-off."""
+    rates = np.where(np.abs(rates.imag) <= _REAL * np.abs(rates), rates.real, rates)
+    return np.where(np.abs(rates.real) <= _UNDAMPED * np.abs(rates), 1j * rates.imag, rates)
+
+
+def _sharpened(
+    mass: csr_array, damping: csr_array, stiffness: csr_array, rate: complex, x: np.ndarray
+) -> tuple[complex, np.ndarray]:
+    """Return a rate and its vector (n,) after inverse iterations, if rates of other sizes have blurred them."""
+    matrix = rate**2 * mass + rate * damping + stiffness
+    size = max(abs(rate**2 * np.vdot(x, mass @ x)), abs(rate * np.vdot(x, damping @ x)))
+    if abs(np.vdot(x, matrix @ x)) <= _BLURRED * size:
+        return rate, x
+    factors, slope = superlu(csc_array(matrix, dtype=complex)), 2.0 * rate * mass + damping
+    for _ in range(_SOLVES):
+        before = x / np.linalg.norm(x)
+        x = factors.solve(slope @ before)
+    return rate - 1.0 / np.vdot(before, x), x
 
 
 def _rigid_motions(mass: csr_array, stiffness: csr_array, count: int, shift: float) -> np.ndarray:

@@ -4,8 +4,10 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from beamfem.equations.equations import linearise_at_rest, predicted_stresses
+from beamfem.equations.redundant_conditions import in_words
 from beamfem.equations.stress_resultants import resultants, strain_group
 from beamfem.equations.system import System
+from beamfem.errors import ConvergenceError
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.model import Model
 from beamfem.results.axis_points import nodal_vectors
@@ -70,3 +72,24 @@ def weak_stiffness(system: System, p: np.ndarray, load_factor: float, stresses: 
     """Return the tangent (unknown, unknown) without sum B^T C B: the contributions of stresses, springs and loads."""
     weak = system.without_stiffness
     return linearise_at_rest(system, p, load_factor, stresses, weak)[1].sparse(UNROTATED)
+
+
+def refuse_lost_digits(
+    system: System, dofs: np.ndarray, stiffness: csr_array, x: np.ndarray, most: float, what: str
+) -> None:
+    """Raise ConvergenceError if the round-off of an assembled stiffness (m, m) makes x^T K x uncertain by over `most`.
+
+    Terms of opposite signs cancel out in a shape x (m,) that hardly deforms a stiff part. dofs (m,): numbers of the
+    coordinates, -1 for amplitudes of modes; what: what loses its digits, in words.
+    """
+    own = stiffness.tocoo()
+    terms = np.where(own.row == own.col, 0.0, np.abs(own.data * x[own.row] * x[own.col]))  # squares do not cancel out
+    if np.finfo(float).eps * np.linalg.norm(terms) <= most:  # rounded at random
+        return
+    worst = dofs[own.row[terms.argmax()]]
+    stiff = [item for item in system.connectors.items if worst in item.dofs]
+    raise ConvergenceError(
+        f"round-off leaves {what} no three digits, because stiffnesses differ by too many orders of magnitude"
+        + (f", that of {in_words(stiff)} most" if stiff else ""),
+        remedy="Describe what hardly deforms by a Link, a Weld or another condition" if stiff else "",
+    )

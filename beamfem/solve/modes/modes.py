@@ -15,6 +15,7 @@ from beamfem.errors import InputError
 from beamfem.linalg.eigenpairs import Pairs, digits_for, general_pairs, nothing_known
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
+from beamfem.precision.roundoff import LOSES
 from beamfem.results.locking import stiffness_locking
 from beamfem.results.solution import Solution, State
 from beamfem.results.solution_checks import may_lock, warn_of
@@ -23,7 +24,13 @@ from beamfem.solve.accuracy.adapted_mesh import Shares, prepared, refined_until,
 from beamfem.solve.accuracy.carried_start import carried
 from beamfem.solve.accuracy.coarse_mesh import WARNED, kept_coarse
 from beamfem.solve.accuracy.error_estimate import enriched, enriched_state, mode_shares
-from beamfem.solve.modes.mode_stiffness import largest_translation, upright
+from beamfem.solve.modes.mode_stiffness import (
+    largest_translation,
+    refuse_lost_digits,
+    stresses_of,
+    upright,
+    weak_stiffness,
+)
 from beamfem.solve.modes.pencil import WRONG, Pencil, lowest_pairs
 from beamfem.solve.modes.rigid_modes import unresisted
 from beamfem.solve.start.mechanisms import require_independent
@@ -327,7 +334,7 @@ def solve_modes(
     InputError
         For an invalid argument, or a state that is not in equilibrium; for an accuracy and elements that lock.
     ConvergenceError
-        If modes were missed, or no mesh reaches the accuracy.
+        If modes were missed, no mesh reaches the accuracy, or round-off of very stiff parts leaves no three digits.
 
     Examples
     --------
@@ -397,6 +404,13 @@ def _modes(model: Model, count: int, about: State | Solution | None) -> tuple[Mo
         rigid, words = unresisted(pencil)
         missing, free = max(count - len(rigid), 0), rigid[:, system.free_dofs].T
         squares, vectors = (lowest_pairs if pencil.symmetric else _general)(pencil, missing, free)
+    if missing and system.connectors.items:  # whose stiffness is assembled
+        weak = weak_stiffness(system, p, load_factor, stresses_of(system, p, np.zeros_like(p), load_factor))
+        whole = system.scale[system.free_dofs]
+        whole = whole / np.sqrt(whole @ (pencil.mass @ whole))  # as a mode may be that is missing
+        for square, x in [(squares[missing - 1], whole), *zip(squares[:missing], vectors.T, strict=False)]:
+            # frequencies lose the square of what vectors lose
+            refuse_lost_digits(system, system.free_dofs, weak, x, np.sqrt(LOSES) * abs(square), "a mode")
     rates = _rates(squares)
     order = np.lexsort((-rates.real, rates.imag))
     shapes = np.zeros((missing, model.size), dtype=vectors.dtype)

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.equations.equations import linearise_at_rest, load_change, predicted_stresses
+from beamfem.equations.redundant_conditions import in_words
 from beamfem.equations.system import Proven, System
 from beamfem.errors import ConvergenceError, LimitPointError
 from beamfem.parts.pretension import Pretension
@@ -228,6 +229,7 @@ def reach(
                 refused = max(refused, target)
                 step *= 0.5
             elif holders := system.history.holders:
+                _refuse_sliding(system, done, target)
                 raise ConvergenceError(
                     f"no load step from load factor {done.reached:.6g} to {target:.6g} found an equilibrium: "
                     f"{result.ended.value}; models with {holders[0][0]} that have history are not followed along a "
@@ -240,6 +242,34 @@ def reach(
                 refused = 1.0
                 step *= 2.0
             report(done.reached)
+
+
+def _refuse_sliding(system: System, done: StaticRecord, target: float) -> None:
+    """Raise LimitPointError if connectors that stick begin to slip on the way to a load factor, and nothing stops them.
+
+    While they slip, the tangent is no longer that of a stable equilibrium.
+    """
+    ahead, memory = target - done.reached, system.connectors.memory
+    try:
+        rate = _tangent(system, done.state, done.reached, done.reached + 0.5 * ahead, 0.5 * ahead)
+        p = done.state + ahead * rate * system.scale
+        slips = memory[system.history.in_equilibrium(p, target)[memory] != done.state[memory]]
+        tangent = linearise_at_rest(system, p, target)[1]
+        if tangent.factorised(system.rotated).negative_pivots == done.negative_pivots:
+            return
+    except LinAlgError:
+        return
+    parts = [item for item in system.connectors.items if np.isin(item.memory, slips).any()]
+    if not parts:
+        return
+    raise LimitPointError(
+        f"a limit load of friction at load factor {done.reached:.6g}: beyond it {in_words(parts)} slips, nothing else "
+        "stops the motion, and there is no equilibrium nearby",
+        done.reached,
+        done.solution(),
+        remedy="simulate shows how it moves; a spring, a stop or a prescribed displacement (Prescribed) instead of the "
+        "load lets statics go on",
+    )
 
 
 def _attempt(system: System, done: StaticRecord, target: float, newton: Newton) -> tuple[NewtonResult, bool]:

@@ -124,6 +124,37 @@ def test_a_weight_that_scales_leaves_what_holds_one_way_open_at_load_factor_0(na
         bf.trace_equilibrium(model, until=1.0)
 
 
+FALL = {"touching": 0.0, "a little apart": 1e-3, "far apart": 0.1}
+
+
+@pytest.mark.parametrize("gap", FALL.values(), ids=FALL)
+@pytest.mark.parametrize("kind", ["hinge stop", "wall", "law"])
+def test_a_weight_that_acts_from_the_start_closes_what_holds_one_way(kind, gap):
+    """The rod falls onto it; the moment of its weight balances its force."""
+    made = {
+        "hinge stop": lambda a, b: bf.HingeStop(a, b, low=-gap, stiffness=1e4),
+        "wall": lambda a, b: bf.Stop(b.beam.end, (0.0, -gap), (0, 1), 1e5),
+        "law": lambda a, b: bf.SpringDamper(b.beam.end, (LENGTH, 1e3), lambda e, f: 1e5 * f.positive(e - gap)),
+    }
+    model, rod = hinged(made[kind], 9.81)
+    model = model.with_loads([bf.Gravity((0, -9.81), scale=False)])
+    rested = bf.solve_static(model)
+    turn, moment = rested.rotation(rod.start)[-1], MASS * 9.81 * LENGTH / 2 * np.cos(rested.rotation(rod.start)[-1])
+    down = -rested.displacement(rod.end)[-1, 1]
+    force = {"hinge stop": 1e4 * (-gap - turn), "wall": 1e5 * (down - gap), "law": 1e5 * (down - gap)}[kind]
+    assert force * (1.0 if kind == "hinge stop" else LENGTH * np.cos(turn)) == pytest.approx(moment, rel=2e-3)
+
+
+def test_a_bar_without_supports_is_laid_onto_two_rough_stops():
+    bar = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(3), bf.Rectangle(0.02, 0.02), bf.Material(2.1e11, 0.3, 7850.0))
+    stops = [bf.Stop(p, (x, -x / 500), (0, 1), 1e6, friction=0.4) for x, p in ((0.0, bar.start), (1.0, bar.end))]
+    loads = [bf.Gravity((0, -9.81), scale=False), bf.PointForce(bar.end, (5.0, 0))]
+    laid = bf.solve_static(bf.Model([bar], loads=loads, connectors=stops))
+    down = laid.model.mass * 9.81 / 2e6
+    assert laid.displacement(bar.start)[-1, 1] == pytest.approx(-down, rel=1e-3)
+    assert laid.displacement(bar.end)[-1, 1] == pytest.approx(-0.002 - down, rel=1e-3)
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [

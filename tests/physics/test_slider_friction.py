@@ -99,6 +99,29 @@ def test_friction_holds_a_sled_on_a_slope_within_the_friction_angle(share):
     assert moved == pytest.approx(-MASS * GRAVITY * np.sin(slope) / STIFFNESS, rel=1e-3)
 
 
+@pytest.mark.parametrize("pull", [40.0, 100.0])
+@pytest.mark.parametrize("pressed", [False, True])
+def test_the_limit_load_of_friction_is_told(pull, pressed):
+    """On a cantilever whose end turns by t: pull + 100 tan t = 0.3 (100 - pull tan t)."""
+    steel = bf.Material(2.1e11, 0.3, 7850.0)
+    rail, sled = (bf.Beam(bf.Line((x, 0), (x + 1, 0)), 4, bf.CRBF(3), SQUARE, steel) for x in (0.0, 1.0))
+    joint = bf.Slider(rail.end, sled.start, (1, 0), friction=0.3, stiffness=1e6)
+    loads = [bf.PointForce(sled.start, (0, -100.0), scale=pressed), bf.PointForce(sled.end, (pull, 0))]
+    model = bf.Model([rail, sled], [bf.Clamp(rail.start)], loads, connectors=[joint])
+    with pytest.raises(bf.LimitPointError, match=r"of friction.*Slider at \(1, 0\).*simulate shows") as caught:
+        bf.solve_static(model)
+    last = caught.value.solution
+    assert caught.value.load_factor == last.load_factor[-1]
+    angle, pulled, weight = -last.rotation(rail.end)[-1], last.load_factor[-1] * pull, 100.0
+    if pressed:  # at once, as 40 exceeds 0.3 times 100
+        assert last.load_factor[-1] == 0.0
+    else:
+        limit = weight * (0.3 - np.tan(angle)) / (1.0 + 0.3 * np.tan(angle))
+        assert 0.0 < limit - pulled < pull / 2**16  # the shortest load step
+    held = model.with_(supports=[bf.Clamp(rail.start), bf.Spring(sled.end, stiffness=(1e4, 0.0))])
+    assert bf.solve_static(held).history(joint)["slip"][-1] > 1e-4
+
+
 def test_friction_needs_a_stiffness():
     stub = sled()[0].beams[0]
     with pytest.raises(bf.InputError, match="friction of a Slider needs a stiffness"):

@@ -1,6 +1,6 @@
 """Static equilibrium under loads that grow with a load factor from 0 to 1, and the one at load factor 0."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -10,6 +10,7 @@ from scipy.sparse import block_array, csc_array
 from scipy.sparse.linalg import splu
 
 from beamfem.equations.compilation_notice import announce_compilation
+from beamfem.equations.connector_traits import lets_go
 from beamfem.equations.equations import linearise_at_rest, residual_at_rest
 from beamfem.equations.system import Proven, System, system_of
 from beamfem.errors import ConvergenceError, InputError, LimitPointError
@@ -40,8 +41,10 @@ from beamfem.solve.start.functions_of_time import (
     warn_between_rows,
 )
 from beamfem.solve.start.mechanisms import (
+    Conditions,
     FreeMotion,
     free_motion,
+    mechanisms,
     no_equilibrium_at_start,
     require_independent,
     require_support,
@@ -238,8 +241,12 @@ def solve_through(
     return solution
 
 
+Motions = Callable[[np.ndarray], np.ndarray]
+
 _ITERATIONS = 30
 _SMALL = 1e-9  # of the size of the model: last correction of the state in which the motions are prevented
+_FIRST_WIDTH = 1e-9  # of the size of the model, or rad: first step towards parts that hold one way only
+_TOO_LATE = 0.9  # of the force along a step: force against it at its end
 _FARTHEST = 1.0  # of the size of the model, or rad: motion that the loads cause
 _NEGLIGIBLE = 1e-8  # of the largest force times the size of the model: stiffness of a motion
 
@@ -250,11 +257,22 @@ def stiffened_start(system: System, free: FreeMotion) -> np.ndarray:
     It is the equilibrium with these motions prevented; phi^T K phi of the tangent K in it must be positive definite for
     the motions phi, and move them little. Raises the FreeMotionError of the motions otherwise.
     """
-    rates = np.array([free.conditions.rates(system.reference, motion) for motion in free.motions])
-    p = None if system.inclined else _prevented(system, rates)
+    holding = [item for item in system.connectors.items if not lets_go(item)]
+    lasting = system
+    if len(holding) < len(system.connectors.items):
+        given = [item.given for item in holding]
+        lasting = system_of(system.model.with_(connectors=given), static=True)
+
+    def motions(p: np.ndarray) -> np.ndarray:
+        """Return the motions (m, n) from a state p (n,) that are free where parts that hold one way only are open."""
+        rows = Conditions(lasting, free.conditions.body, p)
+        return np.array([rows.rates(p, motion) for motion in mechanisms(rows)])
+
+    p = None if system.inclined else _prevented(system, system.reference, motions)
     if p is None:
         raise free.error
-    moved = np.array([free.conditions.rates(p, motion) for motion in free.motions])
+    p = p if lasting is system else _closed(system, p, motions)
+    moved = motions(p)
     moved[:, system.prescribed_dofs] = 0.0
     moved /= np.abs(moved / system.scale).max(axis=1)[:, None]
     stiffness = stiffness_of_modes(system, p, 0.0, moved)
@@ -266,21 +284,57 @@ def stiffened_start(system: System, free: FreeMotion) -> np.ndarray:
     return p
 
 
-def _prevented(system: System, rates: np.ndarray) -> np.ndarray | None:
-    """Return the equilibrium (n,) at load factor 0 with motions (m, n) prevented; None if it is not found."""
-    p, unknown = system.reference.copy(), system.free_dofs
-    p[system.prescribed_dofs] = system.prescribed_values(0.0)
+def _closed(system: System, p: np.ndarray, motions: Motions) -> np.ndarray:
+    """Return a state (n,) into which the loads at load factor 0 move free motions until something stops them.
+
+    Parts that hold one way only are closed by them. Steps double while the loads move the motions, and halve where a
+    part stops them too late.
+    """
+    width, start = _FIRST_WIDTH, p
+    force = float(np.linalg.norm(motions(p) @ residual_at_rest(system, p, 0.0)))
+    for _ in range(4 * _ITERATIONS):
+        moved = _step(system, p, motions(p), width / force)
+        after = None if moved is None else _prevented(system, p + moved, motions)  # straight steps lengthen what turns
+        if moved is None or after is None:
+            break
+        size = float(np.max(np.abs(moved) / system.scale))
+        if size <= _FIRST_WIDTH < width:
+            return after
+        slopes = [float(moved @ residual_at_rest(system, state, 0.0)) for state in (p, after)]
+        if slopes[1] > -_TOO_LATE * slopes[0]:
+            width *= 0.5
+            continue
+        p, width = after, width * (2.0 if size >= 0.5 * width else 1.0)
+        if not width <= _FARTHEST:
+            break
+    return start
+
+
+def _step(system: System, p: np.ndarray, rates: np.ndarray, yielding: float) -> np.ndarray | None:
+    """Return a step (n,) of Newton's method in which motions (m, n) yield to forces; None if it is singular."""
+    unknown, moved = system.free_dofs, np.zeros_like(p)
     along = csc_array(rates[:, unknown] / system.scale[unknown] ** 2)
+    unbalanced, tangent = linearise_at_rest(system, p, 0.0)
+    own = (along @ csc_array(rates[:, unknown]).T).toarray()
+    corner = csc_array(-yielding * own @ own) if yielding else None
+    matrix = block_array([[tangent.sparse(UNROTATED), along.T], [along, corner]], format="csc")
+    try:
+        moved[unknown] = splu(matrix).solve(np.append(-unbalanced[unknown], np.zeros(len(rates))))[: len(unknown)]
+    except RuntimeError:  # singular
+        return None
+    return moved
+
+
+def _prevented(system: System, p: np.ndarray, motions: Motions) -> np.ndarray | None:
+    """Return the equilibrium (n,) near p at load factor 0 with its motions prevented; None if it is not found."""
+    p, rates = p.copy(), motions(p)
+    p[system.prescribed_dofs] = system.prescribed_values(0.0)
     for _ in range(_ITERATIONS):
-        unbalanced, tangent = linearise_at_rest(system, p, 0.0)
-        matrix = block_array([[tangent.sparse(UNROTATED), along.T], [along, None]], format="csc")
-        right = np.append(-unbalanced[unknown], np.zeros(len(rates)))
-        try:
-            step = splu(matrix).solve(right)[: len(unknown)]
-        except RuntimeError:  # singular
+        step = _step(system, p, rates, 0.0)
+        if step is None:
             return None
-        p[unknown] += step
-        size = float(np.max(np.abs(step) / system.scale[unknown], initial=0.0))
+        p += step
+        size = float(np.max(np.abs(step) / system.scale, initial=0.0))
         if size <= _SMALL:
             return p
         if not size <= 1.0:

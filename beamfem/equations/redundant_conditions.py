@@ -67,10 +67,12 @@ def dependent_on_others(given: Gradients) -> tuple[np.ndarray, list[Connector]]:
     """Return the multipliers (d,) of conditions without which the others are independent, and all parts involved."""
     if not len(given.rows):
         return given.numbers, []
-    triangle, order = qr(given.rows.T, mode="r", pivoting=True)
+    touched = given.rows.any(axis=0)
+    touched[0] = True  # LAPACK refuses empty matrices
+    triangle, order = qr(given.rows[:, touched].T, mode="r", pivoting=True)
     rank = int(np.count_nonzero(np.abs(np.diagonal(triangle)) > _DEPENDENT))
     involved = order[rank:].tolist()
-    if 0 < rank < len(order):  # LAPACK refuses empty matrices
+    if 0 < rank < len(order):
         shares = np.abs(solve_triangular(triangle[:rank, :rank], triangle[:rank, rank:])).max(axis=1)
         involved += order[:rank][shares > _SHARE].tolist()
     parts = {id(given.owners[number]) for number in involved}

@@ -16,7 +16,7 @@ from beamfem.model.model import Model
 from beamfem.results.solution import Solution, State
 from beamfem.solve.linear.linear_model import LinearModel, Quantity, require_digits
 from beamfem.solve.linear.linearise import linearise
-from beamfem.validation import items, not_negative
+from beamfem.validation import items, not_negative, squared
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -128,7 +128,8 @@ def frequency_response(
     (2,)
     """
     linear = linearise(model, about, [load])
-    at = np.array([not_negative("each of the frequencies", f) for f in items("frequencies", frequencies)], dtype=float)
+    valid = squared(not_negative)
+    at = np.array([valid("each of the frequencies", f) for f in items("frequencies", frequencies)], dtype=float)
     row = linear.output(quantity)
     values = np.array([row @ _moved(linear, frequency) for frequency in at.tolist()], dtype=complex)
     return FrequencyResponse(model, load, quantity, at, values)

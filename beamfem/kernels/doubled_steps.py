@@ -205,8 +205,10 @@ def march_doubled(system: System, solver: MotionSolver, doubled: Doubled) -> Non
         error, allowed = found / doubled.divisor, max(2.0 * h * doubled.rate, _ROUND_OFF)
         ratio = error / allowed
         best = _SAFETY * h / max(ratio, 1e-6) ** doubled.power
-        # a stiff vibration that a step damps is an error once: resolved, it would keep all further steps as short
-        if not 0.0 <= error <= allowed + doubled.saved:
+        # a stiff vibration that a step damps is an error once: resolved, it would keep all further steps as short;
+        # steps do not resolve it, so that all of the difference is the error
+        made = error if error <= allowed else found
+        if not 0.0 <= made <= allowed + doubled.saved:
             for k in range(4 * n):
                 solver.state[k] = doubled.at_begin[k]
             for k in range(solver.rotation_count):
@@ -218,7 +220,7 @@ def march_doubled(system: System, solver: MotionSolver, doubled: Doubled) -> Non
                 doubled.failed = 1
                 return
             continue
-        doubled.saved = min(doubled.saved + allowed - error, doubled.most_saved)
+        doubled.saved = min(doubled.saved + allowed - made, doubled.most_saved)
         doubled.filled, doubled.before = doubled.filled + 2, h
         doubled.time = doubled.end if last != 0 else doubled.time + 2.0 * h
         doubled.ends[doubled.filled] = doubled.time

@@ -9,6 +9,7 @@ from slow_values import mostly_slow
 
 import beamfem as bf
 from studies.benchmarks.random_motions import case
+from studies.benchmarks.random_tolerances import error, run
 
 RUBBER, SECTION = bf.Material(0.7e6, 0.3, 5540.0), bf.Section(1.6e-3, 8.533e-6)
 
@@ -219,6 +220,13 @@ def test_steps_grow_over_stiff_vibrations_that_are_far_smaller_than_the_toleranc
     assert fine.position(rod.end)[-1] == pytest.approx(coarse.position(rod.end)[-1], abs=1e-6)
 
 
+@pytest.mark.parametrize("seed", [41008, 41029])
+def test_a_vibration_that_a_step_damps_is_an_error_of_its_size(seed):
+    """Divided as if steps resolved it, it moved these by 12 and 20 times the tolerance, once, and for ever after."""
+    found = case(seed)
+    assert error(run(found, 1e-7, bf.Radau(4)), run(found, 2e-9, bf.Radau(5))) < 5e-7
+
+
 def caught(how):
     """A bar with a mass at its end, which falls into a cable, a spring that only pulls, or onto a stop."""
     bar = bf.Beam(bf.Line((0, 0), (0.6, 0.2)), 3, bf.CRBF(2), bf.Rectangle(0.02, 0.012), bf.Material(2e9, 0.3, 2000.0))
@@ -251,7 +259,7 @@ def test_iterations_do_not_limit_steps_that_the_error_allows():
     bent = case(100)
     motion = bf.simulate(bent.model, 1.0, start=bent.start, tolerance=1e-3, save_at=[1.0])
     fine = bf.simulate(bent.model, 1.0, start=bent.start, tolerance=1e-6, save_at=[1.0])
-    assert motion.statistics.iterations < 1000
+    assert motion.statistics.cuts < 0.1 * motion.statistics.steps
     assert motion.position(bent.model.beams[0].end)[-1] == pytest.approx(
         fine.position(bent.model.beams[0].end)[-1], abs=1e-3
     )

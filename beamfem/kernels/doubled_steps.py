@@ -206,8 +206,8 @@ def march_doubled(system: System, solver: MotionSolver, doubled: Doubled) -> Non
         ratio = error / allowed
         best = _SAFETY * h / max(ratio, 1e-6) ** doubled.power
         # a stiff vibration that a step damps is an error once: resolved, it would keep all further steps as short;
-        # steps do not resolve it, so that all of the difference is the error
-        made = error if error <= allowed else found
+        # steps do not resolve it, so that all of the difference is the error, and so it may be in the first steps
+        made = error if error <= allowed and doubled.before > 0.0 else found
         if not 0.0 <= made <= allowed + doubled.saved:
             for k in range(4 * n):
                 solver.state[k] = doubled.at_begin[k]

@@ -220,11 +220,12 @@ def test_steps_grow_over_stiff_vibrations_that_are_far_smaller_than_the_toleranc
     assert fine.position(rod.end)[-1] == pytest.approx(coarse.position(rod.end)[-1], abs=1e-6)
 
 
-@pytest.mark.parametrize("seed", [41008, 41029])
-def test_a_vibration_that_a_step_damps_is_an_error_of_its_size(seed):
-    """Divided as if steps resolved it, it moved these by 12 and 20 times the tolerance, once, and for ever after."""
+@pytest.mark.parametrize(("seed", "tolerance"), [(41008, 1e-7), (41029, 1e-7), (42018, 1e-9)])
+def test_a_vibration_that_a_step_damps_is_an_error_of_its_size(seed, tolerance):
+    """Divided as if steps resolved it, it moved these by 12 to 56 times the tolerance, once, and for ever after."""
     found = case(seed)
-    assert error(run(found, 1e-7, bf.Radau(4)), run(found, 2e-9, bf.Radau(5))) < 5e-7
+    fine = run(found, 0.05 * tolerance, bf.Radau(5))
+    assert error(run(found, tolerance, bf.Radau(4)), fine) < 5.0 * tolerance
 
 
 def caught(how):

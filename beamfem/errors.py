@@ -125,7 +125,7 @@ class LargeStrainWarning(UserWarning):
 
 
 class CuspWarning(UserWarning):
-    """The axis of a beam turns back on itself: an equilibrium, but not the one that the loads lead to."""
+    """The axis of a beam turns back on itself, in a state that is not the one that the loads lead to."""
 
 
 class EnergyWarning(UserWarning):

@@ -94,8 +94,9 @@ def cusps(solution: Solution) -> tuple[Finding, ...]:
         if along.min(initial=1.0) < 0.0:
             row, element, end = np.unravel_index(np.argmin(along), along.shape)
             place = _where(solution, number, float(mesh.vertices[element + end]), range(len(solution))[rows][row])
+            what = "this equilibrium" if solution.static else "this state of the motion"
             sentence = (
-                f"the axis turns back on itself {place}: this equilibrium has a cusp, and is not the one that the "
+                f"the axis turns back on itself {place}: {what} has a cusp, and is not the one that the "
                 "loads lead to. Take more steps, or more elements"
             )
             return (Finding(sentence, CuspWarning),)

@@ -119,6 +119,8 @@ class CompiledSteps(StepsInCalls):
     def why(self) -> str:
         """Why a step has failed."""
         size, most = self._statistics.correction, self._limits.iterations
+        if size <= self._limits.tolerance:  # they end, but `kernels.time_loop` refuses where
+            return "its iterations end in a state in which beams are turned inside out"
         return f"the last correction was {size:.2e} of the model after {most} iterations at most"
 
     def _advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:

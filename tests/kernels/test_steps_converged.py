@@ -8,7 +8,7 @@ from fuzz_steps import faults_of_steps
 
 import beamfem as bf
 from beamfem.equations.system import system_of
-from beamfem.kernels.motion_record import MotionStatistics
+from beamfem.kernels.motion_record import MotionLimits, MotionStatistics
 from beamfem.kernels.motion_steps import check_convergence
 from beamfem.solve.motion.compiled_steps import CompiledSteps
 from beamfem.solve.motion.energy_judgement import radius_at_infinity
@@ -145,3 +145,11 @@ def test_a_step_that_fails_again_starts_from_the_other_guess(begins, order, step
 @pytest.mark.parametrize("rho_inf", [0.0, 0.3, 0.9, 1.0])
 def test_the_spectral_radius_at_infinite_frequency(rho_inf):
     assert radius_at_infinity(bf.GeneralizedAlpha(rho_inf).rule(0.1)) == pytest.approx(rho_inf, abs=1e-6)
+
+
+@pytest.mark.parametrize(("correction", "why"), [(4e-14, "turned inside out"), (3e-2, "3.00e-02 of the model")])
+def test_the_reason_of_a_failed_step_is_not_a_correction_that_is_round_off(correction, why):
+    """Iterations that converge are refused where beams would be inside out."""
+    steps = CompiledSteps.__new__(CompiledSteps)
+    steps._statistics, steps._limits = MotionStatistics(correction=correction), MotionLimits()
+    assert why in steps.why

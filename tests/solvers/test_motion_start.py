@@ -353,3 +353,37 @@ def test_shear_rigid_beams_bear_a_sudden_moment_in_long_steps(stretchable, momen
     expected = bent_at_once(bf.CRBF(3), 8, moment, 1e-4)
     found = bent_at_once(bf.ShearRigid(stretchable=stretchable), elements, moment, 1e-3)
     assert found == pytest.approx(expected, abs=0.012)
+
+
+@pytest.mark.parametrize("kind", ["motor", "hinge", "with a link"])
+def test_a_damper_at_a_stiff_arm_leaves_steps_of_second_order(kind):
+    """A sudden torque and a damper act on a node of small inertia that the arm holds; it turns as a rigid body."""
+    from scipy.integrate import solve_ivp
+
+    steel, square = bf.Material(2.1e16, 0.3, 7850.0), bf.Rectangle(0.01, 0.01)
+    arm, other = (bf.Beam(bf.Line((0, y), (0.5, y)), 1, bf.CRBF(3), square, steel) for y in (0.0, 1.0))
+    stub = bf.Beam(bf.Line((-0.1, 0), (0, 0)), 1, bf.CRBF(2), square, steel)
+    beams, supports, joints = [arm], [bf.Pin(arm.start)], []
+    loads, connectors = [bf.Motor(arm.start, torque=lambda time, angle, speed: 40.0 * (0.7 - angle) - 2.0 * speed)], []
+    if kind == "hinge":
+        beams, supports, joints = (
+            [stub, arm],
+            [bf.Clamp(stub.start), bf.Clamp(stub.end)],
+            [bf.Hinge(stub.end, arm.start)],
+        )
+        loads, connectors = [bf.PointMoment(arm.start, 28.0)], [bf.TorsionSpring(stub.end, arm.start, 40.0, 2.0)]
+    elif kind == "with a link":
+        beams, connectors = [arm, other], [bf.Link(arm.end, other.end)]
+        supports = [bf.Pin(arm.start), bf.Pin(other.start)]
+    model = bf.Model(beams, supports, loads, joints, connectors=connectors, masses=[bf.PointMass(arm.end, 1.0)])
+    bar = 7850.0 * (1e-4 * 0.5**3 / 3 + 0.5 * 1e-8 / 12)
+    inertia = 0.25 + (2.0 if kind == "with a link" else 1.0) * bar
+    errors = []
+    for step in (2e-3, 1e-3):
+        motion = bf.simulate(model, duration=0.2, step=step)
+        exact = solve_ivp(
+            lambda t, y: [y[1], (28.0 - 40.0 * y[0] - 2.0 * y[1]) / inertia], (0, 0.2), [0, 0], rtol=1e-10, atol=1e-12
+        )
+        errors.append(abs(motion.rotation(arm.start)[-1] - exact.y[0, -1]))
+    assert errors[1] < 3e-5
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.25)

@@ -18,10 +18,10 @@ def initial_acceleration(
 ) -> np.ndarray:
     """Return p'' (n,) that satisfies the equations of motion at the start; state: p, p', p'' of prescribed coordinates.
 
-    Multipliers among p are set as well. With a step [s] it solves (M + step D) p'' = unbalanced forces, the mean over
-    a step. In a beam with strong damping D, p'' itself decays within an instant, and from it the generalized-alpha
-    method would move by step^2 (1 / 2 - beta / gamma) p''. To first order in the step both are the same. elapsed [s]:
-    since history was committed.
+    Multipliers among p are set as well. With a step [s] it solves (M + step D + step^2 / 4 K) p'' = unbalanced forces,
+    the mean over a step. In a beam with strong damping D, p'' itself decays within an instant, and from it the
+    generalized-alpha method would move by step^2 (1 / 2 - beta / gamma) p''. To first order in the step both are the
+    same. elapsed [s]: since history was committed.
     """
     motion = state[:3].copy()
     p, v, a = motion
@@ -65,8 +65,11 @@ def mean_acceleration(system: System, state: np.ndarray, time: float, step: floa
 
 
 def _damped_mass(system: System, motion: Motion, time: float, step: float) -> Tangent:
-    """Return M + step D in p, p', p'' at a time, with the damping D of materials, connectors and laws with history."""
+    """Return M + step D + step^2 / 4 K in p, p', p'' at a time, with the damping D of all that resists rates.
+
+    Without K, a damper at a node that a stiff beam holds would take the load of the whole beam.
+    """
     p, v, zeros = *motion[:2], np.zeros(len(motion[0]))
-    mass = linearise(system, p, zeros, zeros, time, (0.0, step, 1.0))[1]
+    mass = linearise(system, p, zeros, zeros, time, (0.25 * step**2, step, 1.0))[1]
     viscous = viscous_tangent(system, p, v, time, step)
     return mass if viscous is None else SparseTangent(csc_array(mass.sparse(UNROTATED) + viscous))

@@ -20,6 +20,7 @@ from pydantic import BaseModel, ConfigDict, PlainValidator, ValidationError, cre
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
+from beamfem.parts.rigid_body import RigidBody
 from beamfem.validation import nearest, require_known
 from beamfem.validation import shown as in_python
 
@@ -76,13 +77,16 @@ class Names:
 
         Interfaces of a floating body are points of the body.
         """
-        if isinstance(text, str) and (match := _OF_BODY.fullmatch(text)) and match["body"] in self.parts["bodies"]:
-            body, at = self.parts["bodies"][match["body"]], (float(match["x"]), float(match["y"]))
-            key = f"{match['body']} {at}"  # two parts at one place are at one point
-            return self.parts["points"].setdefault(key, body.at(*at))
+        bodies = {name: body for name, body in self.parts["bodies"].items() if isinstance(body, RigidBody)}
+        if isinstance(text, str) and (match := _OF_BODY.fullmatch(text)):
+            name, at = match["body"], (float(match["x"]), float(match["y"]))
+            require_known(f"there is no body {name!r} with points at (x, y)", name, bodies)
+            return self.parts["points"].setdefault(f"{name} {at}", bodies[name].at(*at))  # one point for each place
+        prefix, beams = str(text).partition(".")[0], self.parts["beams"]
+        if prefix in bodies and prefix not in beams:
+            raise InputError(f'must be a point of a body such as "{prefix}.at(0, 0.1)", got {shown(text)}')
         match = _POINT.fullmatch(text) if isinstance(text, str) else None
         if match is None:
-            prefix, beams = str(text).partition(".")[0], self.parts["beams"]
             name = prefix if prefix in beams else next(iter(beams), "NAME")
             raise InputError(
                 f'must be a point such as "{name}.start", "{name}.end" or "{name}.at(0.5)", got {shown(text)}'

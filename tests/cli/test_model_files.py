@@ -500,6 +500,15 @@ vector = [10, 0]
     supports = [bf.Clamp(beam.start), bf.Roller(place)]
     solution = bf.solve_static(bf.Model([beam], supports, [bf.PointForce(place, (10.0, 0.0))], masses=[body]))
     assert bf.solve_static(job.model).p[-1] == pytest.approx(solution.p[-1], abs=1e-14)
+    for wrong, message in (
+        ("hed.at(0.2, -0.1)", "there is no body 'hed' with points at .*did you mean head"),
+        ("head.at(0.2)", r"must be a point of a body such as .head.at\(0, 0.1\)"),
+        ("head.end", r"must be a point of a body such as .head.at\(0, 0.1\)"),
+    ):
+        file = tmp_path / "b.toml"
+        file.write_text((tmp_path / "a.toml").read_text().replace("head.at(0.2, -0.1)", wrong))
+        with pytest.raises(bf.InputError, match=message):
+            read_model_file(file)
 
 
 def test_floating_bodies_of_model_files(tmp_path):

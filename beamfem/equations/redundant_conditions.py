@@ -67,8 +67,7 @@ def dependent_on_others(given: Gradients) -> tuple[np.ndarray, list[Connector]]:
     """Return the multipliers (d,) of conditions without which the others are independent, and all parts involved."""
     if not len(given.rows):
         return given.numbers, []
-    touched = given.rows.any(axis=0)
-    touched[0] = True  # LAPACK refuses empty matrices
+    touched = np.append(True, given.rows[:, 1:].any(axis=0))  # at least one: LAPACK refuses empty matrices
     triangle, order = qr(given.rows[:, touched].T, mode="r", pivoting=True)
     rank = int(np.count_nonzero(np.abs(np.diagonal(triangle)) > _DEPENDENT))
     involved = order[rank:].tolist()

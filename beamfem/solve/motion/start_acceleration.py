@@ -10,6 +10,7 @@ from beamfem.equations.viscosity import viscous_tangent
 from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.solve.motion.constraints import constrained_acceleration
 
+_DAMPING = (0.0, 1.0, 0.0)  # weights of p, p' and p''
 _NEGLIGIBLE = 0.1  # of the inertia forces at the start: those that depend on the velocity after a step
 
 
@@ -67,9 +68,11 @@ def mean_acceleration(system: System, state: np.ndarray, time: float, step: floa
 def _damped_mass(system: System, motion: Motion, time: float, step: float) -> Tangent:
     """Return M + step D + step^2 / 4 K in p, p', p'' at a time, with the damping D of all that resists rates.
 
-    Without K, a damper at a node that a stiff beam holds would take the load of the whole beam.
+    Without K, a damper at a node that a stiff beam holds would take the load of the whole beam. M alone without D.
     """
     p, v, zeros = *motion[:2], np.zeros(len(motion[0]))
-    mass = linearise(system, p, zeros, zeros, time, (0.25 * step**2, step, 1.0))[1]
     viscous = viscous_tangent(system, p, v, time, step)
+    damped = viscous is not None or linearise(system, p, zeros, zeros, time, _DAMPING)[1].sparse(UNROTATED).data.any()
+    weights = (0.25 * step**2, step, 1.0) if damped else INERTIA
+    mass = linearise(system, p, zeros, zeros, time, weights)[1]
     return mass if viscous is None else SparseTangent(csc_array(mass.sparse(UNROTATED) + viscous))

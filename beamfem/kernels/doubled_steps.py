@@ -170,9 +170,9 @@ def take_pair(system: System, solver: MotionSolver, doubled: Doubled, h: float) 
         end_step(system, solver, fine, doubled.filled + step)
         _gather(doubled, step)
         doubled.ends[doubled.filled + step + 1] = doubled.time + (step + 1) * h
-    solver.routines, solver.kept_directions = doubled.coarse_routines, doubled.coarse_directions
+    solver.kept_directions = doubled.coarse_directions
     doubled.routines.compare(system, solver, coarse, doubled.divisor * allowed)
-    solver.routines, solver.kept_directions = doubled.fine_routines, doubled.fine_directions
+    solver.kept_directions = doubled.fine_directions
     return doubled.routines.difference(solver, doubled)
 
 

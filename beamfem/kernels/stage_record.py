@@ -3,7 +3,6 @@
 from typing import Annotated
 
 from beamfem.kernels.conserving_step import Conserving
-from beamfem.kernels.motion_record import MotionRoutines
 from beamfem.kernels.records import Reals, Record, calls
 
 
@@ -104,8 +103,6 @@ class Doubled(Record):
     routines: DoubledRoutines
     fine: Stages
     coarse: Stages
-    fine_routines: MotionRoutines
-    coarse_routines: MotionRoutines
     fine_directions: Reals  # see `MotionSolver.kept_directions`
     coarse_directions: Reals
     varies: int  # whether loads, or prescribed coordinates, have to be sampled for each pair

@@ -4,17 +4,16 @@ from collections.abc import Callable
 from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p, cast
 
 import numpy as np
-from scipy.sparse import csc_array, csr_array
+from scipy.sparse import csc_array
 
 from beamfem.equations.callbacks import Deferred
 from beamfem.equations.equations import tangent_of
 from beamfem.equations.motion_workspace import MotionWorkspace
 from beamfem.equations.system import System
-from beamfem.kernels import motion_stages
 from beamfem.kernels.compiling import Routine
-from beamfem.kernels.motion_record import MotionRoutines
 from beamfem.kernels.stage_record import Stages
 from beamfem.linalg.lapack import LinAlgError, superlu
+from beamfem.linalg.tangent import UNROTATED, SparseTangent
 from beamfem.solve.motion.constraints import onto_conditions
 from beamfem.solve.motion.coupled_stages import PythonRoutines
 from beamfem.solve.motion.start_acceleration import initial_acceleration
@@ -37,7 +36,6 @@ class CoupledPlanes(PythonRoutines):
         super().__init__(stages.right)
         self._system, self._stages, self._solver = system, stages, space.solver
         self._equations, self._state, self._times = space.assembler.record, np.empty((4, 0)), np.empty(0)
-        self._planes: list[csr_array] = []
         self._solvers: list[Callable[[np.ndarray], np.ndarray]] = []
         self._functions = {
             "accelerate": _Three(self._guarded(self._accelerate)),
@@ -45,38 +43,25 @@ class CoupledPlanes(PythonRoutines):
             "solve_planes": _Two(self._guarded(self._solve)),
         }
         stages.routines.fill(**{name: cast(each, c_void_p).value for name, each in self._functions.items()})
-        self._assembling = _Two(self._guarded(self._assemble))
 
     def march(self, routine: Routine, state: np.ndarray, times: np.ndarray, deferred: Deferred) -> int:
         """March a state (4, n) with loads at times (rows,) [s]; see `stage_steps.march_stages`, or another routine."""
-        usual = self._solver.routines
-        self._solver.routines = self.lend(state, times, deferred)
-        try:
-            return int(routine(self._equations, self._solver, self._stages))
-        finally:
-            self._solver.routines = usual
+        self.take(state, times, deferred)
+        return int(routine(self._equations, self._solver, self._stages))
 
-    def lend(self, state: np.ndarray, times: np.ndarray, deferred: Deferred) -> MotionRoutines:
-        """Return the routines with which to march a state (4, n) with loads at times (rows,) [s]."""
+    def take(self, state: np.ndarray, times: np.ndarray, deferred: Deferred) -> None:
+        """Take the state (4, n) that is marched, with loads at times (rows,) [s]."""
         self._state, self._times, self._deferred = state, times, deferred
-        routines = self._solver.routines.copy()
-        routines.assemble = cast(self._assembling, c_void_p).value
-        return routines
-
-    def _assemble(self, system: int, solver: int) -> None:
-        """See `motion_stages.assemble`."""
-        motion_stages.assemble.compiled(system, solver)
-        if self._equations.tangent:
-            matrix = self._stages.matrices[len(self._planes)]
-            self._planes.append(tangent_of(self._system, matrix).sparse(self._system.rotated))
 
     def _factor(self, solver: int, stages: int) -> float:
         """Factorise the matrices of the planes; return 1, or 0 if one is singular."""
-        planes, self._planes, real = self._planes, [], self._stages.real
-        pairs = zip(planes[real::2], planes[real + 1 :: 2], strict=True)
+        matrices, real = self._stages.matrices, self._stages.real
+        planes = [*matrices[:real], *(matrices[real::2] + 1j * matrices[real + 1 :: 2])]
+        tangents = [csc_array(tangent_of(self._system, plane).sparse(UNROTATED)) for plane in planes]
+        if len(self._system.rotated[0]):
+            tangents = [csc_array(SparseTangent(each).sparse(self._system.rotated)) for each in tangents]
         try:
-            self._solvers = [superlu(csc_array(each)).solve for each in planes[:real]]
-            self._solvers += [superlu(csc_array(re + 1j * im)).solve for re, im in pairs]
+            self._solvers = [superlu(each).solve for each in tangents]
         except LinAlgError:
             return 0.0
         return 1.0

@@ -105,8 +105,6 @@ class DoubledSteps(StepsInCalls):
             room=room,
             ends=np.full(room + 1, own.time),
             turned=np.empty(len(pairs)),
-            fine_routines=solver.routines,
-            coarse_routines=solver.routines,
         )
         if not (self._coupled or self._space.assembler.calls_python or own.varies):
             march_doubled(self._space.assembler.record, solver, own)
@@ -117,15 +115,10 @@ class DoubledSteps(StepsInCalls):
 
     def _called(self, state: np.ndarray, deferred: Deferred) -> None:
         """March with routines in Python, and keep the first error in them."""
-        space, own, usual = self._space, self.record, self._space.solver.routines
-        lent = [each.lend(state, space.solver.times, deferred) for each in self._coupled]
-        if lent:
-            space.solver.routines = own.fine_routines = lent[0]
-            own.coarse_routines = lent[1]
-        try:
-            march_doubled(space.assembler.record, space.solver, own)
-        finally:
-            space.solver.routines = usual
+        space = self._space
+        for each in self._coupled:
+            each.take(state, space.solver.times, deferred)
+        march_doubled(space.assembler.record, space.solver, self.record)
         found = [self._errors.take(), *(each.take_error() for each in self._coupled), space.assembler.take_error()]
         self._error = next((each for each in found if each is not None), None)
 

@@ -298,6 +298,8 @@ def test_what_does_not_fit_a_file_is_said_in_a_sentence(short, tmp_path):
         bf.resume(path, "model")
     with pytest.raises(bf.FileError, match="there is no file"):
         bf.resume(tmp_path / "nothing.h5")
+    with pytest.raises(bf.InputError, match="1e\\+18 steps, whose times are kept, need"):
+        bf.simulate(model, 1e15, 1e-3, file=tmp_path / "nothing.h5")
     bf.simulate(model, 0.1, 1e-3, file=tmp_path / "text.h5")  # as save, it replaces what is no unfinished motion
     open_file = MotionFile(path)
     for begin in (lambda: bf.resume(path), lambda: bf.simulate(model, 0.1, 1e-3, file=path)):

@@ -105,10 +105,10 @@ def require_memory(coordinates: int, duration: float, step: float, save_every: i
         return
     room = USABLE_FRACTION * memory - steps * _STEP
     every = "one" if save_every == 1 else f"{save_every}th"
-    message = (
-        f"{steps:.3g} steps of {coordinates} coordinates, of which every {every} is kept, need "
-        f"{in_gib(needed)}, and this computer has {in_gib(memory)}"
+    kept = (
+        f" of {coordinates} coordinates, of which every {every} is kept," if coordinates else ", whose times are kept,"
     )
+    message = f"{steps:.3g} steps{kept} need {in_gib(needed)}, and this computer has {in_gib(memory)}"
     if room > 0.0:
         enough = int(-(-(steps * _STATE * coordinates) // room))
         raise InputError(f"{message}; save_every={enough} would fit")

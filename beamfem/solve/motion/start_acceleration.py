@@ -10,7 +10,6 @@ from beamfem.equations.viscosity import viscous_tangent
 from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.solve.motion.constraints import constrained_acceleration
 
-_DAMPING = (0.0, 1.0, 0.0)  # weights of p, p' and p''
 _NEGLIGIBLE = 0.1  # of the inertia forces at the start: those that depend on the velocity after a step
 
 
@@ -19,8 +18,8 @@ def initial_acceleration(
 ) -> np.ndarray:
     """Return p'' (n,) that satisfies the equations of motion at the start; state: p, p', p'' of prescribed coordinates.
 
-    Multipliers among p are set as well. With a step [s] it solves (M + step D + step^2 / 4 K) p'' = unbalanced forces,
-    the mean over a step. In a beam with strong damping D, p'' itself decays within an instant, and from it the
+    Multipliers among p are set as well. With a step [s] it solves (M + step D) p'' = unbalanced forces, the mean over
+    a step, see `_damped_mass`. In a beam with strong damping D, p'' itself decays within an instant, and from it the
     generalized-alpha method would move by step^2 (1 / 2 - beta / gamma) p''. To first order in the step both are the
     same. elapsed [s]: since history was committed.
     """
@@ -68,11 +67,17 @@ def mean_acceleration(system: System, state: np.ndarray, time: float, step: floa
 def _damped_mass(system: System, motion: Motion, time: float, step: float) -> Tangent:
     """Return M + step D + step^2 / 4 K in p, p', p'' at a time, with the damping D of all that resists rates.
 
-    Without K, a damper at a node that a stiff beam holds would take the load of the whole beam. M alone without D.
+    Without K, a damper of a connector that outweighs the inertia of its node, which a stiff beam holds, would take the
+    load of the whole beam. K counts there only.
     """
     p, v, zeros = *motion[:2], np.zeros(len(motion[0]))
     viscous = viscous_tangent(system, p, v, time, step)
-    damped = viscous is not None or linearise(system, p, zeros, zeros, time, _DAMPING)[1].sparse(UNROTATED).data.any()
-    weights = (0.25 * step**2, step, 1.0) if damped else INERTIA
-    mass = linearise(system, p, zeros, zeros, time, weights)[1]
+    held = False
+    if system.connectors.damp and not system.damped:
+        resistance, inertia = (
+            linearise(system, p, zeros, zeros, time, weights)[1].sparse(UNROTATED).diagonal()
+            for weights in ((0.0, step, 0.0), INERTIA)
+        )
+        held = bool(np.any(resistance > inertia))
+    mass = linearise(system, p, zeros, zeros, time, (0.25 * step**2 if held else 0.0, step, 1.0))[1]
     return mass if viscous is None else SparseTangent(csc_array(mass.sparse(UNROTATED) + viscous))

@@ -134,6 +134,7 @@ def test_the_pendulum_falls_as_reissners_beam(printed):
     assert kept.position(kept.model.beams[0].end)[25] == pytest.approx(REISSNER_TIPS[4], abs=1e-4)
 
 
+@pytest.mark.slow
 def test_the_sweep_is_reissners_beam(printed):
     lines, _ = printed("sweep")
     assert len(lines) == 6

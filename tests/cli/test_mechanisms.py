@@ -1,5 +1,7 @@
 """Mechanisms of the page against closed forms and rigid-body equations."""
 
+import pytest
+
 from studies.mechanisms import page
 
 LIMITS = {
@@ -17,6 +19,7 @@ LIMITS = {
 }
 
 
+@pytest.mark.slow
 def test_mechanisms_agree_with_rigid_bodies_and_closed_forms(tmp_path):
     """Deflection of second order leaves 2e-4 of the rocker's bending."""
     rows, entries = page.compared(tmp_path)

@@ -55,6 +55,7 @@ def test_the_docstring_of_the_package_lists_every_public_name_once():
     assert max(map(len, bf.__doc__.splitlines())) <= 120
 
 
+@pytest.mark.slow
 def test_type_checkers_find_what_the_package_has_and_nothing_in_examples_and_tutorials(tmp_path):
     """Examples of docstrings are parts of scripts, and use names from before."""
     root = Path(bf.__file__).parents[1]
@@ -124,6 +125,7 @@ def test_a_solution_from_another_process_draws_before_anything_else_is_asked_of_
     assert run(code, str(tmp_path / "a")) == solution._repr_html_()[:6]
 
 
+@pytest.mark.slow
 def test_pendulum_study_draws_every_figure(tmp_path):
     runs = pendulum.main(duration=0.1, step=1e-2, meshes=(6, 12, 24, 100))
     entries = [pendulum_figures.draw(figure, runs, tmp_path) for figure in pendulum_figures.FIGURES]

@@ -146,6 +146,7 @@ def test_stress_on_the_axis_vanishes_at_nodes_without_stretch_and_not_in_the_mea
     assert found.face[0] == pytest.approx(-7.0 / 8.0 * bending, rel=1e-2)
 
 
+@pytest.mark.slow
 def test_locking_is_drawn(tmp_path):
     part = locking.part(tmp_path)
     assert [entry.picture.stat().st_size > 0 for entry in part.entries] == [True] * 3
@@ -238,6 +239,7 @@ def test_two_circles_in_one_step():
     assert (run.steps, run.iterations <= 6) == (1, True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("turns", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_continuum_forces_turn_as_uniform_bending_does(turns):
     """Energy of a uniformly bent section, no elements."""

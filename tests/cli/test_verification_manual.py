@@ -6,8 +6,14 @@ import pytest
 
 from studies.verification import manual
 
+LONG = {"catenary", "lee", "timoshenko"}
 
-@pytest.mark.parametrize("solve", manual.CASES, ids=lambda case: case.__name__)
+
+@pytest.mark.parametrize(
+    "solve",
+    [pytest.param(case, marks=pytest.mark.slow if case.__name__ in LONG else ()) for case in manual.CASES],
+    ids=lambda case: case.__name__,
+)
 def test_a_case_is_as_near_to_its_reference_as_expected(solve, tmp_path):
     case = solve()
     assert len(case.values) > 0

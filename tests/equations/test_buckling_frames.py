@@ -85,7 +85,7 @@ def pinned_column(degrees):
     return bf.Model([beam], supports, [bf.PointForce(beam.end, tuple(turn @ (-1.0, 0.0)))])
 
 
-@pytest.mark.parametrize("degrees", [10, 30, 45, 60, 90, 123])
+@mostly_slow("degrees", [10, 30, 45, 60, 90, 123], quick=(1, 5))
 def test_a_pinned_column_buckles_at_any_angle(degrees):
     """At 1644.7 N, where the path was said to end at 10, 30, 45, 60 and 123 degrees."""
     model = pinned_column(degrees)
@@ -136,7 +136,7 @@ def test_a_search_that_runs_out_of_points_has_stopped(monkeypatch):
     assert found.status is bf.Status.STOPPED
 
 
-@pytest.mark.parametrize("seed", [61, 168, 174, 189, 197])
+@mostly_slow("seed", [61, 168, 174, 189, 197])
 def test_beams_in_two_halves_are_searched_as_far_as_whole_ones(seed):
     """Curved beams whose search ended after a movement by the length of the longest one, with nothing found."""
     whole, halves = (bf.solve_buckling(random_recipe(seed).build(View(split=how)).model) for how in (False, True))
@@ -180,7 +180,7 @@ def test_a_tie_under_a_large_load_has_the_limit_point_of_its_path(widest_band, s
     assert found.load_factors[:-1] == pytest.approx([point.load_factor for point in path.bifurcations], rel=1e-9)
 
 
-@pytest.mark.parametrize("softer", [0.3, 1e-2, 1e-4, 1e-5, 1e-6, 1e-7])
+@mostly_slow("softer", [0.3, 1e-2, 1e-4, 1e-5, 1e-6, 1e-7], quick=(0, 5))
 @pytest.mark.parametrize("half_width", [64, -1], ids=["band", "sparse"])
 def test_limit_points_close_together_are_not_stepped_over(widest_band, softer, half_width):
     """A shallow strut on a spring: P = EA (1 - l/l0) y/l + k (h - y), l^2 = 1 + y^2, is largest at a root in l^3.
@@ -216,6 +216,7 @@ def blown_arch(cuts, angle, unit, mirror):
     return bf.Model(beams, [bf.Clamp(beams[0].start), bf.Clamp(beams[-1].end)], loads, joints)
 
 
+@pytest.mark.slow
 def test_stability_that_is_lost_and_regained_in_a_step_is_found():
     """Counts of negative pivots are equal before and behind; one view found both, the other the third point first."""
     plain, other = bf.solve_buckling(blown_arch(1, 0.0, 1.0, 1), 3), bf.solve_buckling(blown_arch(2, 0.7, 1e3, -1), 3)
@@ -254,7 +255,7 @@ def test_portals_under_loads_on_their_columns_sway_at_the_root_of_their_equation
 
 
 @pytest.mark.parametrize("degrees", [0, 30])
-@pytest.mark.parametrize("slenderness", [1e2, 1e3, 1e4, 1e5])
+@mostly_slow("slenderness", [1e2, 1e3, 1e4, 1e5], quick=(0, 3))
 def test_columns_of_any_slenderness_buckle_at_eulers_load(slenderness, degrees):
     """At L/h = 1e5 it was off by 1.2e-3."""
     found = bf.solve_buckling(column(degrees, slenderness, 24, 4), 2)

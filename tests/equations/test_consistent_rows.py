@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.equations.equations import residual
@@ -54,7 +55,7 @@ def test_positions_velocities_and_accelerations_satisfy_all_conditions(driven, i
 @pytest.mark.parametrize(
     "element", [QUADRATIC, bf.ANCFCRBF(bf.Structural()), bf.ANCF(bf.Structural()), bf.ShearRigid()]
 )
-@pytest.mark.parametrize("section", [SQUARE, BESIDE], ids=["centred", "beside the axis"])
+@mostly_slow("section", [SQUARE, BESIDE], quick=(1,), ids=["centred", "beside the axis"])
 def test_corrections_change_no_momentum_where_bodies_or_beams_are_beside_the_axis(element, section):
     """They are impulses of the joints, in a state turned by some rad, with which the inertia of some elements turns."""
     motion = bf.simulate(flying((), element, section), 0.2, 2e-3, velocity=bf.RigidVelocity((0.3, -0.2), angular=4.0))

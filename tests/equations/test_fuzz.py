@@ -6,7 +6,7 @@ from fuzz_judged import Outcome
 
 from beamfem.solve.continuation import bifurcations, steps
 
-QUICK, MANY, STRAINED = 10, 10_000, 2_000
+QUICK, MANY, STRAINED = 5, 10_000, 2_000
 
 
 def unexplained(outcomes):

@@ -250,6 +250,7 @@ def test_forces_of_all_beams_of_a_lattice_balance_at_its_joints():
         assert ends[1] - ends[0] == pytest.approx(pulled, abs=1e-6 * np.abs(ends).max())
 
 
+@pytest.mark.slow
 @mostly_slow("element", [bf.CRBF(2), bf.ANCF(), bf.ShearRigid()], ids=lambda own: own.name)
 def test_the_energy_of_many_moments_is_the_work_of_each(element):
     beam = bf.Beam(bf.Arc((0.0, 0.0), 1.0, 0.0, 2.0), 5, element, SECTION, MATERIAL)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipk
+from slow_values import mostly_slow
 from test_path import LIMIT_HEIGHT, SOFT, bar_force
 
 import beamfem as bf
@@ -83,7 +84,7 @@ def test_two_close_buckling_loads_are_told_apart_and_each_branch_leads_to_its_ow
         assert shares[2 - number] < 1e-6
 
 
-@pytest.mark.parametrize("angle", [0.0, 0.3, 2.5])
+@mostly_slow("angle", [0.0, 0.3, 2.5], quick=(1,))
 @pytest.mark.parametrize("stiffnesses", [(1.0, 1.003), (1.0, 1.0001), (1.0, 1.003, 1.0031)])
 def test_columns_of_nearly_equal_stiffness_have_the_load_of_each_at_any_angle(stiffnesses, angle):
     beams, model = clamped(stiffnesses, angle)
@@ -210,7 +211,7 @@ def test_a_branch_is_left_onto_the_path_that_it_comes_back_to(bistable, directio
     assert direction * (back.load_factor[1] - back.load_factor[0]) > 0.0
 
 
-@pytest.mark.parametrize("elements", [5, 6, 7, 10])
+@mostly_slow("elements", [5, 6, 7, 10], quick=(1,))
 def test_a_branch_comes_back_wherever_its_steps_fall(elements):
     beam, model = guided(elements)
     primary = trace_equilibrium(model, lambda state: state.displacement(beam.end)[1] < -11.5)

@@ -39,7 +39,7 @@ def of_all_kinds():
     yield crossbar(lambda a, b: SpringDamper(a, b, 1e4, 10.0))[1]
 
 
-@pytest.mark.parametrize("number", range(3 * len(KINDS) + 2))
+@mostly_slow("number", range(3 * len(KINDS) + 2), quick=(0, 4, 8, 10))
 def test_a_motion_is_that_of_the_sparse_matrix(number, monkeypatch):
     def run():
         model = list(of_all_kinds())[number]
@@ -260,7 +260,7 @@ def test_equilibria_with_connectors_of_one_point_are_those_of_the_sparse_matrix(
 
 
 @pytest.mark.parametrize("own", [bf.SpringDamper, SpringDamper], ids=("compiled", "Python"))
-@pytest.mark.parametrize("element", KINDS, ids=lambda element: element.name)
+@mostly_slow("element", KINDS, quick=(0, 2), ids=lambda element: element.name)
 def test_equilibria_with_springs_across_beams_are_those_of_the_sparse_matrix(element, own, monkeypatch):
     """The upper beam is held by springs alone."""
     found = []

@@ -112,7 +112,7 @@ def loaded_beside_the_middle():
     return path, bf.solve_buckling(portal([0.25], [EI]), 2)
 
 
-@pytest.mark.parametrize(("degrees", "mirror"), [(0, 1.0), (17, 1.0), (200, 1.0), (33, -1.0)])
+@mostly_slow(("degrees", "mirror"), [(0, 1.0), (17, 1.0), (200, 1.0), (33, -1.0)], quick=(3,))
 def test_a_portal_sways_and_then_has_a_limit_point(degrees, mirror):
     """Loaded at midspan; the path, traced by arc length, has the same two points."""
     model = portal([0.5], [EI], degrees, mirror)
@@ -268,7 +268,7 @@ def test_columns_of_any_slenderness_buckle_at_eulers_load(slenderness, degrees):
 
 
 @pytest.mark.parametrize("apart", [3e-3, 1e-4, 1e-6, 0.0])
-@pytest.mark.parametrize("degrees", [0, 25])
+@mostly_slow("degrees", [0, 25], quick=(1,))
 def test_columns_of_nearly_the_same_load_are_told_apart(apart, degrees):
     model = column(degrees, 100.0, 8, 4, moduli=(2e11, 2e11 * (1.0 + apart)))
     found = bf.solve_buckling(model, 2)

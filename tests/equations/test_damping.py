@@ -5,6 +5,7 @@ import pytest
 from conftest import USUAL, beam, identify
 from integrators import Radau
 from section_laws import RambergOsgood
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.equations.equations import linearise, residual
@@ -141,7 +142,7 @@ def test_a_beam_creeps_under_a_sudden_load_and_back(rho, lag, framed):
     assert back.energy().total.max() <= back.energy().total[0] * (1.0 + 1e-9)
 
 
-@pytest.mark.parametrize("time", [1e-4, 5e-3, 0.1, 10.0])
+@mostly_slow("time", [1e-4, 5e-3, 0.1, 10.0], quick=(1,))
 def test_stages_of_radau_know_the_damping(time):
     """Its tangents weigh p, p' and p'' each with zero somewhere."""
     material = bf.Material(7e6, 0.3, 1000.0, retardation_time=time)

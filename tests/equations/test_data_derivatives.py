@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 from connectors import Barrier
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.equations.data_derivatives import residual_derivative
@@ -161,7 +162,12 @@ def fresh_differences(system, state, key, name, turning):
     return np.array(columns).T
 
 
-@pytest.mark.parametrize(("key", "name"), FIELDS, ids=lambda value: value.replace(" ", "_"))
+@mostly_slow(
+    ("key", "name"),
+    FIELDS,
+    quick=range(0, len(FIELDS), 4),
+    ids=lambda value: value.replace(" ", "_"),
+)
 def test_the_derivative_by_each_field_is_that_of_models_built_anew(key, name):
     turning = key == "frame"
     system, parts, state = moving(turning, False)

@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 from history_laws import Plastic
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.errors import InputError
@@ -76,7 +77,7 @@ def bent(section, element, analysis):
 
 @pytest.mark.parametrize("how", ["llvm", "c"])
 @pytest.mark.parametrize("analysis", ["static", "motion"])
-@pytest.mark.parametrize("element", [bf.CRBF(order=3), bf.ANCF(bf.Structural())], ids=["CRBF", "ANCF"])
+@mostly_slow("element", [bf.CRBF(order=3), bf.ANCF(bf.Structural())], ids=["CRBF", "ANCF"])
 def test_a_law_in_c_gives_the_results_of_the_same_law_in_python(how, analysis, element, tmp_path):
     numbers = {**NUMBERS, "limit": 6.0 if analysis == "static" else 0.5, "hardening": 20.0}
     moved, lost = bent(InC(**numbers, place=address(how, tmp_path)), element, analysis)

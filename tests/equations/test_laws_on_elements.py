@@ -7,6 +7,7 @@ import pytest
 from fields import Equidistant, Quintic
 from law_elements import LINE, LOBATTO, NEW, REFUSED, SHEARING, TAKEN, arm, at_tip, ids
 from section_laws import LinearLaw, RambergOsgood, Softening
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.equations.equations import STATICS, linearise, residual
@@ -60,7 +61,7 @@ def results(kind, element, values, curve=LINE):
     ]
 
 
-@pytest.mark.parametrize("values", [SECTION, COUPLED], ids=["plain", "coupled"])
+@mostly_slow("values", [SECTION, COUPLED], quick=(1,), ids=["plain", "coupled"])
 @every
 def test_a_linear_law_is_the_linear_section(element, values):
     if shares_rule(element, values):

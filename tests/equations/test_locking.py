@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from conftest import COORDINATES, ELEMENTS, FORCES, identify
 from shooting import Member, solved
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.element.coordinates import Gradients, ShearFree
@@ -124,7 +125,7 @@ def test_only_rigid_motions_cost_nothing(forces, coordinates, curve, elements):
     assert found[3] > 1e-5 * found[-1]
 
 
-@pytest.mark.parametrize("slenderness", [1e2, 1e4])
+@mostly_slow("slenderness", [1e2, 1e4], quick=(1,))
 @pytest.mark.parametrize("element", [e for e in LOBATTO if e.forces.name != "elastic-line"], ids=identify)
 def test_section_forces_of_a_slender_beam_have_no_waves(element, slenderness):
     """Those of the deformed beam cut by hand, within the first order that 40 elements have; waves grow with (L / h)^2.

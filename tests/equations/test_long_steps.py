@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 from random_models import random_recipe
 from recipes import View
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.solve.continuation.critical_points import SegmentLostError
 from beamfem.solve.paths import trace
 
 
-@pytest.mark.parametrize("step", [None, 0.02, 0.005])
+@mostly_slow("step", [None, 0.02, 0.005], quick=(1,))
 @pytest.mark.parametrize("view", [View(), View(angle=0.7)], ids=["plain", "rotated"])
 def test_a_path_under_follower_loads_does_not_jump_where_its_load_grows_tenfold(view, step):
     """A toggle behind its limit point: steps that ended on other paths went down to -13, -40, -60 or -76 instead.

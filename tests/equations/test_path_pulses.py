@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.optimize import brentq
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.solve.start.functions_of_time import FunctionOfTime
@@ -23,7 +24,7 @@ def cantilever(force, amplitude):
     return bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, force, amplitude=amplitude)])
 
 
-@pytest.mark.parametrize("width", [0.3, 0.1, 0.05, 0.02])
+@mostly_slow("width", [0.3, 0.1, 0.05, 0.02], quick=(0, 3))
 @pytest.mark.parametrize("size", [1.0, 1e-2])
 def test_a_path_follows_a_pulse(width, size):
     """Two points at the ends of the path were all; a tail of 1e-44 N was said to leave the forces no digits."""
@@ -41,7 +42,7 @@ def test_a_path_follows_a_pulse(width, size):
         np.testing.assert_allclose(path.displacement(tip)[row], exact, atol=1e-8)
 
 
-@pytest.mark.parametrize("width", [0.5, 0.2, 0.05, 0.02])
+@mostly_slow("width", [0.5, 0.2, 0.05, 0.02], quick=(0, 3))
 @pytest.mark.parametrize("peak", [0.95, 1.1, 1.5])
 def test_a_column_under_a_pulse_loses_its_stability_and_regains_it(width, peak):
     """One step passed over both bifurcations, and every row was stable."""

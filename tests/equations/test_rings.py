@@ -5,6 +5,7 @@ import pytest
 from conftest import ELEMENTS, identify
 from integrated import Cantilever
 from scipy.integrate import quad
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.equations.equations import residual
@@ -73,7 +74,7 @@ def test_a_thin_half_ring_by_castigliano(element):
 
 
 @pytest.mark.parametrize("opens", [1.0, -1.0])
-@pytest.mark.parametrize("order", [2, 3, 4, 6])
+@mostly_slow("order", [2, 3, 4, 6], quick=(1,))
 def test_a_quarter_ring_under_a_large_load_by_integration(order, opens):
     """Reissner's beam with initial curvature, h / R = 0.1, against the integration of its differential equations."""
     section = bf.Rectangle(0.1, 0.1)

@@ -265,7 +265,7 @@ def test_a_load_factor_that_goes_against_both_tangents_is_no_path():
         Segment(line, start, lower).limit_points()
 
 
-@pytest.mark.parametrize("elements", [1, 2, 3, 4, 5, 8])
+@mostly_slow("elements", [1, 2, 3, 4, 5, 8], quick=(0, 4))
 def test_a_bar_that_softens_everywhere_at_once_has_a_limit_point(elements):
     """E A / (3 sqrt 3), where every part may go on or back, so that no step leads over it but by round-off."""
     beam = bf.Beam(

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from coarse_models import coarse_recipe, displacements, fine_recipe
 from history_laws import YIELDING
+from slow_values import mostly_slow
 
 import beamfem as bf
 
@@ -90,7 +91,7 @@ def test_results_of_a_bent_cantilever_carry_their_errors(element, elements):
     ("element", "elements"),
     [(bf.CRBF(1), 24), (bf.CRBF(2), 8), (bf.CRBF(3), 4), (bf.CRBF(4), 4), (bf.CRBF(6), 4), (bf.CRBF(8), 4)],
 )
-@pytest.mark.parametrize("size", [-200.0, 20.0])
+@mostly_slow("size", [-200.0, 20.0])
 def test_the_default_is_the_largest_error_of_a_position(element, elements, size):
     """Between the nodes of a ring under two forces positions are off by up to 200 times as much as there."""
     found = []

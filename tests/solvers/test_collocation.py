@@ -231,7 +231,7 @@ def four_bar(element):
 ELEMENTS = [bf.CRBF(1), bf.CRBF(2), bf.CRBF(3), bf.ANCF(bf.Structural()), bf.ANCFCRBF(bf.Structural()), bf.ShearRigid()]
 
 
-@pytest.mark.parametrize("element", ELEMENTS, ids=lambda element: element.name)
+@mostly_slow("element", ELEMENTS, quick=(1, 4), ids=lambda element: element.name)
 @pytest.mark.parametrize("make", [double_pendulum, released_strip, four_bar])
 @pytest.mark.parametrize("integrator", [bf.Radau(3), bf.Bathe()], **ids)
 def test_stable_methods_go_on_where_steps_resolve_no_vibration_and_never_gain_energy(integrator, make, element):

@@ -157,6 +157,7 @@ def test_a_stop_with_friction_slides_and_remembers():
     assert slip[0] == pytest.approx(slip[1], abs=3e-5)
 
 
+@pytest.mark.slow
 @mostly_slow(
     "section",
     [

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from judged import NoReference, judged
 from random_models import FAMILIES, random_recipe
+from slow_values import mostly_slow
 
 STEPS = (1, 10, 100)
 # once off the path: silently under follower loads, onto unstable states, over limit points, also where a short snap
@@ -31,7 +32,7 @@ def iterations_before():
         return {int(row["seed"]): {n: row[f"steps {n}"] for n in STEPS} for row in csv.DictReader(lines)}
 
 
-@pytest.mark.parametrize("seed", PLAIN + HARD)
+@mostly_slow("seed", PLAIN + HARD, quick=range(0, len(PLAIN + HARD), 4))
 def test_a_random_model_ends_where_its_path_ends(seed):
     recipe = random_recipe(seed)
     expected, found = judged(recipe, STEPS)

@@ -247,7 +247,7 @@ def arch(rise, elements, load):
     return beam, bf.Model([beam], [bf.Pin(beam.start), bf.Pin(beam.end)], [bf.DistributedLoad(beam, (0.0, -load))])
 
 
-@pytest.mark.parametrize("off", [0.0, 1e-9, -1e-9, 1e-6])
+@mostly_slow("off", [0.0, 1e-9, -1e-9, 1e-6], quick=(0, 2))
 @pytest.mark.parametrize("options", [{"unstable": "leave"}, {"snap": "jump"}])
 @pytest.mark.parametrize("row", [0.5, 0.9])
 def test_a_row_may_lie_on_the_bifurcation_that_is_left(row, options, off):

@@ -134,7 +134,7 @@ def applies(check: str, recipe: Recipe) -> bool:
     return not ((check == "motion" and led) or (check == "buckling" and any(load.follower for load in recipe.loads)))
 
 
-@pytest.mark.parametrize("seed", QUICK)
+@mostly_slow("seed", QUICK, quick=(0, 2))
 @pytest.mark.parametrize("check", CHECKS)
 def test_a_random_model_has_the_same_answers_in_every_view(check, seed):
     recipe = random_recipe(seed)

@@ -13,7 +13,6 @@ import pytest
 from beamfem.kernels.compiler import machine
 from beamfem.kernels.compiler.bounds_checks import CHECKED
 
-pytestmark = pytest.mark.xdist_group("out of bounds")  # one run of the script for all
 SCRIPT = Path(__file__).parents[1] / "out_of_bounds.py"
 BEYOND = {
     "write 10": "write, line {}: values, index 10, of an array of size 10",

@@ -1,10 +1,12 @@
 """Motions that ended, or gained energy without limit, before steps were refused: see the tests of that name."""
 
+from contextlib import contextmanager
 from itertools import pairwise
 
 import numpy as np
 
 import beamfem as bf
+from beamfem.solve.motion.energy_judgement import EnergyJudge
 
 STEEL, ALUMINIUM = bf.Material(2.1e11, 0.3, 7850.0), bf.Material(7e10, 0.3, 2700.0)
 CARBON = bf.Material(1e11, 0.3, 1600.0)
@@ -126,3 +128,28 @@ def largest_changes(motion):
 
     found = balance(motion)
     return float(found.rise.max() / found.exchanged), float(found.loss.max() / found.exchanged)
+
+
+@contextmanager
+def all_steps():
+    """Provide the states (3, n) at the ends of all steps by their times, those of divided steps included."""
+    accept, states = EnergyJudge.accept, {}
+
+    def recorded(judge, times, rows, *options):
+        good = accept(judge, times, rows, *options)
+        for time in [time for time in states if time > times[0]]:  # steps that are redone
+            del states[time]
+        states.update(zip(times[: good + 1].tolist(), rows[: good + 1].copy(), strict=True))
+        return good
+
+    EnergyJudge.accept = recorded
+    try:
+        yield states
+    finally:
+        EnergyJudge.accept = accept
+
+
+def with_states(motion, states):
+    """Return a motion whose rows are states (3, n) by their times."""
+    p, v, a = np.stack(list(states.values()), axis=1)
+    return bf.Solution(motion.model, False, np.array(list(states)), p, v, a, motion.statistics)

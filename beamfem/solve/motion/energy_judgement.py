@@ -20,17 +20,19 @@ _UNRESOLVED = 0.005  # (w h)^6 of vibrations times their share of the kinetic en
 _GROWN = 5.0  # times the largest kinetic energy so far, from a chunk to the next: it may not be by work
 _SMOOTH = 1e-6  # as _UNRESOLVED, of motions that grow smoothly from rest
 _SHARE = 0.01  # of the energy exchanged: what steps may change it by in all
-_SHARE_MOVED = 0.1  # the same where supports move, whose kinks excite vibrations at any step
+_SHARE_MOVED = 0.1  # the same where supports move, of methods whose work rows do not give
+_SLIGHT = 0.01  # of the largest speed of a support: its corners with smaller jumps are none
 BROKEN = 0.5  # the same of methods that err by their order alone: beyond, steps have found another solution
 _DIFFERENCES = 3  # steps needed for third differences
 _MOST_DOUBT = 0.1  # of the energy exchanged: in work, which steps that fail do not resolve at all
+_TINY = 1e-300  # instead of zero
 _ACCURACY = 1e-14  # of coordinates, that of the iterations
 _FASTER = 1.1  # times the largest speed so far: of a state at which exchanged energies are evaluated anew
 
 
 class EnergyJudge:
     """Judges chunks of steps; rule: of the scheme; end [s]: of the motion; start (3, n): its state at first;
-    share: of the energy exchanged, what steps may change it by in all.
+    share: of the energy exchanged, what steps may change it by in all; implicit: whether it is the rule of the steps.
 
     A chunk is refused if it changes the energy less work by more than half of what is left of the share of the energy
     exchanged so far, and by more than its part of that share if it were spread evenly over the motion: so that
@@ -40,13 +42,23 @@ class EnergyJudge:
     not resolve vibrations that matter, or where the next steps fail.
     """
 
-    def __init__(self, system: System, rule: np.ndarray, end: float, start: np.ndarray, share: float = _SHARE) -> None:
+    def __init__(
+        self,
+        system: System,
+        rule: np.ndarray,
+        end: float,
+        start: np.ndarray,
+        share: float = _SHARE,
+        implicit: bool = True,
+    ) -> None:
         self._system, self._masses, self._radius = system, system.table(masses), radius_at_infinity(rule)
         self._duration = end
         self._damps = self._radius < 1.0 - 1e-6
         self._first = self._fastest = np.zeros(1), start[None].copy()  # times (1,) [s] and states (1, 3, n)
-        moved = any(callable(item.value) for item in system.prescribed)
-        self._share = _SHARE_MOVED if moved else share
+        # whether the mean of the forces in two rows times the displacement between them is the work of a step
+        self._by_means = implicit and not self._damps
+        self._moving = [item.dof for item in system.prescribed if callable(item.value)]
+        self._share = _SHARE_MOVED if self._moving and not self._by_means else share
         self._speed = self._speed_evaluated = 0.0
         self._drift = self._total = 0.0
         self._parts = list[tuple[float, float]]()  # extreme kinetic, strain and potential energies so far
@@ -130,7 +142,8 @@ class EnergyJudge:
             found = balance(self._solution(at, some), _ACCURACY)
             self._exchange(found.energy, len(before))
             energies = found.energy.kinetic, found.energy.strain, found.energy.potential
-            table = np.array([*energies, found.rise, found.loss, found.time, found.doubt, found.unsure])
+            doubt = self._doubt(at, some, found.work) if self._by_means else found.doubt
+            table = np.array([*energies, found.rise, found.loss, found.time, doubt, found.unsure])
             place = {row: number for number, row in enumerate(rows, len(before))}
             for first, last in group:
                 if not self._passes(table[:, place[first] : place[last] + 1].tolist(), float(table[-1, 0]), final):
@@ -156,7 +169,7 @@ class EnergyJudge:
         spent = (time[-1] - time[0]) / self._duration
         allowed = max(0.5 * left, spent * share, (2.0 * share - abs(self._drift)) if final else 0.0)
         doubt = doubts[-1] - doubts[0]
-        doubt = doubt if final else min(doubt, _MOST_DOUBT * exchanged)
+        doubt = doubt if final or self._by_means else min(doubt, _MOST_DOUBT * exchanged)
         doubt += uncertain[-1] - uncertain[0] + unsure
         if self._damps:
             stored = kinetic[0] + strain[0]
@@ -173,6 +186,22 @@ class EnergyJudge:
             self._drift = max(self._drift, 0.0)
         self._parts = parts
         return True
+
+    def _doubt(self, times: np.ndarray, states: np.ndarray, work: np.ndarray) -> np.ndarray:
+        """Return how accurately the rows of undamped steps give the work until each row (rows,) [J].
+
+        The mean of the forces in two rows times the displacement between them is the work that a step does, but at
+        corners of the motion of a support, where its position or velocity changes otherwise than by the mean of its
+        rates in two rows: there energy is found in one step for which work is done in the next.
+        """
+        step, corners = np.diff(times)[:, None], np.zeros(len(times) - 1)
+        moved, speed, acceleration = states[:, :, self._moving].swapaxes(0, 1)
+        fastest = abs(speed).max(axis=0)
+        for value, rate, scale in ((moved, speed, step * fastest), (speed, acceleration, fastest)):
+            change, by_rate = np.diff(value, axis=0), 0.5 * step * (rate[1:] + rate[:-1])
+            size = np.maximum(abs(change), abs(by_rate)) + _SLIGHT * scale + _TINY
+            corners = np.maximum(corners, (abs(change - by_rate) / size).max(axis=1, initial=0.0))
+        return np.append(0.0, np.cumsum(corners * abs(np.diff(work))))
 
     def _not_evaluated(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Return times and states of the first and of the fastest state so far, unless their energies are known."""

@@ -156,7 +156,7 @@ def cutter_of(
     if is_explicit(integrator):  # by its damping alone
         judged = GeneralizedAlpha(0.0 if integrator.order > 2 else 1.0)
     if judged is not None:
-        judge = EnergyJudge(system, judged.rule(parts[0].step), end, state[:3])
+        judge = EnergyJudge(system, judged.rule(parts[0].step), end, state[:3], implicit=judged is integrator)
     elif has_stages(integrator) and not integrator.removed:  # Gauss; Radau damps what steps do not resolve
         judge = EnergyJudge(system, GeneralizedAlpha(1.0).rule(parts[0].step), end, state[:3], BROKEN)
         judge = judge if judge.conservative else None

@@ -98,6 +98,21 @@ def test_a_mass_bounces_with_the_coefficient_of_restitution_at_any_mass_and_spee
     assert np.abs(np.diff(energy.total + energy.dissipated)).max() < 4e-3 * energy.total[0]
 
 
+@pytest.mark.parametrize("steps", [1, 2, 3, 8])
+def test_a_contact_of_a_few_steps_gives_back_no_more_than_its_restitution(steps):
+    """It began and ended within the steps that are judged together: 1.56 and 0.89 in place of 0.6 without a word."""
+    thread = light()
+    stop = bf.Stop(thread.start, (0.0, -1e-3), UP, 1e5, restitution=0.6)
+    model = bf.Model([thread], connectors=[stop], masses=[bf.PointMass(thread.start, 1.0)])
+    step = np.pi * np.sqrt(1.0 / 1e5) / steps
+    options = {"duration": 8 * step, "step": step, "velocity": bf.RigidVelocity((0.0, -1.0))}
+    motion = bf.simulate(model, **options, integrator=bf.Trapezoidal())
+    assert motion.statistics.cuts > 0
+    np.testing.assert_allclose(motion.velocity(thread.start)[-1, 1], 0.6, rtol=2e-2)
+    damped = bf.simulate(model, **options)  # may lose more
+    assert 0.54 < damped.velocity(thread.start)[-1, 1] < 0.69
+
+
 @mostly_slow("bounce", [{"restitution": 0.6}, {"damping": 0.0}])
 @mostly_slow("axis", [(1.0, 0.0), (1.0, 0.3)], quick=(1,))
 def test_a_slider_that_moves_bounces_off_its_end_stops(bounce, axis):

@@ -14,6 +14,7 @@ from beamfem.results.energy_balance import balance, driven, masses
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics
 from beamfem.solve.motion.consistent_rows import on_conditions
+from beamfem.solve.motion.kinks import kinked
 
 CHUNK = 8  # steps that are judged together
 _UNRESOLVED = 0.005  # (w h)^6 of vibrations times their share of the kinetic energy; below, energies are not evaluated
@@ -59,6 +60,7 @@ class EnergyJudge:
         self._by_means = implicit and not self._damps
         self._moving = [item.dof for item in system.prescribed if callable(item.value)]
         self._share = _SHARE_MOVED if self._moving and not self._by_means else share
+        self._abrupt = bool(system.table(kinked))  # contacts may begin and end within a chunk
         self._speed = self._speed_evaluated = 0.0
         self._drift = self._total = 0.0
         self._parts = list[tuple[float, float]]()  # extreme kinetic, strain and potential energies so far
@@ -101,7 +103,7 @@ class EnergyJudge:
         speeds = np.square(states[ends, 1]) @ self._masses
         doubtful = np.full(len(ends), cut)
         doubtful[-2:] |= failed
-        doubted = len(self._parts) > 0
+        doubted = self._abrupt or len(self._parts) > 0
         if steps < _DIFFERENCES:
             doubtful |= doubted
         elif not cut:

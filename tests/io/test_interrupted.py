@@ -101,6 +101,21 @@ def test_a_static_solve_that_is_interrupted_keeps_its_rows(monkeypatch):
     assert caught.value.solution.load_factor.tolist() == [0.0, 0.25, 0.5]
 
 
+def test_a_motion_that_stops_on_an_unrefined_mesh_says_so():
+    def interrupted(state):
+        if state.time > 0.004:
+            raise KeyboardInterrupt
+        return 1.0
+
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), "auto", section=bf.Rectangle(0.1, 0.1), material=BEAM.material)
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -1e5))])
+    with pytest.raises(KeyboardInterrupt) as caught:
+        bf.simulate(model, 0.01, 1e-3, accuracy=1e-3, events=[bf.Event("never", interrupted)])
+    found = caught.value.solution
+    assert found.time[-1] == pytest.approx(0.004)
+    assert found.statistics.ended.endswith("; it stopped on mesh 1, whose error is not known")
+
+
 def test_the_command_line_saves_what_was_found_and_says_so(third_time, tmp_path, monkeypatch):
     monkeypatch.setattr("beamfem.progress._WORTH", 0.0)
     model = (ROOT / "examples" / "cantilever.toml").read_text() + "\n"

@@ -129,6 +129,12 @@ def refined_until(
             if len(lost) > (_MOST_LIMITED if isinstance(reason, LimitPointError) else _MOST_LOST) or _agree(lost):
                 raise
             result, error, shares = None, np.inf, None
+        except KeyboardInterrupt as interrupt:
+            found = getattr(interrupt, "solution", None)
+            if isinstance(found, Solution):
+                ended = f"{found.statistics.ended}; it stopped on mesh {number}, whose error is not known"
+                interrupt.solution = found.with_statistics(ended=ended)  # type: ignore[attr-defined]
+            raise
         finer = sum(map(_intervals, model.beams)) > unknowns
         unknowns = sum(map(_intervals, model.beams))
         if isinstance(result, Solution):

@@ -14,6 +14,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.io import hdf5
@@ -131,6 +132,9 @@ CASES = {
     ),
 }
 
+# what these keep in a file, others do as well
+REPEATED = "full turns", "Radau", "tolerance", "kinks", "moved support, Radau", "damper"
+
 
 def datasets(path):
     """Everything in a file by name, but for what HDF5 and the version say."""
@@ -154,7 +158,7 @@ def short(monkeypatch):
 
 
 @pytest.mark.filterwarnings("ignore::beamfem.errors.LargeStrainWarning", "ignore::beamfem.errors.LockingWarning")
-@pytest.mark.parametrize("name", CASES)
+@mostly_slow("name", list(CASES), quick=[number for number, name in enumerate(CASES) if name not in REPEATED])
 def test_a_resumed_motion_is_the_same_bit_for_bit(name, short, tmp_path, monkeypatch):
     made, how = CASES[name]
     made = made()

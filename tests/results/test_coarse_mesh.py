@@ -147,9 +147,9 @@ def test_random_meshes_warn_if_they_are_poor():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("first", range(0, 1000, 100))
-def test_1000_random_meshes_warn_if_they_are_poor(first):
-    require_right(range(first, first + 100))
+def test_1000_random_meshes_warn_if_they_are_poor():
+    """Of 100 of them some 30 are good, of which a single false warning would be more than 2 %."""
+    require_right(range(1000))
 
 
 def test_one_element_of_order_two_that_is_too_coarse_warns():

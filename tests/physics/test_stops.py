@@ -100,7 +100,7 @@ def test_a_mass_bounces_with_the_coefficient_of_restitution_at_any_mass_and_spee
 
 @pytest.mark.parametrize("steps", [1, 2, 3, 8])
 def test_a_contact_of_a_few_steps_gives_back_no_more_than_its_restitution(steps):
-    """It began and ended within the steps that are judged together: 1.56 and 0.89 in place of 0.6 without a word."""
+    """It began and ended within the steps that are judged together: 1.56 and 0.89 in place of 0.6."""
     thread = light()
     stop = bf.Stop(thread.start, (0.0, -1e-3), UP, 1e5, restitution=0.6)
     model = bf.Model([thread], connectors=[stop], masses=[bf.PointMass(thread.start, 1.0)])

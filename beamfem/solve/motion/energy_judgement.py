@@ -22,11 +22,10 @@ _GROWN = 5.0  # times the largest kinetic energy so far, from a chunk to the nex
 _SMOOTH = 1e-6  # as _UNRESOLVED, of motions that grow smoothly from rest
 _SHARE = 0.01  # of the energy exchanged: what steps may change it by in all
 _SHARE_MOVED = 0.1  # the same where supports move, of methods whose work rows do not give
-_SLIGHT = 0.01  # of the largest speed of a support: its corners with smaller jumps are none
 BROKEN = 0.5  # the same of methods that err by their order alone: beyond, steps have found another solution
 _DIFFERENCES = 3  # steps needed for third differences
 _MOST_DOUBT = 0.1  # of the energy exchanged: in work, which steps that fail do not resolve at all
-_TINY = 1e-300  # instead of zero
+_SLIGHT, _TINY = 0.01, 1e-300  # of the largest speed of a support: what is no corner of its motion; instead of zero
 _ACCURACY = 1e-14  # of coordinates, that of the iterations
 _FASTER = 1.1  # times the largest speed so far: of a state at which exchanged energies are evaluated anew
 

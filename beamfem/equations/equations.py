@@ -1,6 +1,6 @@
 """Residual and tangent of a system in a state: the interface between solvers and kernels."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -122,22 +122,37 @@ def imposed_forces(system: System, time: float) -> np.ndarray:
 
 def residuals(system: System, p: np.ndarray, rates: Sequence[Rates], time: float) -> np.ndarray:
     """Return the residuals (k, n) of a state p (n,) with pairs p' and p'' of rates (k), see `residual`."""
+    return residuals_of_rows(system, [(p, *pair) for pair in rates], [time] * len(rates))
+
+
+def residuals_of_rows(
+    system: System,
+    rows: Sequence[Sequence[np.ndarray]],
+    times: Sequence[float],
+    loads: Sequence[LoadsAt] | None = None,
+) -> np.ndarray:
+    """Return the residuals (k, n) of states p, p' and p'' (k) at times [s], see `residual`."""
     if system.model.frame is None and not len(system.connectors.one_sided):
-        return _residuals(system, p, rates, time)
-    return np.array([residual(system, p, *pair, time) for pair in rates])
+        return _residuals(system, rows, times, 0.0, loads or map(system.loads.at, times))
+    acting = loads or [system.loads.at(time) for time in times]
+    each = zip(rows, times, acting, strict=True)
+    return np.array([residual(system, p, v, a, time, loads=own) for (p, v, a), time, own in each])
 
 
 def _residuals(
-    system: System, p: np.ndarray, rates: Sequence[Rates], time: float, dt: float = 0.0, loads: LoadsAt | None = None
+    system: System,
+    rows: Sequence[Sequence[np.ndarray]],
+    times: Sequence[float],
+    dt: float,
+    loads: Iterable[LoadsAt],
 ) -> np.ndarray:
-    """Return the residuals (k, n) in a frame at rest, see `residuals`."""
-    result, assembler, loads = np.empty((len(rates), len(p))), _acquired(system), loads or system.loads.at(time)
-    assembler.take(loads, time)
+    """Return the residuals (k, n) in a frame at rest, see `residuals_of_rows`."""
+    size, assembler = len(system.reference), _acquired(system)
+    result, (p, v, a, forces) = np.empty((len(times), size)), np.empty((4, size))
     assembler.weigh((1.0, 1.0, 1.0), dt)
-    place, v, a, forces = np.empty((4, len(p)))
-    place[:] = p
-    assembler.prepare(place, v, a, forces, _EMPTY, False)
-    for row, (v[:], a[:]) in zip(result, rates, strict=True):
+    assembler.prepare(p, v, a, forces, _EMPTY, False)
+    for row, (p[:], v[:], a[:]), time, acting in zip(result, rows, times, loads, strict=True):
+        assembler.take(acting, time)
         assembler.evaluate()
         row[:] = forces
     _return_assembler(system, assembler)
@@ -162,7 +177,7 @@ def _residual(
     system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float, dt: float, loads: LoadsAt | None = None
 ) -> np.ndarray:
     """Return the residual (n,) in a frame at rest, see `residual`."""
-    return _residuals(system, p, [(v, a)], time, dt, loads)[0]
+    return _residuals(system, [(p, v, a)], [time], dt, [loads or system.loads.at(time)])[0]
 
 
 def energies_of_beams(

@@ -32,7 +32,9 @@ _BLOCK_BYTES = 2**17  # of rows with a checksum, which are written anew while th
 _TEXT = 2048  # characters of the statistics, so that their place can be used again
 _SETTINGS, _CHECKPOINT = "settings", "checkpoint"
 
-Rows = tuple[np.ndarray, np.ndarray, np.ndarray, tuple[Occurrence, ...]]
+# times, and states with what else there is in each row, and events
+Rows = tuple[np.ndarray, Sequence[np.ndarray], tuple[Occurrence, ...]]
+_OF_ROWS = ("turned", "exchanged")
 
 
 class MotionFile:
@@ -112,8 +114,9 @@ class MotionFile:
             self._file.attrs.modify(name, rows)
         self._tail = _last_block(self._file)
         _sum(self._file, rows - len(self._tail[0]), self._tail)
-        if "turned" in self._file:
-            hdf5.shorten_checked(self._file, "turned", rows)
+        for name in _OF_ROWS:
+            if name in self._file:
+                hdf5.shorten_checked(self._file, name, rows)
         if EVENTS in self._file:
             for name in self._file[EVENTS]:
                 hdf5.shorten_checked(self._file[EVENTS], name, events)
@@ -161,14 +164,15 @@ def created(
     """
     once = describe(model, at[:1])
     description = as_text(describe(model, at) if once["functions"] else once)
-    size, turned = model.size, len(model.numbered.rotation_pairs)
+    size = model.size
     block = max(_BLOCK_BYTES // (8 * size), 1)
 
     def fill(file: Any, require_written: Callable[[], None]) -> None:
         begin_file(file, 0, description, size, block)
         hdf5.write_checked(file, "statistics", _padded(as_text(about(False, statistics))))
-        if turned:
-            hdf5.begin_checked(file, "turned", (turned,), np.float64, block)
+        for name, values in zip(_OF_ROWS, rows[1][1:], strict=True):
+            if values.shape[1]:
+                hdf5.begin_checked(file, name, values.shape[1:], np.float64, block)
         if event_names:
             begin_events(file, max(len(name.encode()) for name in event_names))
         _append(file, _last_block(file), rows)
@@ -204,7 +208,7 @@ def _last_block(file: Any) -> list[np.ndarray]:
 
 def _append(file: Any, tail: list[np.ndarray], rows: Rows) -> list[np.ndarray]:
     """Append rows, and events; tail: the rows of the last block, if it is not complete. Return those of the new one."""
-    times, states, rotations, events = rows
+    times, (states, *others), events = rows
     before, added, block = len(file["at"]), (times, *states.swapaxes(0, 1)), file["at"].chunks[0]
     if events:
         append_events(file, events)
@@ -215,8 +219,9 @@ def _append(file: Any, tail: list[np.ndarray], rows: Rows) -> list[np.ndarray]:
         file[name][before:] = values
     joined = [np.concatenate([old, new]) if len(old) else new for old, new in zip(tail, added, strict=True)]
     _sum(file, before - len(tail[0]), joined)
-    if "turned" in file:
-        hdf5.extend_checked(file, "turned", rotations)
+    for name, values in zip(_OF_ROWS, others, strict=True):
+        if name in file:
+            hdf5.extend_checked(file, name, values)
     for name in ("rows", "all_rows"):
         file.attrs.modify(name, before + len(times))
     whole = len(joined[0]) - len(joined[0]) % block

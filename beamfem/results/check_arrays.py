@@ -44,6 +44,8 @@ def require_rows(solution: Solution) -> None:
     for name, kinds in (("stability", "b"), ("loaded", _REAL)):
         if getattr(solution, name) is not None:
             _require_array(solution, name, rows, kinds)
+    if solution.exchanged is not None:
+        _require_array(solution, "exchanged", (*rows, 2))
     for name in ("at", "p"):
         _require_finite(f"{name} of {kind}", getattr(solution, name))
     for name in ("at", "p", "v", "a"):

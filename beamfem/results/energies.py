@@ -1,5 +1,6 @@
 """Energies of a solution, and the work done on a motion and what it dissipates, by the trapezoidal rule."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -7,7 +8,7 @@ import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.equations.connectors import Connectors
-from beamfem.equations.equations import energies_of_beams, residual
+from beamfem.equations.equations import energies_of_beams, residuals_of_rows
 from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError
@@ -93,7 +94,7 @@ class Energy:
 
         It is that of moving supports, follower loads and pressures, loads that change with time, imposed strains, and
         connectors that follow time or are not conservative: the mean of the forces in two rows times the displacement
-        between them. The work of constant dead loads is in `potential`.
+        between them, or the sum of it over steps that were divided. The work of constant dead loads is in `potential`.
         """
         return self._exchange[0]
 
@@ -101,9 +102,9 @@ class Energy:
     def dissipated(self) -> np.ndarray:
         """Energy (steps,) [J] dissipated since the start by history, and since the first row by rates.
 
-        Damping of beams and dampers resist rates; the mean of their power in two rows, times the time between them. In
-        statics, there is only what sections and stops with history have recorded, and nan if connectors that are not
-        conservative may dissipate too.
+        Damping of beams and dampers resist rates; the mean of their power in two rows, times the time between them, or
+        the sum of it over steps that were divided. In statics, there is only what sections and stops with history have
+        recorded, and nan if connectors that are not conservative may dissipate too.
         """
         return self.recorded + self._exchange[1]
 
@@ -262,8 +263,11 @@ def exchange(solution: Solution, forces: Forces) -> Exchange:
 
         now, later, earlier = map(energy, (at, np.append(at[1:], at[-1]), np.append(at[0], at[:-1])))
         work = work + 0.5 * ((later - now)[:-1] + (now - earlier)[1:])
-    stored = np.diff(driving.energies(motion, at).sum(axis=1))
-    return Exchange(work, given, stored, means[2] * np.diff(at))
+    stored, lost = np.diff(driving.energies(motion, at).sum(axis=1)), means[2] * np.diff(at)
+    if solution.exchanged is not None:
+        unseen = np.diff(solution.exchanged, axis=0)
+        work, lost = work + unseen[:, 0], lost + unseen[:, 1]
+    return Exchange(work, given, stored, lost)
 
 
 def forces_without_potential(solution: Solution) -> Forces:
@@ -276,26 +280,40 @@ def forces_without_potential(solution: Solution) -> Forces:
     damped = system.damped or (len(driving.items) < len(system.connectors.items) and system.connectors.damp)
     if not (moving or following or damped or driving.items):
         return Forces(work, connected, lost)
-    for row, (at, p, v, a) in enumerate(zip(solution.at.tolist(), solution.p, solution.v, solution.a, strict=True)):
-        if moving or following:
-            acting = residual(system, p, v, a, at)
-            work[row, moving] = acting[moving]
-        if following:
-            left = system.loads.of(at, np.where(system.loads.conserves, system.loads.factors(at), 0.0))
-            work[row] += residual(system, p, v, a, at, loads=left) - acting
-        driving.add_forces(connected[row], (p, v, a), at)
-        if damped:
-            lost[row] = _dissipated_power(system, driving, p, v, at)
+    times, states = solution.at.tolist(), list(zip(solution.p, solution.v, solution.a, strict=True))
+    if moving or following:
+        acting = residuals_of_rows(system, states, times)
+        work[:, moving] = acting[:, moving]
+    if following:
+        factors = [np.where(system.loads.conserves, system.loads.factors(at), 0.0) for at in times]
+        left = [system.loads.of(at, own) for at, own in zip(times, factors, strict=True)]
+        work += residuals_of_rows(system, states, times, left) - acting
+    _add_forces(driving, connected, states, times)
+    if damped:
+        lost += _dissipated_power(system, driving, states, times)
     return Forces(work, -connected, lost)
 
 
-def _dissipated_power(system: System, but: Connectors, p: np.ndarray, v: np.ndarray, time: float) -> float:
-    """Return the power [W] that all but some connectors dissipate: of the part of the forces that is odd in p'.
+def _dissipated_power(
+    system: System, but: Connectors, states: Sequence[Sequence[np.ndarray]], times: Sequence[float]
+) -> np.ndarray:
+    """Return the power (rows,) [W] that all but some connectors dissipate: of the part of the forces odd in p'.
 
     Inertia forces of p' are even.
     """
-    forces, zeros = np.zeros((2, len(p))), np.zeros(len(p))
-    for result, rate in zip(forces, (v, -v), strict=True):
-        but.add_forces(result, (p, rate, zeros), time)
-        result -= residual(system, p, rate, zeros, time)
-    return float(0.5 * v @ (forces[1] - forces[0]))
+    rates, zeros = np.array([v for _, v, _ in states]), np.zeros(len(system.reference))
+    odd = np.zeros_like(rates)
+    for sign in (1.0, -1.0):
+        moved = [(p, sign * v, zeros) for p, v, _ in states]
+        forces = -residuals_of_rows(system, moved, times)
+        _add_forces(but, forces, moved, times)
+        odd -= 0.5 * sign * forces
+    return np.asarray(np.einsum("sn,sn->s", rates, odd))
+
+
+def _add_forces(
+    connectors: Connectors, forces: np.ndarray, states: Sequence[Sequence[np.ndarray]], times: Sequence[float]
+) -> None:
+    """Add the forces of connectors in states p, p' and p'' (rows, n) at times [s] to forces (rows, n)."""
+    for row, (p, v, a), time in zip(forces, states, times, strict=True):
+        connectors.add_forces(row, (p, v, a), time)

@@ -133,7 +133,22 @@ def energy_drift(solution: "Solution") -> EnergyDrift | None:
 def with_rows(solution: "Solution", rows: Any) -> "Solution":
     """Return the rows of a motion that an index of arrays selects."""
     at, p, v, a = (values[rows] for values in (solution.at, solution.p, solution.v, solution.a))
-    return replace(solution, at=at, p=p, v=v, a=a, stability=None, turned=start_rotations(solution)[rows])
+    exchanged = None if solution.exchanged is None else solution.exchanged[rows]
+    others: dict[str, Any] = {"stability": None, "turned": start_rotations(solution)[rows], "exchanged": exchanged}
+    return replace(solution, at=at, p=p, v=v, a=a, **others)
+
+
+def unseen(solution: "Solution", every: int) -> np.ndarray:
+    """Return work and dissipation (m + 1, 2) [J] in a motion beyond what every n-th row tells, at these rows."""
+    result = np.zeros(((len(solution) - 1) // every + 1, 2))
+    if driven(solution) or system_of(solution.model, static=False).damped:
+        some, forces = slice(None, None, every), forces_without_potential(solution)
+        fine = exchange(solution, forces)
+        coarse = exchange(with_rows(solution, some), Forces(*(values[some] for values in forces)))
+        for one, sign, count in ((fine, 1.0, every), (coarse, -1.0, 1)):
+            changes = np.stack([one.work + one.given + one.stored, one.lost], axis=1)
+            result[1:] += sign * changes.reshape(-1, count, 2).sum(axis=1)
+    return result.cumsum(axis=0)
 
 
 def driven(solution: "Solution") -> bool:

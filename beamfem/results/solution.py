@@ -118,6 +118,8 @@ class Solution:
         Load factor of the loads in a motion about an equilibrium.
     events : tuple of Occurrence, optional
         Events of a motion in the order of time, see `simulate`.
+    exchanged : array, [J], (steps, 2), optional
+        Work done and energy dissipated since the start by steps that were divided, beyond what the rows tell.
 
     Examples
     --------
@@ -137,6 +139,7 @@ class Solution:
     turned: np.ndarray | None = None
     loaded: np.ndarray | None = None
     events: tuple["Occurrence", ...] = ()
+    exchanged: np.ndarray | None = None
 
     def __post_init__(self) -> None:
         from beamfem.results.check_arrays import require_rows
@@ -192,9 +195,10 @@ class Solution:
             text = f"{first}:{last}" + (f":{stride}" if stride != "" else "")
             raise InputError(f"solution[{text}] selects no row; this solution has rows 0 to {len(self) - 1}")
         parts = (self.at[rows], self.p[rows], self.v[rows], self.a[rows])
-        stability, loaded = (None if values is None else values[rows] for values in (self.stability, self.loaded))
-        turned = start_rotations(self)[rows]
-        return Solution(self.model, self.static, *parts, self.statistics, stability, turned, loaded)
+        optional = (self.stability, start_rotations(self), self.loaded, self.exchanged)
+        stability, turned, loaded, exchanged = (None if values is None else values[rows] for values in optional)
+        others: dict[str, Any] = {"stability": stability, "turned": turned, "loaded": loaded, "exchanged": exchanged}
+        return Solution(self.model, self.static, *parts, self.statistics, **others)
 
     @property
     def status(self) -> Status:

@@ -12,6 +12,7 @@ from refused_steps import (
     double_pendulum,
     largest_changes,
     linked_arms,
+    slider_crank,
     strip,
     with_states,
 )
@@ -51,7 +52,8 @@ def test_the_motion_goes_on_to_its_end(name, kind):
     assert statistics.rejected == statistics.cuts
     assert statistics.steps >= len(motion) - 1 + 3 * statistics.cuts  # a cut divides one step at least
     if name == "slider-crank":
-        motion = with_states(motion, states)  # equal steps do not give the work of its drive in divided ones
+        of_all = with_states(motion, states).energy()
+        assert motion.energy().work[-1] == pytest.approx(of_all.work[-1], rel=1e-9)
     after_the_pulse = motion[2:] if name == "flying beam" else motion
     rise, fall = largest_changes(after_the_pulse)
     assert rise < 0.02
@@ -166,3 +168,24 @@ def test_a_motion_that_bends_elements_too_far_ends_with_the_beam_that_needs_more
         bf.simulate(model, 3.0, 0.049, file=tmp_path / "strand.h5" if stored else None)
     with pytest.raises(bf.ConvergenceError, match=r"steps of .* s from .* s on; an element of beam 0 is bent"):
         bf.simulate(model, 3.0, 1.5)
+
+
+def test_work_of_divided_steps_is_kept_with_all_that_keeps_rows(tmp_path):
+    options = slider_crank(ELEMENTS["ANCF-CRBF"]) | {"duration": 0.15, "step": 2e-3, "integrator": UNDAMPED}
+    motion, file = bf.simulate(**options), tmp_path / "motion.h5"
+    exchanged = motion.energy().kinetic.max()
+    assert np.ptp(motion.exchanged[:, 0]) > 0.1 * exchanged
+    assert abs(motion.energy().error).max() < 0.02 * exchanged
+    motion.save(file)
+    some = bf.simulate(**options, save_every=5)
+    at_some = bf.simulate(**options, save_at=motion.time[::5])
+    for other, rows in (
+        (bf.load(file), slice(None)),
+        (motion[::5], slice(None, None, 5)),
+        (some, slice(None, None, 5)),
+        (at_some, slice(None, None, 5)),
+    ):
+        np.testing.assert_array_equal(other.exchanged, motion.exchanged[rows])
+    in_file = bf.simulate(**options, file=tmp_path / "running.h5")
+    assert abs(in_file.energy().error).max() < 0.02 * exchanged
+    np.testing.assert_array_equal(bf.load(tmp_path / "running.h5").exchanged, in_file.exchanged)

@@ -3,7 +3,7 @@
 import time as clock
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import NamedTuple, cast
 
@@ -12,10 +12,11 @@ import numpy as np
 from beamfem.equations.motion_workspace import motion_workspace
 from beamfem.equations.system import System
 from beamfem.kernels.motion_record import MotionStatistics
+from beamfem.results.energy_balance import unseen
 from beamfem.results.solution_checks import advice
 from beamfem.solve.motion.compiled_steps import CompiledSteps, StepsInCalls
 from beamfem.solve.motion.constraints import stopped_by_conditions
-from beamfem.solve.motion.energy_judgement import CHUNK, EnergyJudge
+from beamfem.solve.motion.energy_judgement import CHUNK, EnergyJudge, motion_of
 from beamfem.solve.motion.energy_momentum import ConservingSteps, EnergyMomentum
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.generalized_alpha import Scheme, is_scheme
@@ -33,21 +34,26 @@ _REFUSED = "changes the energy by more than work and damping explain"
 
 
 class Rows(NamedTuple):
-    """States (m + 1, 3, n) at the ends of m steps, and rotations (m + 1, pairs) [rad] that are counted."""
+    """States (m + 1, 3, n) at the ends of m steps, and rotations (m + 1, pairs) [rad] that are counted.
+
+    exchanged (m + 1, 2): see `Solution`.
+    """
 
     states: np.ndarray
     rotations: np.ndarray
+    exchanged: np.ndarray
 
     @classmethod
     def empty(cls, steps: int, state: np.ndarray, rotations: np.ndarray) -> "Rows":
         """Return rows for a number of steps, of which the first one is a state (4, n)."""
-        result = cls(np.empty((steps + 1, 3, state.shape[1])), np.empty((steps + 1, len(rotations))))
-        result.states[0], result.rotations[0] = state[:3], rotations
+        shapes = ((3, state.shape[1]), (len(rotations),), (2,))
+        result = cls(*(np.empty((steps + 1, *shape)) for shape in shapes))
+        result.states[0], result.rotations[0], result.exchanged[0] = state[:3], rotations, 0.0
         return result
 
     def between(self, first: int, last: int) -> "Rows":
         """Return the rows from one to another; they share memory."""
-        return Rows(self.states[first : last + 1], self.rotations[first : last + 1])
+        return Rows(*(values[first : last + 1] for values in self))
 
 
 @dataclass(frozen=True)
@@ -75,8 +81,8 @@ class StepCutter:
     pairs (m, 2): see `full_turns.rotation_pairs`; end [s]: of the motion; size: of a call of compiled code, in steps,
     which grows up to `largest`; judge: of energies, if there is one; relaxed: whether a motion starts with mean
     accelerations, see `initial_acceleration`; cuts: how many times steps were redone; further: how many steps more
-    than without cuts there are; why: the reason of a failure; stopped: whether the motion was stopped; memory: of an
-    integrator with steps of its own.
+    than without cuts there are; exchanged (2,) [J]: see `Solution`; why: the reason of a failure; stopped: whether the
+    motion was stopped; memory: of an integrator with steps of its own.
     """
 
     system: System
@@ -90,6 +96,7 @@ class StepCutter:
     relaxed: bool
     cuts: int = 0
     further: int = 0
+    exchanged: np.ndarray = field(default_factory=lambda: np.zeros(2))
     why: str = ""
     stopped: bool = False
     memory: Memory | None = None
@@ -189,6 +196,7 @@ class StepCutter:
         count, which = len(rows.states) - 1, slice(first, first + len(rows.states) - 1)
         loads_at = np.append(part.times[1:-1], part.loads_to)[which]
         saving = Saving(rows.states, 1, 1, self.pairs, rotations, rows.rotations)
+        rows.exchanged[:] = self.exchanged
         done = motion.advance(state, prescribed[which], loads_at, saving)
         if motion.broken:
             return done, None
@@ -234,18 +242,23 @@ class StepCutter:
         done = self.take(shorter, given, state, rotations, rows, level=level + 1, jumps=jumps)
         good, complete = done // PARTS, done == PARTS * count
         if complete or good > window.kept:
-            ends = slice(PARTS, PARTS * good + 1, PARTS)
-            window.rows.states[1 : good + 1], window.rows.rotations[1 : good + 1] = (
-                rows.states[ends],
-                rows.rotations[ends],
-            )
+            taken = rows.between(0, PARTS * good)
+            taken.exchanged[::PARTS] += self._unseen(shorter, taken.states)
+            for own, values in zip(window.rows, taken, strict=True):
+                own[1 : good + 1] = values[PARTS::PARTS]
+        good = good if complete else max(good, window.kept)
+        self.exchanged = window.rows.exchanged[good].copy()
         if not complete:
-            good = max(good, window.kept)
             state[:3], rotations[:] = window.rows.states[good], window.rows.rotations[good]
             return good
         self.further += (PARTS - 1) * count
         self.change_size(shorter, state)
         return good
+
+    def _unseen(self, shorter: Stretch, states: np.ndarray) -> np.ndarray:
+        """Return what steps of states (m + 1, 3, n) exchange beyond what every fourth row tells (m / 4 + 1, 2) [J]."""
+        times = np.concatenate([[shorter.loads_from], shorter.times[1:-1], [shorter.loads_to]])
+        return unseen(motion_of(self.system, times[: len(states)], states), PARTS)
 
     def _put_onto_conditions(self, shorter: Stretch, state: np.ndarray) -> None:
         """Put the rates of a state (4, n) onto the conditions of joints, before shorter steps.

@@ -22,6 +22,7 @@ from beamfem.solve.accuracy.coarse_mesh import warned_of_coarse_motion
 from beamfem.solve.accuracy.quantity_change import Quantity
 from beamfem.solve.motion.consistent_rows import finished_rows
 from beamfem.solve.motion.constraints import change_of_velocity, impact, require_met, stopped_by_conditions
+from beamfem.solve.motion.cut_steps import Rows
 from beamfem.solve.motion.error_control import march_to_tolerance
 from beamfem.solve.motion.events import Event
 from beamfem.solve.motion.initial_velocity import put_onto_supports, require_on_supports, start_velocity
@@ -204,14 +205,12 @@ def simulate(
 
         return into_file(plan, state, turned, file)
     rows, pairs = -(-(len(times) - 1) // every) + 1, model.numbered.rotation_pairs
-    table = np.empty((rows, 3, model.size))
-    record = Record(table, every, MotionStatistics(), pairs, np.empty((rows, len(pairs))), plan.live_view())
-    record.states[0], record.rotations[0] = state[:3], turned
+    record = Record(Rows.empty(rows - 1, state, turned), every, MotionStatistics(), pairs, plan.live_view())
     record.show(0.0, state[:3])
-    last = Last((0, state[:3].copy(), record.rotations[0].copy()))
+    last = Last((0, state[:3].copy(), turned.copy(), np.zeros(2)))
     saved = plan.saved_rows() if collects else None
     if saved is not None:
-        saved.begin(state[:3], record.rotations[0])
+        saved.begin(state[:3], turned)
 
     def found(complete: bool = False) -> Solution | None:
         if saved is not None:
@@ -240,7 +239,7 @@ def _collected(
     """Return the rows that were saved, if there are any; done: whole steps of a fixed size; complete: whether all."""
     if not saved.times:
         return None
-    times, states, turned, events = saved.take_out(0)
+    times, (states, turned, exchanged), events = saved.take_out(0)
     if saved.stopped:  # steps are taken some at a time
         done = min(done, int(np.ceil(times[-1] / plan.rows_at - 1e-9)))
     steps, fixed = record.further + done, plan.settings.tolerance is None
@@ -248,20 +247,23 @@ def _collected(
     ended, rule = (_ended(plan, done, unresolved), plan.rule) if fixed else (f"{steps} steps", ())
     summary = Statistics(record.statistics.iterations, steps, record.cuts, ended, status, rule=rule)
     p, v, a = states.swapaxes(0, 1)
-    return Solution(saved.system.model, False, times, p, v, a, summary, turned=turned, events=events)
+    others: dict[str, Any] = {"turned": turned, "exchanged": exchanged, "events": events}
+    return Solution(saved.system.model, False, times, p, v, a, summary, **others)
 
 
 def _solution(plan: MotionPlan, record: Record, last: Last, unresolved: list[str]) -> Solution:
-    system, times, (done, state, last_rotations) = plan.system, plan.times, last.step
+    system, times, (done, *of_last) = plan.system, plan.times, last.step
     stored_steps = np.append(np.arange(0, done, record.every), done)
-    states, rotations = record.states[: len(stored_steps)], record.rotations[: len(stored_steps)]
+    rows = record.rows.between(0, len(stored_steps) - 1)
     if done % record.every:
-        states[-1], rotations[-1] = state, last_rotations
+        for own, values in zip(rows, of_last, strict=True):
+            own[-1] = values
     status = Status.COMPLETED if done == len(times) - 1 else Status.STOPPED
     taken, ended = done + record.further, _ended(plan, done, unresolved)
     summary = Statistics(record.statistics.iterations, taken, record.cuts, ended, status, rule=plan.rule)
-    p, v, a = finished_rows(system, times[stored_steps].tolist(), states).swapaxes(0, 1)
-    return Solution(system.model, False, times[stored_steps], p, v, a, summary, turned=rotations)
+    p, v, a = finished_rows(system, times[stored_steps].tolist(), rows.states).swapaxes(0, 1)
+    others: dict[str, Any] = {"turned": rows.rotations, "exchanged": rows.exchanged}
+    return Solution(system.model, False, times[stored_steps], p, v, a, summary, **others)
 
 
 def _ended(plan: MotionPlan, done: int, unresolved: list[str]) -> str:

@@ -221,8 +221,13 @@ class EnergyJudge:
         self._parts = [(min(low, *own), max(high, *own)) if own else (low, high) for (low, high), own in known]
 
     def _solution(self, times: np.ndarray, states: np.ndarray) -> Solution:
-        p, v, a = on_conditions(self._system, states.copy()).swapaxes(0, 1)
-        return Solution(self._system.model, False, times, p, v, a, Statistics(0, 0, 0, ""))
+        return motion_of(self._system, times, states)
+
+
+def motion_of(system: System, times: np.ndarray, states: np.ndarray) -> Solution:
+    """Return states p, p', p'' (rows, 3, n) of steps, put onto the conditions of joints, as a motion."""
+    p, v, a = on_conditions(system, states.copy()).swapaxes(0, 1)
+    return Solution(system.model, False, times, p, v, a, Statistics(0, 0, 0, ""))
 
 
 def _adjacent(chunks: list[tuple[int, int]]) -> list[list[tuple[int, int]]]:

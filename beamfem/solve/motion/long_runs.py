@@ -25,7 +25,7 @@ from beamfem.public_names import public
 from beamfem.results.solution import Solution
 from beamfem.results.solution_checks import warned, warned_motion
 from beamfem.results.status import Statistics, Status
-from beamfem.solve.motion.cut_steps import StepCutter, keep_momentum
+from beamfem.solve.motion.cut_steps import Rows, StepCutter, keep_momentum
 from beamfem.solve.motion.energy_judgement import CHUNK
 from beamfem.solve.motion.error_control import Reached, march_to_tolerance
 from beamfem.solve.motion.events import Event
@@ -44,20 +44,22 @@ _COORDINATES = 500_000  # times steps of a section, at most
 _BESIDE = 20  # steps on both sides of a section on which prescribed coordinates in it depend
 _SECONDS = 1.0  # between writing
 _BYTES = 2**22  # of rows that wait to be written
+_OF_STATE = ("state", "rotations", "exchanged", "values", "counts")
 
 
 @dataclass(frozen=True)
 class Checkpoint:
     """What a motion goes on from.
 
-    reached: see `error_control`; state (4, n); rotations (m,) [rad]; values (k,): of the functions of events; counts:
-    iterations, cuts, further steps, rows and events so far; ended: whether an event has ended the motion; judge and
-    memory: what the judge of energies and an integrator keep.
+    reached: see `error_control`; state (4, n); rotations (m,) [rad]; exchanged (2,) [J]: see `Solution`; values (k,):
+    of the functions of events; counts: iterations, cuts, further steps, rows and events so far; ended: whether an event
+    has ended the motion; judge and memory: what the judge of energies and an integrator keep.
     """
 
     reached: Reached
     state: np.ndarray
     rotations: np.ndarray
+    exchanged: np.ndarray
     values: np.ndarray
     counts: np.ndarray
     ended: bool
@@ -69,7 +71,7 @@ class Checkpoint:
         where = self.reached
         return {
             "reached": np.array([where.time, where.step, where.count, where.saved, self.ended], dtype=float),
-            **{name: getattr(self, name) for name in ("state", "rotations", "values", "counts")},
+            **{name: getattr(self, name) for name in _OF_STATE},
             **{f"judge_{name}": np.asarray(values) for name, values in self.judge.items()},
             **{f"memory_{name}": np.asarray(values) for name, values in self.memory.items()},
         }
@@ -82,10 +84,10 @@ class Checkpoint:
             {name.removeprefix(prefix): values for name, values in arrays.items() if name.startswith(prefix)}
             for prefix in ("judge_", "memory_")
         )
-        state, rotations, values, counts = (arrays[name] for name in ("state", "rotations", "values", "counts"))
-        return cls(
-            Reached(time, step, int(many), allowed), state, rotations, values, counts, bool(ended), judge, memory
-        )
+        known = {"exchanged": np.zeros(2), **arrays}  # older files do not have it
+        of_state: dict[str, Any] = {name: known[name] for name in _OF_STATE}
+        reached = Reached(time, step, int(many), allowed)
+        return cls(reached, ended=bool(ended), judge=judge, memory=memory, **of_state)
 
 
 def into_file(plan: MotionPlan, state: np.ndarray, rotations: np.ndarray, file: str | PathLike[str]) -> Solution:
@@ -95,7 +97,8 @@ def into_file(plan: MotionPlan, state: np.ndarray, rotations: np.ndarray, file: 
     first = saved.take_out(0)
     counts = np.array([0, 0, 0, len(first[0]), 0])
     values = np.array(saved.watch.values)
-    begin = Checkpoint(Reached(), state, rotations, values, counts, False, _cutter(plan, state).judged(), {})
+    judged = _cutter(plan, state).judged()
+    begin = Checkpoint(Reached(), state, rotations, np.zeros(2), values, counts, False, judged, {})
     names = [event.name for event in settings.events]
     statistics = _statistics(plan, begin, False)
     create = created(
@@ -279,7 +282,8 @@ def _section(
     )
     memory = {} if cutter.memory is None else {"p": cutter.memory.p, **cutter.memory.kept}
     values = np.array(saved.watch.values)
-    return None, Checkpoint(reached, state, rotations, values, counts, saved.stopped, cutter.judged(), memory)
+    of_state = (state, rotations, cutter.exchanged, values, counts)
+    return None, Checkpoint(reached, *of_state, saved.stopped, cutter.judged(), memory)
 
 
 def _fixed_steps(
@@ -336,7 +340,8 @@ def _steps(plan: MotionPlan) -> int:
 def _record(plan: MotionPlan, statistics: MotionStatistics) -> Record:
     """Return a record without rows."""
     pairs, size = plan.system.model.numbered.rotation_pairs, plan.system.model.size
-    return Record(np.empty((0, 3, size)), 1, statistics, pairs, np.empty((0, len(pairs))))
+    none = Rows(np.empty((0, 3, size)), np.empty((0, len(pairs))), np.empty((0, 2)))
+    return Record(none, 1, statistics, pairs)
 
 
 def _cutter(plan: MotionPlan, state: np.ndarray, checkpoint: Checkpoint | None = None) -> StepCutter:
@@ -347,6 +352,7 @@ def _cutter(plan: MotionPlan, state: np.ndarray, checkpoint: Checkpoint | None =
         cutter.size = cutter.largest = _steps(plan)
     if checkpoint is not None:
         cutter.cuts, cutter.further = checkpoint.counts[1:3].tolist()
+        cutter.exchanged = checkpoint.exchanged
         if cutter.judge is not None and checkpoint.judge:
             cutter.judge.recall(checkpoint.judge)
         memory = dict(checkpoint.memory)

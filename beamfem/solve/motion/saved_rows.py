@@ -15,11 +15,10 @@ from beamfem.solve.motion.events import Watch
 
 @dataclass
 class SavedRows:
-    """Times, states (3, n) and rotations (m,) [rad] of the rows so far, and events.
+    """Times, states (3, n), rotations (m,) [rad] and exchanged energies (2,) [J] of the rows so far, and events.
 
-    at (k,) [s]: times of rows, ascending, None for a row at the end of every step; smooth: see
-    `between`; stopped: whether
-    an event has stopped the motion.
+    at (k,) [s]: times of rows, ascending, None for a row at the end of every step; smooth: see `between`; stopped:
+    whether an event has stopped the motion.
     """
 
     system: System
@@ -30,6 +29,7 @@ class SavedRows:
     times: list[float] = field(default_factory=list)
     states: list[np.ndarray] = field(default_factory=list)
     rotations: list[np.ndarray] = field(default_factory=list)
+    exchanged: list[np.ndarray] = field(default_factory=list)
     stopped: bool = field(default=False, init=False)
 
     @property
@@ -42,6 +42,7 @@ class SavedRows:
         self.watch.begin(0.0, state)
         if self.at is None or self.at[0] == 0.0:
             self.times, self.states, self.rotations = [0.0], [state.copy()], [rotations.copy()]
+            self.exchanged = [np.zeros(2)]
 
     def keep(self, times: np.ndarray, rows: Rows) -> None:
         """Take steps that end at times (m + 1,) [s], with the rows at these; the first row is known already."""
@@ -59,22 +60,21 @@ class SavedRows:
             self.times += times[1:].tolist()
             self.states += list(rows.states[1:].copy())
             self.rotations += list(rows.rotations[1:].copy())
+            self.exchanged += list(rows.exchanged[1:].copy())
         else:
             self._keep_at(times, rows, self._inside(times, float(times[-1])))
 
-    def take_out(self, before: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[Occurrence, ...]]:
-        """Return and forget times (k,), states (k, 3, n), rotations (k, m) and events.
-
-        before: number of rows that were taken out.
-        """
+    def take_out(self, before: int) -> tuple[np.ndarray, Rows, tuple[Occurrence, ...]]:
+        """Return and forget times (k,), rows (k,) and events; before: number of rows that were taken out."""
         times, found = np.array(self.times), self.watch.found
         rows = before + np.searchsorted(times, [time for _, time in found])
         events = tuple(Occurrence(*each, row) for each, row in zip(found, rows.tolist(), strict=True))
         states = np.array(self.states).reshape(len(times), 3, self.system.model.size)
         states = finished_rows(self.system, self.times, states)
         rotations = np.array(self.rotations).reshape(len(times), len(self.pairs))
-        self.times, self.states, self.rotations, self.watch.found = [], [], [], []
-        return times, states, rotations, events
+        exchanged = np.array(self.exchanged).reshape(len(times), 2)
+        self.times, self.states, self.rotations, self.exchanged, self.watch.found = [], [], [], [], []
+        return times, Rows(states, rotations, exchanged), events
 
     def _inside(self, times: np.ndarray, end: float) -> np.ndarray:
         """Return the times of rows [s] in steps that end at times (m + 1,) [s], up to an end [s]."""
@@ -89,6 +89,7 @@ class SavedRows:
             self.times += at.tolist()
             self.states += list(rows.states[ends])
             self.rotations += list(rows.rotations[ends])
+            self.exchanged += list(rows.exchanged[ends])
             return
         for time, state in zip(at.tolist(), between(self.system, times, rows.states, at, self.smooth), strict=True):
             before = max(int(np.searchsorted(times, time, side="left")) - 1, 0)
@@ -97,3 +98,4 @@ class SavedRows:
             self.times.append(time)
             self.states.append(state)
             self.rotations.append(turned)
+            self.exchanged.append(rows.exchanged[before].copy())

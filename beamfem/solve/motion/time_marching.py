@@ -27,15 +27,14 @@ _AFTER_JUMP = 4 * CHUNK  # steps of the first call if loads act at points: energ
 class Record:
     """Stored states (rows, 3, n) of every n-th whole step, and of the last one in the row after them.
 
-    pairs (m, 2): see `full_turns.rotation_pairs`; rotations (rows, m) [rad]:
-    of the stored states; show: shows states (3, n) at times [s]; cuts, further: see `StepCutter`.
+    pairs (m, 2): see `full_turns.rotation_pairs`; show: shows states (3, n) at times [s]; cuts, further: see
+    `StepCutter`.
     """
 
-    states: np.ndarray
+    rows: Rows
     every: int
     statistics: MotionStatistics
     pairs: np.ndarray
-    rotations: np.ndarray
     show: Callable[[float, np.ndarray], None] = lambda time, state: None
     cuts: int = 0
     further: int = 0
@@ -43,16 +42,16 @@ class Record:
 
 @dataclass
 class Last:
-    """The last whole step that was completed: its number, state (3, n) and rotations (m,) [rad]."""
+    """The last whole step that was completed: its number, state (3, n), rotations (m,) [rad] and exchanged (2,) [J]."""
 
-    step: tuple[int, np.ndarray, np.ndarray]
+    step: tuple[int, np.ndarray, np.ndarray, np.ndarray]
     _spare: np.ndarray | None = None
 
-    def reach(self, done: int, state: np.ndarray, rotations: np.ndarray) -> None:
+    def reach(self, done: int, state: np.ndarray, rotations: np.ndarray, exchanged: np.ndarray) -> None:
         """Record another step by a single assignment, so that the record is complete even after an interruption."""
         before, buffer = self.step[1], np.empty_like(state) if self._spare is None else self._spare
         buffer[:] = state
-        self.step = done, buffer, rotations.copy()
+        self.step = done, buffer, rotations.copy(), exchanged.copy()
         self._spare = before
 
 
@@ -84,7 +83,7 @@ def march(
     prescribed (m + 1, 3, nh): see `prescribed_motion`, at the ends of all steps; last: updated after each step; saved:
     takes all steps. Return where and why it failed, or None.
     """
-    row, rotations = 0, record.rotations[0].copy()
+    row, rotations = 0, record.rows.rotations[0].copy()
     cutter = cutter_of(system, integrator, parts, state, record)
     with progress("time [s]", float(parts[-1].times[-1])) as report:
         for number, part in enumerate(parts):
@@ -104,12 +103,12 @@ def march(
                 if not part.whole or len(rows.states) == 1:
                     return stop
                 _store(record, rows, first + done - len(rows.states) + 1)
-                last.reach(first + done, rows.states[-1], rows.rotations[-1])
+                last.reach(first + done, *(values[-1] for values in rows))
                 report(float(part.times[done]))
                 record.show(float(part.times[done]), rows.states[-1])
                 return stop
 
-            table = Rows(record.states, record.rotations).between(first, first + steps) if direct else None
+            table = record.rows.between(first, first + steps) if direct else None
             if not part.whole:
                 table = Rows.empty(steps, state, rotations)
             done = cutter.take(part, prescribed[row + 1 : row + steps + 1], state, rotations, table, reached)
@@ -119,11 +118,10 @@ def march(
             if done < steps:
                 return Failure(float(part.times[done]), float(part.times[done + 1]), cutter.why)
             if part.ends_whole and not part.whole:
-                last.reach(first + 1, state[:3], rotations)
+                last.reach(first + 1, state[:3], rotations, cutter.exchanged)
                 if (first + 1) % record.every == 0:
-                    record.states[(first + 1) // record.every], record.rotations[(first + 1) // record.every] = (
-                        last.step[1:]
-                    )
+                    for own, values in zip(record.rows, last.step[1:], strict=True):
+                        own[(first + 1) // record.every] = values
     return None
 
 
@@ -133,7 +131,8 @@ def _store(record: Record, rows: Rows, first: int) -> None:
         inside = np.arange(-first % record.every, len(rows.states), record.every)
         inside = inside[inside > 0]
         stored = (first + inside) // record.every
-        record.states[stored], record.rotations[stored] = rows.states[inside], rows.rotations[inside]
+        for own, values in zip(record.rows, rows, strict=True):
+            own[stored] = values[inside]
 
 
 def cutter_of(
@@ -165,7 +164,7 @@ def cutter_of(
 
 def _kept(record: Record, done: int, part: Stretch) -> np.ndarray | None:
     """Return the row (3, n) that was stored at the beginning of a stretch, if there is one."""
-    return record.states[done // record.every] if part.begins_whole and done % record.every == 0 else None
+    return record.rows.states[done // record.every] if part.begins_whole and done % record.every == 0 else None
 
 
 def _keeps_rates(scheme: Scheme) -> bool:

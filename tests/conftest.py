@@ -19,6 +19,8 @@ COORDINATES = (Gradients(), Rotation(), ShearFree(True), ShearFree(False))
 FORCES = (bf.ContinuumMechanics(), bf.ContinuumMechanics(True), bf.SplitContinuum(), bf.ElasticLine(), bf.Structural())
 
 
+_MANY = 4  # cases of a test
+
 # the same examples every time: few of them, many in the slow verification
 _ALWAYS = {"derandomize": True, "deadline": None, "database": None, "suppress_health_check": tuple(HealthCheck)}
 settings.register_profile("few", max_examples=8, **_ALWAYS)
@@ -33,20 +35,27 @@ def pytest_configure(config):
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Leave two of three elements of tests over all of them to the slow verification, other ones in each test.
+    """Leave cases of tests with many cases to the slow verification: other ones in each test.
 
-    Each element is in a third of the tests, and in all where tangents are compared with differences.
+    Of tests over all elements a quarter of these stays, of others with four cases or more a half; all cases stay where
+    tangents are compared with differences, in tests of pages and commands, and where some are marked as slow already.
     """
-    numbers = defaultdict(dict)
+    cases = defaultdict(list)
     for item in items:
-        indices = item.callspec.indices if hasattr(item, "callspec") else {}
-        if "element" in indices and item.path.name != "test_kernels.py":
-            numbers[item.function][item] = indices["element"]
-    for function, of_items in numbers.items():
-        if len(set(of_items.values())) >= len(USUAL):
-            for item, number in of_items.items():
-                if (number + crc32(function.__name__.encode())) % 3:
-                    item.add_marker(pytest.mark.slow)
+        if hasattr(item, "callspec") and item.path.name != "test_kernels.py":
+            cases[item.function].append(item)
+    for function, of_function in cases.items():
+        elements = {
+            item: item.callspec.indices["element"] for item in of_function if "element" in item.callspec.indices
+        }
+        over_elements = len(set(elements.values())) >= len(USUAL)
+        few = len(of_function) < _MANY or of_function[0].path.parent.name == "cli"
+        if not over_elements and (few or any(item.get_closest_marker("slow") for item in of_function)):
+            continue
+        number = elements if over_elements else {item: place for place, item in enumerate(of_function)}
+        for item in of_function:
+            if (number[item] + crc32(function.__name__.encode())) % (4 if over_elements else 2):
+                item.add_marker(pytest.mark.slow)
 
 
 def combinations():

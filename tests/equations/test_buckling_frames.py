@@ -167,6 +167,7 @@ def test_a_path_that_is_lost_at_once_hands_back_its_start_as_stopped(monkeypatch
     assert caught.value.solution.load_factor.tolist() == [0.0]
 
 
+@pytest.mark.slow
 @mostly_slow(("seed", "points"), [(177, 100), (582, 60)], quick=(1,))
 @pytest.mark.parametrize("half_width", [64, -1], ids=["band", "sparse"])
 def test_a_tie_under_a_large_load_has_the_limit_point_of_its_path(widest_band, seed, points, half_width):
@@ -320,6 +321,7 @@ def test_buckling_is_found_where_the_iteration_does_not_converge(monkeypatch, el
     assert found.linearised == pytest.approx(exact.linearised, rel=1e-8)
 
 
+@pytest.mark.slow
 @mostly_slow("led", [0.005, 0.01, 0.02], quick=(1,))
 def test_a_search_that_finds_the_same_place_again_ends(led):
     """It went on for ever: behind a step onto another path the tangent seemed to change wherever it was looked."""

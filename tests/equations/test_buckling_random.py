@@ -10,6 +10,7 @@ from beamfem.linalg import eigenpairs
 from beamfem.solve.stability import linearised
 
 
+@pytest.mark.slow
 @mostly_slow("seed", [107, 123, 147], quick=(2,))
 def test_a_search_ends_where_the_beam_would_be_turned_inside_out(seed):
     """Arches that are led far away from their supports, whose stable path was said to be lost there."""

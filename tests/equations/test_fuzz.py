@@ -13,6 +13,7 @@ def unexplained(outcomes):
     return "\n".join(f"seed {found.seed}: {found.verdict}: {found.said}" for found in outcomes if found.unexplained)
 
 
+@pytest.mark.slow
 def test_a_few_random_models_end_right_or_in_a_named_error():
     outcomes = [judged(seed, FEW) for seed in (*range(QUICK), *range(MANY, MANY + QUICK))]
     assert not unexplained(outcomes), unexplained(outcomes)

@@ -97,6 +97,7 @@ def test_the_tangent_is_the_derivative_of_the_forces_of_a_step(element, law, rng
         assert tangent[:, column] == pytest.approx(slope, rel=1e-6, abs=1e-6 * np.abs(tangent).max())
 
 
+@pytest.mark.slow
 @mostly_slow("element", NEW, quick=(1,), **ids)
 def test_a_motion_that_yields_is_that_of_other_elements(element):
     """Displacement and dissipation of CRBF(order=2) on a fine mesh; what is dissipated is missed by the rest."""
@@ -184,6 +185,7 @@ def test_slender_arms_yield_as_others_do(element, slenderness):
     assert tips[1] == pytest.approx(tips[0], rel=5e-4)  # 32 elements with a linear director: 3e-4
 
 
+@pytest.mark.slow
 def test_elements_of_all_kinds_share_a_model():
     """Arms of all elements in one model yield as each alone: each block has its history and its points."""
     beams = [bf.Beam(bf.Line((0, y), (1, y)), 4, element, YIELDING) for y, element in enumerate(TAKEN)]

@@ -61,6 +61,7 @@ def test_modes_do_not_know_where_and_how_a_model_is_drawn(recipe, view):
     np.testing.assert_allclose(other.frequencies, one.frequencies, rtol=1e-7)
 
 
+@pytest.mark.slow
 @given(recipes(load_kinds=("force", "line"), followers=False, led=False, axis_kinds=("line",), most=2), views())
 def test_buckling_does_not_know_where_and_how_a_model_is_drawn(recipe, view):
     found = []

@@ -159,6 +159,7 @@ def critical_speeds(radius, count):
     return 1.0 / np.sqrt(squares[::-1][:count])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("radius", [1.0, 2.0])
 def test_a_cantilever_that_points_inwards_buckles_at_a_critical_speed(radius):
     """The load factor multiplies the square of the speed."""

@@ -235,6 +235,7 @@ def test_the_limit_point_of_a_deep_arch_is_found_from_any_load(load):
     assert caught.value.load_factor == pytest.approx(traced.limit_points[0].load_factor, rel=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:1 of:beamfem.UnstableWarning")  # a row within 1e-9 of the point where paths meet
 @pytest.mark.parametrize("side", [1.0, -1.0])
 @mostly_slow("steps", [1, 2, 5, 10, 50], quick=(1,))

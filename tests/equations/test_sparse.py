@@ -163,6 +163,7 @@ def test_negative_pivots_are_the_negative_eigenvalues(force_sparse, size, seed):
     assert (expected > 0) == (size > 0.0)
 
 
+@pytest.mark.slow
 def test_a_wide_lattice_stretches_like_bars():
     """Without diagonals each column carries its own force and moves by P H / (E A); the rest is not strained."""
     model, ends = grid(24, 24, diagonals=False, force=(0.0, 50.0), supports=bf.Clamp)

@@ -162,6 +162,7 @@ def test_a_number_of_thousands_of_digits_in_a_model_file_is_named(tmp_path):
     assert (done.exit_code, "a number cannot be read" in done.stderr) == (2, True)
 
 
+@pytest.mark.slow
 def test_a_model_file_with_a_long_table_is_read_in_time(tmp_path):
     """Each item was looked for from the first line: a million took minutes, and this a minute."""
     (tmp_path / "x.toml").write_text("x = [\n" + "1,\n" * 200_000 + "]\n")

@@ -75,6 +75,7 @@ def test_a_killed_writer_leaves_the_earlier_file(tmp_path, solution):
     assert np.array_equal(bf.load(path).p, solution.p)
 
 
+@pytest.mark.slow
 def test_flipped_bits_never_load_as_other_numbers(tmp_path, solution):
     path = tmp_path / "good.h5"
     solution.save(path)

@@ -127,6 +127,7 @@ def test_sixty_interrupts_of_a_writer_lose_nothing(name, raising, tmp_path):
     interrupt_at_random(name, tmp_path, raising, 60)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("times", [6, pytest.param(60, marks=pytest.mark.slow)])
 def test_an_interrupted_store_has_all_results_so_far(times, raising, tmp_path):
     result, random, stored = motion(401, 0.0), np.random.default_rng(5), []

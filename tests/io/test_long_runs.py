@@ -223,6 +223,7 @@ def test_a_motion_is_extended_and_the_same_if_it_was_killed_before(how, short, t
     np.testing.assert_array_equal(resumed.time, longer.time)
 
 
+@pytest.mark.slow
 def test_integrators_of_the_package_are_found_in_files_by_a_process_that_has_used_none(tmp_path):
     named = (bf.GeneralizedAlpha(0.5), bf.HHT(-0.1), bf.Newmark(0.3025, 0.6), bf.Trapezoidal(), bf.Midpoint(),
              bf.Gauss(2), bf.Radau(2), bf.EnergyMomentum())  # fmt: skip

@@ -87,6 +87,7 @@ def test_what_is_inside_is_not_refused(ends):
     assert ends["whole 2.5"][1][0] == 2.0
 
 
+@pytest.mark.slow
 def test_a_solve_with_checks_gives_the_same_numbers(ends):
     assert np.allclose(ends["solved"][1], out_of_bounds.solved(), rtol=1e-12, atol=0.0)
 

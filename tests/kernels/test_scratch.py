@@ -55,6 +55,7 @@ def test_what_the_memory_holds_does_not_count(element, height, empty, monkeypatc
     np.testing.assert_array_equal(bf.solve_static(cantilever(element, height)).p[-1], expected)
 
 
+@pytest.mark.slow
 def test_threads_do_not_share_memory(empty):
     expected = {case: bf.solve_static(cantilever(*case)).p[-1] for case in MODELS}
     with ThreadPoolExecutor(4) as pool:

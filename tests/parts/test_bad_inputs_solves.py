@@ -184,6 +184,7 @@ def test_rows_beyond_the_last_end_a_loop(solution):
     assert len(list(solution)) == 2
 
 
+@pytest.mark.slow
 @mostly_slow("modulus", [2e15, 2e31], quick=(1,))
 def test_stiffnesses_too_far_apart_are_named_or_do_no_harm(modulus):
     """A bent cantilever with a rigid end has no critical load; 1e20 to 1 may leave the tangent no digits to tell."""

@@ -162,6 +162,7 @@ def test_energies_are_those_of_the_forces():
             check_connector(part)
 
 
+@pytest.mark.slow
 def test_forces_that_are_no_numbers_end_in_named_errors():
     own = beam()
     with pytest.raises(bf.InputError, match="force or energy of Undefined is not finite near the reference"):

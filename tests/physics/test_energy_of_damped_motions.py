@@ -96,6 +96,7 @@ def test_a_damped_beam_loses_the_energy_that_it_had(element, damping):
     assert np.array_equal(static.dissipated, [0.0, 0.0])
 
 
+@pytest.mark.slow
 def test_what_dampers_dissipate_is_integrated():
     """Beside a section with history, which records what it dissipates itself; in statics nothing has a rate."""
     push = lambda beam: [bf.PointForce(beam.end, (0.0, 5.0))]  # noqa: E731

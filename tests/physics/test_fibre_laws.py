@@ -100,6 +100,7 @@ def restrained(elements, steps):
     return bent.section_forces(beam).normal[-1].mean()
 
 
+@pytest.mark.slow
 @mostly_slow("steps", [1, 2, 5, 10], quick=(1,))
 def test_a_restrained_bar_yields_under_displacement_control(steps):
     # 25692.9 N with 80 elements and 200 steps of fibre_beam.py; four elements resolve the hinges at the clamps coarsely

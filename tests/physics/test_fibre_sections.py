@@ -46,6 +46,7 @@ def test_a_square_bends_beyond_yield_and_springs_back_as_in_the_closed_form():
         assert np.all(errors < (2.5 / points) ** 2)
 
 
+@pytest.mark.slow
 def test_the_work_of_a_cycle_of_loading_is_dissipated_or_stored_as_residual_stress():
     at = np.linspace(0.0, 1.0, 401)
     solution, curvature = bent(bf.Fibres(SQUARE, HARDENING, 20), 60.0, at)

@@ -29,6 +29,7 @@ def swings(modulus, duration=1.0, step=1e-3):
     return motions[0].position(body.points[1]), motions[1].position(beam.end)
 
 
+@pytest.mark.slow
 def test_energies_and_forces_belong_together():
     check_connector(floating(rod(2.1e11), 2))
     check_connector(floating(rod(2.1e11, damping=bf.Rayleigh(stiffness=1e-3)), 2))
@@ -112,6 +113,7 @@ def test_a_slider_crank_has_the_torque_of_the_full_model():
     assert np.abs(small - full).max() < 2e-3 * np.abs(full).max()
 
 
+@pytest.mark.slow
 def test_three_interfaces_masses_and_offsets_are_reduced_with_it():
     """A bent frame with a mass and an eccentric body, held at its first or at its last interface."""
     steel = bf.Material(2.1e11, 0.3, 7850.0)
@@ -148,6 +150,7 @@ def test_a_spinning_eccentric_body_bends_its_arm_outwards():
     assert abs(moved[1]) > 1e-6
 
 
+@pytest.mark.slow
 def test_damping_of_the_beam_is_that_of_its_vibrations_alone():
     damped = floating(rod(2.1e11, damping=bf.Rayleigh(stiffness=1e-3)))
     beam = rod(2.1e11, damping=bf.Rayleigh(stiffness=1e-3))

@@ -52,6 +52,7 @@ def test_small_deflections_of_a_cantilever_under_the_slider(element):
     assert np.ptp(place[:, 0]) > 0.4
 
 
+@pytest.mark.slow
 @mostly_slow("element", ELEMENTS[::2], ids=lambda element: element.name)
 def test_large_deflections_do_not_depend_on_elements_and_are_in_balance(element):
     slider, fine = pushed(bf.CRBF(6), 0.2)

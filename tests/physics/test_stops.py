@@ -113,6 +113,7 @@ def test_a_contact_of_a_few_steps_gives_back_no_more_than_its_restitution(steps)
     assert 0.54 < damped.velocity(thread.start)[-1, 1] < 0.69
 
 
+@pytest.mark.slow
 @mostly_slow("bounce", [{"restitution": 0.6}, {"damping": 0.0}])
 @mostly_slow("axis", [(1.0, 0.0), (1.0, 0.3)], quick=(1,))
 def test_a_slider_that_moves_bounces_off_its_end_stops(bounce, axis):

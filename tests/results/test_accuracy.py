@@ -246,6 +246,7 @@ def test_limit_points_are_as_accurate_as_asked_for(accuracy):
     assert again.model.beams[0].elements == path.model.beams[0].elements
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-6])
 def test_limits_of_a_toggle_are_as_accurate_as_asked_for(accuracy):
     """Williams' toggle, by collocation of the Reissner beam."""
@@ -256,6 +257,7 @@ def test_limits_of_a_toggle_are_as_accurate_as_asked_for(accuracy):
         assert -found.displacement(toggle.beams[0].end)[1] == pytest.approx(deflection, abs=accuracy * 25.886)
 
 
+@pytest.mark.slow
 @mostly_slow("accuracy", [1e-4, 1e-6])
 def test_limits_of_a_deep_arch_are_as_accurate_as_asked_for(accuracy):
     """The clamped-hinged arch of 215 degrees, the elastica by collocation; L / h = 1e4, so that it hardly stretches."""
@@ -279,6 +281,7 @@ def columns(**mesh):
         yield bf.Model([beam], [bf.Clamp(beam.start), *guide], [bf.PointForce(beam.end, (0.0, -force))])
 
 
+@pytest.mark.slow
 @mostly_slow("accuracy", [1e-2, 1e-3, 1e-4, 1e-6], quick=(0, 2))
 def test_critical_points_of_straight_columns_are_found_on_any_mesh(accuracy):
     for fine, model in zip(columns(elements=12, element=bf.CRBF(8)), columns(), strict=True):
@@ -319,6 +322,7 @@ def test_a_branch_starts_at_a_bifurcation_of_a_model_without_elements():
         bf.trace_equilibrium(pressed, end, start=start)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ends", [pytest.param(True, marks=pytest.mark.slow), False])
 @pytest.mark.parametrize("accuracy", [1e-4])
 def test_critical_points_of_shallow_arches_are_as_accurate_as_asked_for(accuracy, ends):
@@ -341,6 +345,7 @@ def test_critical_points_of_shallow_arches_are_as_accurate_as_asked_for(accuracy
     assert found[1] == pytest.approx(found[0], abs=accuracy * np.abs(found[0]).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("element", "elements", "expected"),
     [(bf.CRBF(2), 16, 1.0), (bf.CRBF(3), 4, 0.97), (bf.ANCF(bf.Structural()), 16, 0.75)],

@@ -142,6 +142,7 @@ def require_right(seeds):
     assert sum(good) <= 0.02 * len(good)
 
 
+@pytest.mark.slow
 def test_random_meshes_warn_if_they_are_poor():
     require_right(range(20))
 

@@ -153,6 +153,7 @@ def test_until_stops_where_a_call_fails():
     assert "refined no further: elements=8 failed" in study.curves[0].notes
 
 
+@pytest.mark.slow
 def test_failures_are_named_and_the_others_go_on():
     study = bf.converge(
         failing,

@@ -245,6 +245,7 @@ def require_effective(seeds):
     assert np.mean((ratios > 0.2) & (ratios < 5.0)) >= 0.99
 
 
+@pytest.mark.slow
 def test_random_models_carry_the_errors_of_their_displacements():
     require_effective(range(24))
 

@@ -46,6 +46,7 @@ def test_a_motor_that_prescribes_an_angle_gives_its_torque_times_the_speed():
     assert work == pytest.approx(motion.energy().work, rel=1e-3, abs=1e-4 * work.max())
 
 
+@pytest.mark.slow
 def test_powers_of_loads_and_drag_are_the_rate_of_the_energy():
     """A force that moves along an arm, one at its tip, its weight and its drag."""
     arm = bf.Beam(bf.Line((0, 0), (0.8, 0)), 2, bf.CRBF(3), SQUARE, bf.Material(2e9, 0.3, 1200.0))

@@ -90,6 +90,7 @@ def test_a_picture_is_curved_between_the_stations_of_few_elements():
     assert moment == pytest.approx(5.0 * x * (6.0 - x), abs=1e-4 * 45)
 
 
+@pytest.mark.slow
 def test_rows_that_count_pandas_and_pictures(tmp_path):
     model, beam = simple_beam()
     loads = [bf.PointForce(beam.at(0.5), (0.0, -30.0))]

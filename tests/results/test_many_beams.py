@@ -66,6 +66,7 @@ def test_fields_of_beams_evaluated_together_are_those_of_each(solutions, values,
     assert any(np.isfinite(one).any() for one in each)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("motion", [False, True])
 def test_forces_and_stresses_do_not_depend_on_the_order_in_which_beams_are_asked_for(solutions, motion):
     beams = solutions[motion].model.beams

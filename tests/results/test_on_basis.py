@@ -40,6 +40,7 @@ def test_the_strain_energy_of_a_form_is_that_of_the_result(element):
         assert energy == pytest.approx(solution.energy().strain[row], rel=1e-9, abs=1e-12)
 
 
+@pytest.mark.slow
 @mostly_slow("element", [bf.CRBF(3), bf.ShearRigid(), bf.ANCF(bf.ElasticLine())])
 @mostly_slow("curve", [bf.Line((0, 0), (1, 0)), bf.Arc((0, 0), 1.0, 0.0, 1.0)], quick=(1,))
 def test_integrals_over_the_axis_are_those_of_fine_polygons(element, curve):

@@ -173,6 +173,7 @@ def test_what_acts_beyond_a_cut_is_carried_by_it(element):
         assert found == pytest.approx(exact, abs=2e-3), share[i]
 
 
+@pytest.mark.slow
 @mostly_slow("element", KINDS, quick=(0, 3, 7, 9), ids=identify)
 def test_what_acts_beyond_a_cut_of_a_moving_beam(element):
     """Inertia by differences over neighbouring rows, good to 5e-5: d'Alembert.

@@ -104,6 +104,7 @@ def test_store_is_used_and_failures_are_tried_again(tmp_path):
     assert third.computed == 2
 
 
+@pytest.mark.slow
 def test_store_keeps_every_kind_of_value(tmp_path):
     array = np.linspace(0.0, 1.0, 6).reshape(2, 3) / 3.0
     for value in (1, 0.1, True, float("inf"), {"data": 1.5, "array": array}, array, np.zeros((0, 2), dtype=int)):

@@ -66,6 +66,7 @@ def script(once, tmp_path):
     return partial(run_script, shutil.copytree(once, tmp_path / "copy"))
 
 
+@pytest.mark.slow
 def test_a_changed_constant_of_the_script_is_computed_again(script):
     """The values of E I, by hand: E from 2e11 to 7e10 takes them to 0.35 of what they were."""
     assert script() == (0, pytest.approx(1.0), "")
@@ -77,6 +78,7 @@ def test_a_changed_constant_of_the_script_is_computed_again(script):
     assert script(("E = 2e11", "E = 7e10")) == (0, pytest.approx(0.35), "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("changes", "files", "factor", "names"),
     [

@@ -85,6 +85,7 @@ def alive(number):
         return False
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="tells processes by /proc")
 @mostly_slow("how", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
 def test_a_sweep_that_is_killed_leaves_no_workers(tmp_path, how):
@@ -155,6 +156,7 @@ def test_an_executor_itself_is_refused_with_what_would_be_right():
         bf.sweep(square, x=[1], executor=pool)
 
 
+@pytest.mark.slow
 def test_two_sweeps_write_one_store(tmp_path):
     store = tmp_path / "shared.jsonl"
     script = tmp_path / "one.py"

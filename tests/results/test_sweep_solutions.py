@@ -57,6 +57,7 @@ def test_solutions_are_kept_whole_and_numbers_in_tables(tmp_path, executor):
     assert found.plot() is not None
 
 
+@pytest.mark.slow
 def test_a_store_keeps_solutions_as_files_and_computes_again_what_is_lost(tmp_path):
     store = tmp_path / "sweep.jsonl"
     for function in (named, whole):

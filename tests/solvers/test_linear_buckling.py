@@ -95,6 +95,7 @@ def test_300_random_frames_have_the_linear_buckling_load_of_euler_bernoulli_elem
         compare(seed)
 
 
+@pytest.mark.slow
 @mostly_slow(("seed", "element", "other"), [(72, bf.CRBF(4), bf.CRBF(5)), (228, bf.CRBF(2), bf.CRBF(3))])
 def test_limit_points_of_knee_frames_are_found_where_round_off_exceeds_the_softest_stiffness(seed, element, other):
     """k G A L^2 / E I is 2e10 to 1e11; the loading path was lost beside its limit point, or passed it unseen."""

@@ -152,6 +152,7 @@ def test_frames_are_the_same_turned_mirrored_in_other_units_and_in_another_order
     compare(found(seed), found(seed, VIEWS[seed % len(VIEWS)]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", seeds(2))
 def test_links_are_the_limit_of_stiff_springs(seed):
     """The difference is proportional to the compliance of the spring: two springs are extrapolated to a rigid one.

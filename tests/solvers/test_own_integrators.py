@@ -31,6 +31,7 @@ def test_radau_is_of_third_order(element):
     assert 2.8 < np.log2(ratio) < 3.2
 
 
+@pytest.mark.slow
 @mostly_slow("element", [bf.CRBF(2), bf.ANCF(), bf.BilinearCRBF()], ids=["CRBF(2)", "ANCF", "bilinear"])
 def test_radau_comes_to_where_generalized_alpha_comes(element):
     beam, model = pendulum(element)
@@ -119,6 +120,7 @@ def test_supports_move_a_beam_also_where_they_start_at_once(moves, directions):
     assert own.reaction(beam.start)[-1] == pytest.approx(known.reaction(beam.start)[-1], rel=5e-3, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_a_point_that_goes_along_a_line_carries_its_momentum():
     """The support of a stiff pendulum is led with constant velocity: seen from there, it is at rest or falls."""
     beam, still = pendulum(bf.CRBF(2))
@@ -131,6 +133,7 @@ def test_a_point_that_goes_along_a_line_carries_its_momentum():
     assert along == pytest.approx(motions[0].position(beam.end), abs=1e-9)
 
 
+@pytest.mark.slow
 @mostly_slow("turn", [0.0, 0.3], quick=(1,))
 def test_conditions_of_a_link_hold(turn):
     """The multiplier of a step satisfies the condition at its end; velocities stay along the condition too."""

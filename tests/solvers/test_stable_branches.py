@@ -58,6 +58,7 @@ def test_the_bistable_beam_of_compliant_mechanisms(steps):
         )
 
 
+@pytest.mark.slow
 @mostly_slow("held", [True, False])
 def test_a_path_that_turns_back_where_it_has_long_been_unstable_advises_to_leave_it(held):
     _, centre, model, _ = bistable(0.1, 0.01, [led(0.1, held)])
@@ -71,6 +72,7 @@ def test_a_path_that_turns_back_where_it_has_long_been_unstable_advises_to_leave
     assert solution.reaction(centre)[-1] == pytest.approx(traced.reaction(centre)[-1], rel=1e-6, abs=1e-12)
 
 
+@pytest.mark.slow
 @mostly_slow("rise", [0.02, 0.002, 0.00202, 0.002046], quick=(0, 3))  # the last two once halved their way to the point
 def test_a_branch_is_followed_across_the_point_where_it_merges_into_the_primary_path(rise):
     """The branch of half the bistable beam returned to the path and ended there."""
@@ -265,6 +267,7 @@ def test_a_row_may_lie_on_the_bifurcation_that_is_left(row, options, off):
     assert abs(end) == pytest.approx(abs(expected), rel=1e-6, abs=1e-9)  # either side of a symmetric bifurcation
 
 
+@pytest.mark.slow
 @mostly_slow(("slender", "elements"), [(5, 11), (5, 19), (6, 19), (7, 11)], quick=(0, 2))
 def test_the_way_of_a_table_turns_near_the_end_of_a_step(slender, elements):
     """Steps along the path once became ever shorter towards the kink of the table.

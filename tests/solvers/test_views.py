@@ -142,6 +142,7 @@ def test_a_random_model_has_the_same_answers_in_every_view(check, seed):
         CHECKS[check](recipe, QUICK_VIEWS)
 
 
+@pytest.mark.slow
 @mostly_slow("name", VIEWS, quick=(3,))
 def test_a_tie_pulled_to_twice_its_length_has_one_limit_point_in_every_view(name):
     """Its load is 230 times what bends it by its length: changes of direction were lost beside those of the load."""

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from scipy.linalg import eigh
+from scipy.linalg import eigh, expm
 
 import beamfem as bf
 from beamfem.equations.equations import residual
@@ -222,3 +222,21 @@ def test_bad_input_is_named():
     lifted = model.with_(connectors=[Lifted(BEAM.end)])
     with pytest.raises(bf.InputError, match="at rest only"):
         bf.linearise(lifted, bf.simulate(lifted, duration=0.01, step=1e-3))
+
+
+def test_the_state_space_form_moves_as_the_nonlinear_model_does_after_a_small_step_of_a_load():
+    arm = replace(BEAM, damping=bf.Rayleigh(mass=2.0, stiffness=1e-4))
+    force, clamp, small, times = (
+        bf.PointForce(arm.end, (-200.0, -800.0)),
+        [bf.Clamp(arm.start)],
+        1e-4,
+        np.linspace(0.0, 0.05, 11),
+    )
+    bent = bf.solve_static(bf.Model([arm], clamp, [force]))
+    more = replace(force, vector=tuple((1.0 + small) * np.array(force.vector)))
+    motion = bf.simulate(bf.Model([arm], clamp, [more]), times[-1], tolerance=1e-9, save_at=times, start=bent)
+    a, b, c, _ = bf.linearise(bent.model, bent).state_space([("uy", arm.end)])
+    step = np.vstack([np.hstack([a, small * b]), np.zeros(len(a) + 1)])
+    expected = [(c @ expm(time * step)[:-1, -1])[0] for time in times]
+    moved = motion.displacement(arm.end)[:, 1]
+    assert moved - moved[0] == pytest.approx(expected, abs=1e-3 * np.abs(expected).max())

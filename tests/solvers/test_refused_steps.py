@@ -189,3 +189,11 @@ def test_work_of_divided_steps_is_kept_with_all_that_keeps_rows(tmp_path):
     in_file = bf.simulate(**options, file=tmp_path / "running.h5")
     assert abs(in_file.energy().error).max() < 0.02 * exchanged
     np.testing.assert_array_equal(bf.load(tmp_path / "running.h5").exchanged, in_file.exchanged)
+
+
+@pytest.mark.parametrize("integrator", [None, UNDAMPED, bf.GeneralizedAlpha()], ids=["default", "undamped", "damped"])
+def test_the_balance_of_a_motion_within_a_tolerance_is_that_of_its_rows(integrator):
+    crank = slider_crank(ELEMENTS["ANCF-CRBF"])["model"]
+    motion = bf.simulate(crank, 0.05, tolerance=1e-4, integrator=integrator)
+    energy = motion.energy()
+    assert abs(energy.error).max() < 0.02 * energy.kinetic.max()

@@ -46,10 +46,9 @@ class Rows(NamedTuple):
     @classmethod
     def empty(cls, steps: int, state: np.ndarray, rotations: np.ndarray) -> "Rows":
         """Return rows for a number of steps, of which the first one is a state (4, n)."""
-        shapes = ((3, state.shape[1]), (len(rotations),), (2,))
-        result = cls(*(np.empty((steps + 1, *shape)) for shape in shapes))
-        result.states[0], result.rotations[0], result.exchanged[0] = state[:3], rotations, 0.0
-        return result
+        states, turned = np.empty((steps + 1, 3, state.shape[1])), np.empty((steps + 1, len(rotations)))
+        states[0], turned[0] = state[:3], rotations
+        return cls(states, turned, np.zeros((steps + 1, 2)))
 
     def between(self, first: int, last: int) -> "Rows":
         """Return the rows from one to another; they share memory."""

@@ -94,7 +94,7 @@ def march_to_tolerance(
                     part.loads_from if jumps else time, part.loads_to if last else float(times[-1]),
                 )  # fmt: skip
                 before, turned, rows = state.copy(), rotations.copy(), Rows.empty(steps, state, rotations)
-                counted = cutter.cuts, cutter.further
+                counted = cutter.cuts, cutter.further, cutter.exchanged
                 done = cutter.take(stretch, cutter.prescribed(stretch, size), state, rotations, rows, jumps=jumps)
                 if done < steps:
                     saved.keep(times[: done + 1], rows.between(0, done))
@@ -107,7 +107,7 @@ def march_to_tolerance(
                 best = _SAFETY * size / max(ratio, 1e-4) ** (1.0 / order)
                 if ratio > 1.0 and size > _SHORTEST * duration:
                     state[:], rotations[:] = before, turned
-                    cutter.cuts, cutter.further = counted[0] + 1, counted[1]
+                    cutter.cuts, cutter.further, cutter.exchanged = counted[0] + 1, *counted[1:]
                     record.cuts, step = cutter.cuts, max(best, _SMALLEST * size)
                     count = CHUNK if rule else 2
                     continue
@@ -205,10 +205,11 @@ def _difference(cutter: StepCutter, part: Stretch, state: np.ndarray, rotations:
     """Return the largest difference between two steps, to the last of rows, and one from a state (4, n), per scale."""
     begin, end = float(part.times[0]), float(part.times[-1])
     whole = replace(part, times=np.array([begin, end]), step=end - begin)
-    state, turned, counted = state.copy(), rotations.copy(), (cutter.cuts, cutter.further, cutter.memory)
+    state, turned = state.copy(), rotations.copy()
+    counted = cutter.cuts, cutter.further, cutter.exchanged, cutter.memory
     one, given = Rows.empty(1, state, turned), cutter.prescribed(whole, end - begin)
     done = cutter.take(whole, given, state, turned, one)
-    cutter.cuts, cutter.further, cutter.memory = counted
+    cutter.cuts, cutter.further, cutter.exchanged, cutter.memory = counted
     if done == 0:
         return float(np.inf)
     error = (one.states[1, 0] - rows.states[-1, 0]) / cutter.system.scale

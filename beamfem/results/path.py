@@ -99,7 +99,7 @@ class Path(Solution):
 
     Parameters
     ----------
-    model, static, at, p, v, a, statistics, stability, turned, loaded, events
+    model, static, at, p, v, a, statistics, stability, turned, loaded, events, exchanged
         See `Solution`.
     limit_points : tuple of PathState
         Points at which the load factor has an extremum. The structure may fail before the first of them, by a

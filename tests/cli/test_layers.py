@@ -76,6 +76,7 @@ INSIDE_METHODS = ("mesh", "view", "io", "io/results_hdf5")
 ANALYSES = {
     "model/model.py": ("beamfem.results.imperfection", "beamfem.solve.accuracy.error_estimate"),
     "results/path.py": ("beamfem.solve.paths.path_error",),
+    "solve/modes/modes.py": ("beamfem.solve.motion.consistent_rows",),
     "results/solution.py": (
         "beamfem.solve.stability.stability",
         "beamfem.solve.accuracy.error_estimate",

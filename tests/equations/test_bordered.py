@@ -259,6 +259,7 @@ def test_equilibria_with_connectors_of_one_point_are_those_of_the_sparse_matrix(
     assert np.abs(one.displacement(one.model.beams[0].end)[-1]).max() > 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("own", [bf.SpringDamper, SpringDamper], ids=("compiled", "Python"))
 @mostly_slow("element", KINDS, quick=(0, 2), ids=lambda element: element.name)
 def test_equilibria_with_springs_across_beams_are_those_of_the_sparse_matrix(element, own, monkeypatch):

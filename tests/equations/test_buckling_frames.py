@@ -85,6 +85,7 @@ def pinned_column(degrees):
     return bf.Model([beam], supports, [bf.PointForce(beam.end, tuple(turn @ (-1.0, 0.0)))])
 
 
+@pytest.mark.slow
 @mostly_slow("degrees", [10, 30, 45, 60, 90, 123], quick=(1, 5))
 def test_a_pinned_column_buckles_at_any_angle(degrees):
     """At 1644.7 N, where the path was said to end at 10, 30, 45, 60 and 123 degrees."""
@@ -226,6 +227,7 @@ def test_stability_that_is_lost_and_regained_in_a_step_is_found():
     assert np.diff(plain.load_factors)[0] < 2e-5 * plain.load_factors[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("degrees", [0, 17, 90])
 def test_a_portal_loaded_beside_its_middle_has_a_limit_point(degrees):
     path, upright = loaded_beside_the_middle()

@@ -189,6 +189,7 @@ def test_a_section_that_never_yields_is_the_linear_one():
     assert found[1] == pytest.approx(found[0], rel=1e-7, abs=1e-10)
 
 
+@pytest.mark.slow
 def test_the_work_on_a_frame_that_yields_is_stored_or_dissipated():
     """The trapezoidal rule over the rows is of second order; where it ends depends on no steps."""
     left, ends = [], []

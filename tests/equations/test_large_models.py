@@ -65,6 +65,7 @@ def test_the_order_of_a_lattice_fills_in_no_more_than_that_of_its_coordinates():
     assert factors.lu.nnz < 1.1 * splu(tangent.matrix, **options).nnz
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("columns", [4, 24])
 def test_springs_stand_on_the_diagonal(columns):
     model, ends = grid(columns, columns)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from shooting import Member, solved
+from slow_values import mostly_slow
 
 import beamfem as bf
 from beamfem.equations.system import System
@@ -49,6 +50,7 @@ def strip(elements=8, **end):
 STRIP = member(1.0, 0.0, bf.Rectangle(0.02, 0.002))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("steps", STEPS)
 @pytest.mark.parametrize(("elements", "tolerance"), [(8, 1e-3), (16, 2e-5)])
 def test_a_squeezed_strip_bows_and_is_not_compressed_straight(elements, tolerance, steps):
@@ -84,6 +86,7 @@ def test_a_strip_whose_end_comes_closer_and_turns_by_half_a_turn(aside, steps):
     assert solution.reaction(beam.end)[-1] == pytest.approx(end[3:], rel=2e-3, abs=5e-2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("steps", STEPS)
 @pytest.mark.parametrize("element", [bf.CRBF(3), bf.CRBF(1)], ids=["8 x CRBF(3)", "48 x CRBF(1)"])
 def test_a_portal_with_one_slender_leg_sways_to_its_stable_side(element, steps):
@@ -233,6 +236,7 @@ def pushing_force():
     return solved(conditions, guess)[3]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("steps", [1, 40, 100, 400])
 def test_a_pushed_arch_snaps_aside_and_carries_no_more_than_that(steps):
     beam, model = arch()
@@ -272,7 +276,7 @@ def follower_limit():
 
 
 @pytest.mark.parametrize("steps", STEPS)
-@pytest.mark.parametrize("elements", [8, 16])
+@mostly_slow("elements", [8, 16])
 def test_a_portal_under_a_follower_load_ends_at_its_limit_point(elements, steps):
     """Clamped legs and beam 1 m, 20 x 2 mm steel; (10, -40) E I / L^2 turns with the beam at 0.3 of its length.
 

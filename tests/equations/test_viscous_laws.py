@@ -55,6 +55,7 @@ def test_a_viscous_law_moves_as_a_retardation_time_does(rho):
     assert found[0] == pytest.approx(found[1], abs=0.005 / TIME)
 
 
+@pytest.mark.slow
 @rhos
 @kinds
 def test_a_load_that_jumps_later_is_no_different(section, material, rho):

@@ -148,7 +148,7 @@ def test_an_interrupted_store_has_all_results_so_far(times, raising, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["a.h5", "a.vtkhdf"])
-@mostly_slow("call", [1, 3, 10], quick=(1,))
+@mostly_slow("call", [3, 1, 10])
 def test_a_signal_while_hdf5_writes_is_raised(name, call, raising, tmp_path, monkeypatch):
     write, read, _ = WRITERS[name]
     write(motion(401, 0.0), tmp_path / name)

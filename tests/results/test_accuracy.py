@@ -290,6 +290,7 @@ def test_critical_points_of_straight_columns_are_found_on_any_mesh(accuracy):
         assert found == pytest.approx(exact, abs=accuracy * max(exact))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-4])
 @mostly_slow(("stiffness", "end"), [(1.0, 2.5), (100.0, 20.4)])
 def test_bifurcations_into_waves_shorter_than_the_first_elements_are_found(stiffness, end, accuracy):
@@ -583,6 +584,7 @@ def test_motions_that_an_event_ends_are_compared_up_to_there():
     assert timed.events[0].time == pytest.approx(motion.events[0].time, rel=2e-4)
 
 
+@pytest.mark.slow
 def test_a_quantity_of_a_path_may_be_what_is_accurate():
     toggle = williams_toggle.toggle(None, 1, 1)
 
@@ -647,6 +649,7 @@ def test_modes_about_a_state_are_not_left_on_its_coarse_mesh(given):
     assert precise.frequencies == pytest.approx(exact, rel=1e-7)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("loaded", [True, False])
 def test_linear_models_of_default_elements_are_not_those_of_one_element(loaded):
     beam = auto()

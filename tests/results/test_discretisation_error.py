@@ -87,9 +87,10 @@ def test_results_of_a_bent_cantilever_carry_their_errors(element, elements):
         assert 0.5 < ratio < 2.0, f"{name}: {ratio}"
 
 
-@pytest.mark.parametrize(
+@mostly_slow(
     ("element", "elements"),
     [(bf.CRBF(1), 24), (bf.CRBF(2), 8), (bf.CRBF(3), 4), (bf.CRBF(4), 4), (bf.CRBF(6), 4), (bf.CRBF(8), 4)],
+    quick=(0, 2, 5),
 )
 @mostly_slow("size", [-200.0, 20.0])
 def test_the_default_is_the_largest_error_of_a_position(element, elements, size):

@@ -52,7 +52,7 @@ FIELDS |= {"forces": _all_forces, "stresses": _all_stresses}
 
 
 @mostly_slow("motion", [False, True], quick=(1,))
-@mostly_slow("values", FIELDS.values(), quick=(0, 3, 5), ids=FIELDS)
+@mostly_slow("values", FIELDS.values(), quick=(5,), ids=FIELDS)
 def test_fields_of_beams_evaluated_together_are_those_of_each(solutions, values, motion):
     solution = solutions[motion]
     points = [AxisPoints.spaced(mesh, 1 + number % 2) for number, mesh in enumerate(solution.model.meshes)]

@@ -256,7 +256,7 @@ MADE = [bf.CRBF(3), bf.ANCFCRBF(bf.ElasticLine()), bf.ShearRigid(), bf.CRBF(2, b
 
 
 @mostly_slow("section", SECTIONS, quick=(1, 4))
-@pytest.mark.parametrize("curve", CURVES)
+@mostly_slow("curve", CURVES, quick=(0, 4))
 def test_every_curve_section_and_element_comes_back(tmp_path, curve, section):
     material = STEEL if section in ("tube", "tapered") else None
     chosen = [element for element in MADE if section != "stiffness" or not element.forces.fills_body]

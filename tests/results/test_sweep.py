@@ -61,6 +61,7 @@ def test_every_combination_in_order(executor):
     assert found.computed == 6
 
 
+@pytest.mark.slow
 def test_processes_are_spawned_with_one_thread_each():
     assert bf.sweep(blas_threads, x=[os.getpid()], executor=TWO_PROCESSES).values == (1,)
 

@@ -128,6 +128,7 @@ def same(x):
     return x
 
 
+@pytest.mark.slow
 def test_another_version_of_beamfem_computes_again(tmp_path, monkeypatch):
     assert bf.sweep(same, x=[1.0], store=tmp_path / "s").computed == 1
     assert bf.sweep(same, x=[1.0], store=tmp_path / "s").computed == 0

@@ -166,6 +166,7 @@ def test_links_are_the_limit_of_stiff_springs(seed):
     compare(linked, limit, factor=100.0)
 
 
+@pytest.mark.slow
 @mostly_slow("seed", [1, 3, 5])
 @pytest.mark.parametrize("stiff", [1e4, 1e5])
 def test_linearised_critical_loads_beside_a_very_stiff_spring_are_those_of_a_link(seed, stiff):

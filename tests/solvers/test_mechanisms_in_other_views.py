@@ -112,6 +112,45 @@ def test_mechanisms_are_the_same_rotated_in_other_units_and_in_another_order(see
             np.testing.assert_allclose(two, one, rtol=0.0, atol=accuracy * np.abs(one).max(initial=0.0))
 
 
+def started(how, seed, angle=0.0, units=SI, backwards=False):
+    """Displacements in a motion from a start [m], in the frame of the mechanism, and kinetic energies [J].
+
+    Initial velocities that no link permits; or the first mode about the equilibrium, which bends links at second order.
+    """
+    model, beams = mechanism(seed, angle, units, backwards)
+    c, s = np.cos(angle), np.sin(angle)
+    there, back = np.array([[c, -s], [s, c]]) * units.length, np.array([[c, s], [-s, c]]) / units.length
+    spread, mean = np.split(np.random.default_rng(seed).uniform(-1.0, 1.0, (3, 2)), [2])
+    options = {}
+    if how == "velocity":
+        options["velocity"] = lambda place: tuple(there @ (spread @ (back @ place) + mean[0]))
+    else:
+        undamped = [replace(part, damping=0.0) if hasattr(part, "damping") else part for part in model.connectors]
+        try:
+            rest = bf.solve_static(model)
+        except bf.ConvergenceError:
+            return np.empty(0), np.empty(0)
+        modes = bf.solve_modes(model.with_(connectors=undamped), 1, about=rest)
+        options["start"] = modes.start(0, 0.05 * units.length)
+    motion = bf.simulate(model, 0.02, 1e-3, **options)
+    moved = [motion.displacement(beam.end) @ back.T for beam in beams]
+    return np.array(moved), motion.energy().kinetic / units.of(1, 1)
+
+
+@pytest.mark.filterwarnings("ignore:the initial velocity does not satisfy the conditions:beamfem.EnergyWarning")
+@pytest.mark.filterwarnings("ignore:the energy:beamfem.EnergyWarning")  # steps do not resolve stiff modes
+@pytest.mark.parametrize("how", ["velocity", "mode"])
+@pytest.mark.parametrize("seed", SEEDS)
+def test_motions_from_velocities_and_modes_are_the_same_in_every_view(seed, how):
+    plain = started(how, seed)
+    views = [{"units": Units(1e3)}, {"units": Units(39.37, 0.2248)}, {"backwards": True}]
+    if how == "velocity":  # the sign of a mode is that of a coordinate, which may be one along an axis
+        views.append({"angle": 0.7})
+    for view in views:
+        for one, two, accuracy in zip(plain, started(how, seed, **view), (1e-5, 1e-4), strict=True):
+            np.testing.assert_allclose(two, one, rtol=0.0, atol=accuracy * np.abs(one).max(initial=0.0))
+
+
 @pytest.mark.parametrize("seed", SEEDS)
 def test_damped_modes_are_the_same_rotated_in_other_units_and_in_another_order(seed):
     rates = []

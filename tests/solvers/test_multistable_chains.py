@@ -164,6 +164,7 @@ def test_two_bars_in_series_snap_one_after_the_other_however_little_they_differ(
     require_exact(*bars([(100.0, 1.0, 0.3), (100.0 * (1.0 + apart), 1.0, 0.3)]), 200, complete=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("apart", [0.1, 0.037, 1e-2])
 def test_two_bistable_springs_in_series_snap_one_after_the_other(apart):
     """Found in review: 1 % apart, 2 limit points and 2 bifurcations; others ended at a tangent exactly singular."""

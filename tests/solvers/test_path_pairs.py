@@ -39,6 +39,7 @@ def test_standing_loads_beyond_a_limit_point_say_so(solve):
         solve(bf.Model([left, right], supports, loads, joints))
 
 
+@pytest.mark.slow
 @mostly_slow("steps", [1, 3, 10, 100], quick=(1,))
 @pytest.mark.parametrize("beyond", [1.0001, 1.002, 1.02, 1.1])
 def test_a_limit_point_just_beyond_the_load_is_not_in_its_way(beyond, steps):

@@ -130,6 +130,7 @@ def member(seed, disturbed=0.0):
     return centre, bool(forced), bf.Model([beam], supports, loads)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [*range(4), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(4, 54))])
 def test_bistable_members_go_out_and_back_like_slightly_imperfect_ones(seed):
     found = []
@@ -141,6 +142,7 @@ def test_bistable_members_go_out_and_back_like_slightly_imperfect_ones(seed):
     assert found[0] == pytest.approx(found[1], abs=2e-3 * np.abs(found[1]).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("equal", [True, False])
 @pytest.mark.parametrize("forced", [True, False])
 @pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 14))])
@@ -249,6 +251,7 @@ def arch(rise, elements, load):
     return beam, bf.Model([beam], [bf.Pin(beam.start), bf.Pin(beam.end)], [bf.DistributedLoad(beam, (0.0, -load))])
 
 
+@pytest.mark.slow
 @mostly_slow("off", [0.0, 1e-9, -1e-9, 1e-6], quick=(0, 2))
 @pytest.mark.parametrize("options", [{"unstable": "leave"}, {"snap": "jump"}])
 @pytest.mark.parametrize("row", [0.5, 0.9])

@@ -179,10 +179,10 @@ class LinearModel:
             _refuse(self, whole, np.sqrt(LOSES) * _magnitude(self, fastest, whole), "a mode")
         for rate, x in zip(rates, vectors.T, strict=True):
             require_digits(self, rate, x, 0.0, f"the mode of {rate.imag / (2.0 * np.pi):g} {self.model.unit('Hz')}")
-        elastic = upright(vectors.T @ self.transformation.T)
+        elastic = upright(self.model, vectors.T @ self.transformation.T)
         if np.abs(elastic.imag).max(initial=0.0) <= _REAL * np.abs(elastic).max(initial=0.0):
             elastic = elastic.real
-        shapes, rates = np.concatenate([upright(shapes), elastic]), np.append(np.zeros(rigid), rates)
+        shapes, rates = np.concatenate([upright(self.model, shapes), elastic]), np.append(np.zeros(rigid), rates)
         return Modes(self.model, self.state, rates.imag / (2.0 * np.pi), rates.real, shapes, words)
 
     def floating_body(self) -> FloatingBody:

@@ -6,7 +6,7 @@ from scipy.sparse import csr_array
 from beamfem.equations.equations import linearise_at_rest, predicted_stresses
 from beamfem.equations.redundant_conditions import in_words
 from beamfem.equations.stress_resultants import resultants, strain_group
-from beamfem.equations.system import System
+from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.model import Model
@@ -27,15 +27,17 @@ def largest_translation(model: Model, p: np.ndarray, shape: np.ndarray) -> float
     """Return the largest displacement of a node in a shape (n,), real or complex; where no node moves, 1 rad counts."""
     parts = [np.concatenate([u for _, u in nodal_motion(model, p, part)]) for part in (shape.real, shape.imag)]
     moved = float(np.hypot(*(np.linalg.norm(part, axis=1) for part in parts)).max())
-    largest = float(np.abs(shape).max())
-    return moved if moved > 1e-9 * largest else largest
+    system = system_of(model, static=True)
+    largest = float(np.abs(shape / system.scale).max())
+    return moved if moved > 1e-9 * largest * system.extent else largest
 
 
-def upright(shapes: np.ndarray) -> np.ndarray:
-    """Return shapes (m, n) each with its largest entry positive, real where shapes are complex."""
+def upright(model: Model, shapes: np.ndarray) -> np.ndarray:
+    """Return shapes (m, n) each with its entry that is largest in any units positive, real where shapes are complex."""
     if shapes.size == 0:
         return shapes
-    largest = np.take_along_axis(shapes, np.abs(shapes).argmax(axis=1)[:, None], axis=1)
+    largest = np.abs(shapes / system_of(model, static=True).scale).argmax(axis=1)
+    largest = np.take_along_axis(shapes, largest[:, None], axis=1)
     return np.asarray(shapes * (np.conj(largest) / np.abs(largest)))
 
 

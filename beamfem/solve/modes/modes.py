@@ -1,7 +1,7 @@
 """Free vibration about a state."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -264,12 +264,17 @@ class Modes:
 
         The model is displaced by the shape and at rest. A rigid mode starts undisplaced with a velocity; a growing or
         complex mode has both. amplitude: largest displacement of a node [m], for a rigid mode largest velocity [m/s].
-        Raises InputError for a mode that does not exist.
+        Joints with multipliers are displaced further, to where their conditions hold. Raises InputError for a mode that
+        does not exist.
 
         >>> struck = bf.solve_modes(model, count=2).start(mode=1, amplitude=1e-3)
         >>> motion = bf.simulate(model.with_loads([]), duration=0.01, step=1e-4, start=struck)
         """
-        return self.solution(mode, amplitude, 2)[0]
+        from beamfem.solve.motion.consistent_rows import on_conditions
+
+        begin = self.solution(mode, amplitude, 2)[0]
+        p, v, a = on_conditions(system_of(self.model, static=False), np.array([[begin.p, begin.v, begin.a]]))[0]
+        return replace(begin, p=p, v=v, a=a)
 
     def to_pandas(self) -> "DataFrame":
         """Return frequency [Hz], growth [1/s] and rigid motion of the modes as a table, one row per mode.
@@ -419,7 +424,7 @@ def _modes(model: Model, count: int, about: State | Solution | None) -> tuple[Mo
     rates = np.append(np.zeros(len(rigid)), rates[order])[:count]
     rest_state = State(p, np.zeros_like(p), np.zeros_like(p), load_factor, model)
     frequencies = rates.imag / (2.0 * np.pi)
-    modes = Modes(model, rest_state, frequencies, rates.real, upright(shapes), words[:count])
+    modes = Modes(model, rest_state, frequencies, rates.real, upright(model, shapes), words[:count])
     locks = may_lock(system, rest_state.p)
     return modes, stiffness_locking(rest_state, modes.modes[len(modes.rigid) :], 0.5, "a frequency") if locks else ()
 

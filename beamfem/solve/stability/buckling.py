@@ -335,7 +335,7 @@ def _buckling(model: Model, count: int, about: State | Solution | None) -> _Judg
         np.array([point.load_factor for point in criticals]),
         tuple(point.kind for point in criticals),
         linearised,
-        upright(np.array(shapes).reshape(-1, model.size)),
+        upright(model, np.array(shapes).reshape(-1, model.size)),
         np.array([point.p for point in criticals]).reshape(-1, model.size),
         uncertainty,
         ended,

@@ -200,13 +200,14 @@ def energy_warnings(solution: "Solution") -> tuple[str, ...]:
 
     The largest difference of all rows counts. Differences below round-off of the strain energy, or below the accuracy
     with which rows give the work of loads that vary between them, are none. Energies are evaluated only where steps
-    may not resolve the motion. Where supports move, every step has to be a row: reactions may alternate from step to
-    step.
+    may not resolve the motion. Where supports move, every step that was not divided has to be a row: reactions may
+    alternate from step to step.
     """
     if solution.static or len(solution) < 2 or solution.loaded is not None or resolved(solution):
         return ()
-    moved = any(callable(item.value) for item in system_of(solution.model, static=False).prescribed)
-    if moved and len(solution) != solution.statistics.steps + 1:
+    rule, prescribed = solution.statistics.rule, system_of(solution.model, static=False).prescribed
+    every_step = bool(rule) and np.diff(solution.at).max() < 1.5 * rule[0]
+    if any(callable(item.value) for item in prescribed) and not every_step:
         return ()
     judged, unit = balance(_some_rows(solution)), solution.model.unit
     exchanged = judged.exchanged

@@ -197,3 +197,9 @@ def test_the_balance_of_a_motion_within_a_tolerance_is_that_of_its_rows(integrat
     motion = bf.simulate(crank, 0.05, tolerance=1e-4, integrator=integrator)
     energy = motion.energy()
     assert abs(energy.error).max() < 0.02 * energy.kinetic.max()
+
+
+def test_a_driven_motion_whose_steps_were_divided_warns_of_the_energy_that_they_remove():
+    with pytest.warns(bf.EnergyWarning, match="the energy falls by"):
+        motion = bf.simulate(step=2e-3, integrator=bf.GeneralizedAlpha(0.0), **slider_crank(ELEMENTS["CRBF2"]))
+    assert motion.statistics.cuts > 0

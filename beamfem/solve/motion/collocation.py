@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from math import factorial
 
 import numpy as np
-from scipy.special import roots_jacobi
 
 from beamfem.quadrature import gauss
 from beamfem.validation import number_below
@@ -100,6 +99,8 @@ class Radau:
     @property
     def nodes(self) -> np.ndarray:
         """Times (s,) of the stages within a step of 1."""
+        from scipy.special import roots_jacobi  # slow to import
+
         inner = roots_jacobi(self.stages - 1, 1.0, 0.0)[0] if self.stages > 1 else np.empty(0)
         return np.append(0.5 * (inner + 1.0), 1.0)
 

@@ -105,7 +105,7 @@ class NotStoredWarning(UserWarning):
 
 
 class RoundOffWarning(UserWarning):
-    """Round-off leaves few digits of the forces of a solution, or of a critical load."""
+    """Round-off leaves few digits of the forces of a solution or of a critical load, or shakes a motion."""
 
 
 class LockingWarning(UserWarning):

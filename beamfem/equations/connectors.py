@@ -180,14 +180,19 @@ class Connectors:
 
     @cached_property
     def errors(self) -> np.ndarray:
-        """Residual (2, n) per unit relative error: in positions of 1 m [1/m], and in directions."""
+        """Residual (2, n) per unit relative error: in positions of 1 m [1/m], and in directions.
+
+        Parts turn: what is stiff along one axis in the reference may be so along another one later.
+        """
         result = np.zeros((2, self.model.size))
         if not self.items:
             return result
         for item, stiffness in zip(self.items, self._stiffness, strict=True):
             turns = np.append(item.turns, np.ones(len(item.own), dtype=bool))
             for row, columns in zip(result, (~turns, turns), strict=True):
-                np.add.at(row, item.all, np.abs(stiffness[:, columns]).sum(axis=1))
+                values = np.abs(stiffness[:, columns]).sum(axis=1)
+                values[~turns] = values[~turns].max(initial=0.0)
+                np.add.at(row, item.all, values)
         return result
 
     def stopped(self) -> list[tuple[Connector, np.ndarray]]:

@@ -3,14 +3,23 @@
 from collections import Counter
 from collections.abc import Iterable
 from itertools import chain
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from beamfem.curves import Line
 from beamfem.element.element import Element
-from beamfem.equations.system import System
-from beamfem.errors import CuspWarning, EnergyWarning, LargeStrainWarning, LockingWarning, UnitsWarning, warn
+from beamfem.equations.redundant_conditions import in_words as parts_in_words
+from beamfem.equations.system import System, system_of
+from beamfem.errors import (
+    CuspWarning,
+    EnergyWarning,
+    LargeStrainWarning,
+    LockingWarning,
+    RoundOffWarning,
+    UnitsWarning,
+    warn,
+)
 from beamfem.kernels.block import ELASTIC_LINE, GREEN_LAGRANGE, STRUCTURAL
 from beamfem.kernels.neighbouring_nodes import LOCKED, STRAINED, exceeds
 from beamfem.kernels.records import address_of
@@ -24,7 +33,7 @@ from beamfem.model.model import Model
 from beamfem.results import locking
 from beamfem.results.axis_points import axis_at, nodal_vectors
 from beamfem.results.beam_stress import peak_stress
-from beamfem.results.energy_balance import energy_warnings
+from beamfem.results.energy_balance import energy_warnings, masses
 from beamfem.results.locking import heights, pairs, rows_looked_at
 from beamfem.results.postprocess import nodal_rotations
 from beamfem.results.solution import Solution
@@ -36,7 +45,7 @@ _MUCH = 1.5  # [rad]: an element that turns by this much between its ends is far
 
 
 def advice(model: Model, p: np.ndarray) -> str:
-    """Return "; ... use more elements" if an element is bent that much in a state p (n,), otherwise nothing."""
+    """Return "; ..." and what to do if an element is bent much in a state p (n,), or a part far stiffer than beams."""
     worst, where = 0.0, 0
     for number, mesh in enumerate(model.meshes):
         rotation = nodal_rotations(mesh, p[None])[0]
@@ -44,10 +53,57 @@ def advice(model: Model, p: np.ndarray) -> str:
         if bent > worst:
             worst, where = bent, number
     if not worst > _MUCH:
-        return ""
+        found = _stiff_part(model)
+        return f"; round-off of {found.words} hides the stiffness of beams: {_CONDITION}" if found else ""
     return f"; an element of {beam_in_words(model.beams, where)} is bent by {worst:.2g} rad there: use more elements"
 
 
+class _StiffPart(NamedTuple):
+    """A part in words, its stiffness and that of an element against stretching [N/m]."""
+
+    words: str
+    stiffness: float
+    beams: float
+
+
+def _stiff_part(model: Model) -> _StiffPart | None:
+    """Return the stiffest part if its round-off may hide the stiffness of beams."""
+    system = system_of(model, static=True)
+    if not system.connectors.items:
+        return None
+    stiffness = system.connectors.errors[0]
+    beams, stiffest = system.residual_errors[0][stiffness == 0.0], int(stiffness.argmax())
+    if not (len(beams) and stiffness[stiffest] > _FAR * beams.max()):
+        return None
+    parts = [item for item in system.connectors.items if stiffest in item.dofs]
+    return _StiffPart(parts_in_words(parts), float(stiffness[stiffest]), float(beams.max()))
+
+
+def rounded(solution: Solution) -> tuple[Finding, ...]:
+    """Return a finding if round-off of a stiff part changes the energy of a motion.
+
+    Positions of size L have an error eps L, so that the force of a part of stiffness k has one of f = k eps L, which
+    strains beams of stiffness k0 by the energy f^2 / (2 k0).
+    """
+    part = None if solution.static or solution.loaded is not None else _stiff_part(solution.model)
+    if part is None:
+        return ()
+    system, unit = system_of(solution.model, static=False), solution.model.unit
+    force = part.stiffness * float(np.finfo(float).eps) * float(np.abs(solution.p[:, system.positions]).max())
+    energy = 0.5 * force**2 / part.beams
+    kinetic = 0.5 * float((np.square(solution.v) @ system.table(masses)).max())
+    if energy <= _CHANGED * kinetic:
+        return ()
+    sentence = (
+        f"positions to the last digit leave the force of {part.words} uncertain by {force:.2g} {unit('N')}, which "
+        f"strains the beams by {energy:.2g} {unit('J')} of {kinetic:.2g} {unit('J')} of the motion: {_CONDITION}"
+    )
+    return (Finding(sentence, RoundOffWarning),)
+
+
+_FAR = 1e8  # times the stiffness of an element against stretching; against bending it is far less stiff
+_CHANGED = 1e-5  # of the kinetic energy
+_CONDITION = "describe what hardly deforms by a Link, a Weld or another condition"
 _ROUND_OFF = 1e-6  # of the displacements
 
 
@@ -241,7 +297,7 @@ _Solution = TypeVar("_Solution", bound=Solution)
 
 def findings(solution: Solution) -> tuple[Finding, ...]:
     """Return all that is found wrong with a solution, besides what its solver has found."""
-    found = chain(*map(solution.computed, (locking.locking, large_strains, cusps, short_sections)))
+    found = chain(*map(solution.computed, (locking.locking, large_strains, cusps, short_sections, rounded)))
     energy = [Finding(sentence, EnergyWarning) for sentence in solution.computed(energy_warnings)]
     doubts = doubts_of_units(solution.model.beams, solution.model.loads, solution.model.units)
     units = [Finding(sentence, UnitsWarning) for sentence in doubts]
@@ -250,7 +306,7 @@ def findings(solution: Solution) -> tuple[Finding, ...]:
 
 def warned(solution: _Solution) -> _Solution:
     """Return a solution that has just been found, after Python warnings of what is wrong with it by 1 % and more."""
-    warn_of((*solution.computed(cusps), *solution.computed(short_sections)))
+    warn_of((*solution.computed(cusps), *solution.computed(short_sections), *solution.computed(rounded)))
     found = _found(loading(solution)[0], solution.p[rows_looked_at(solution)])
     if found & LOCKED:
         warn_of(solution.computed(locking.locking))

@@ -130,6 +130,8 @@ def simulate(
     -----
     LongRunWarning
         If Ctrl-C has ended the motion.
+    RoundOffWarning
+        If round-off of a very stiff part changes the energy.
     LockingWarning
         If locking changes displacements by 1 % or more.
     LargeStrainWarning

@@ -35,7 +35,7 @@ def pendulum(part):
 
 
 @mostly_slow("turned", [0.0, 0.7])
-@pytest.mark.parametrize("stiffness", [1e12, 1e14, 1e16])
+@pytest.mark.parametrize("stiffness", [1e14, 1e16])
 def test_an_arm_turns_away_from_a_stiff_spring_as_from_a_link(stiffness, turned):
     """Round-off of its force was expected along its axis in the reference only, and the iteration never ended."""
     (linked, end), (sprung, other) = two_arms(bf.Link, turned), two_arms(spring(stiffness), turned)

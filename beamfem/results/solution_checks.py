@@ -97,7 +97,7 @@ def rounded(solution: Solution) -> tuple[Finding, ...]:
         return ()
     sentence = (
         f"positions to the last digit leave the force of {part.words} uncertain by {force:.2g} {unit('N')}, which "
-        f"strains the beams by {energy:.2g} {unit('J')}, compared with {largest:.2g} {unit('J')} at most in the motion: "
+        f"strains the beams by {energy:.2g} {unit('J')}, compared with {largest:.2g} {unit('J')} in the motion: "
         f"{_CONDITION}"
     )
     return (Finding(sentence, RoundOffWarning),)

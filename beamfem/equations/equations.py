@@ -25,7 +25,6 @@ _KEPT = 200_000  # floats of the largest workspace whose allocation is a noticea
 
 
 Weights = tuple[float, float, float]  # ck, cv, ca: of p, p' and p''
-Rates = tuple[np.ndarray, np.ndarray]  # p' and p'' (n,)
 Stresses = tuple[np.ndarray, ...]  # resultants (ne, nq, ns) of each block
 
 
@@ -120,12 +119,7 @@ def imposed_forces(system: System, time: float) -> np.ndarray:
     return residual_under(system, system.reference, time, np.where(loads.imposes, loads.factors(time), 0.0))
 
 
-def residuals(system: System, p: np.ndarray, rates: Sequence[Rates], time: float) -> np.ndarray:
-    """Return the residuals (k, n) of a state p (n,) with pairs p' and p'' of rates (k), see `residual`."""
-    return residuals_of_rows(system, [(p, *pair) for pair in rates], [time] * len(rates))
-
-
-def residuals_of_rows(
+def residuals(
     system: System,
     rows: Sequence[Sequence[np.ndarray]],
     times: Sequence[float],
@@ -146,7 +140,7 @@ def _residuals(
     dt: float,
     loads: Iterable[LoadsAt],
 ) -> np.ndarray:
-    """Return the residuals (k, n) in a frame at rest, see `residuals_of_rows`."""
+    """Return the residuals (k, n) in a frame at rest, see `residuals`."""
     size, assembler = len(system.reference), _acquired(system)
     result, (p, v, a, forces) = np.empty((len(times), size)), np.empty((4, size))
     assembler.weigh((1.0, 1.0, 1.0), dt)

@@ -8,7 +8,7 @@ import numpy as np
 
 from beamfem.cached_properties import cached_property
 from beamfem.equations.connectors import Connectors
-from beamfem.equations.equations import energies_of_beams, residuals_of_rows
+from beamfem.equations.equations import energies_of_beams, residuals
 from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError
@@ -282,12 +282,12 @@ def forces_without_potential(solution: Solution) -> Forces:
         return Forces(work, connected, lost)
     times, states = solution.at.tolist(), list(zip(solution.p, solution.v, solution.a, strict=True))
     if moving or following:
-        acting = residuals_of_rows(system, states, times)
+        acting = residuals(system, states, times)
         work[:, moving] = acting[:, moving]
     if following:
         factors = [np.where(system.loads.conserves, system.loads.factors(at), 0.0) for at in times]
         left = [system.loads.of(at, own) for at, own in zip(times, factors, strict=True)]
-        work += residuals_of_rows(system, states, times, left) - acting
+        work += residuals(system, states, times, left) - acting
     _add_forces(driving, connected, states, times)
     if damped:
         lost += _dissipated_power(system, driving, states, times)
@@ -305,7 +305,7 @@ def _dissipated_power(
     odd = np.zeros_like(rates)
     for sign in (1.0, -1.0):
         moved = [(p, sign * v, zeros) for p, v, _ in states]
-        forces = -residuals_of_rows(system, moved, times)
+        forces = -residuals(system, moved, times)
         _add_forces(but, forces, moved, times)
         odd -= 0.5 * sign * forces
     return np.asarray(np.einsum("sn,sn->s", rates, odd))

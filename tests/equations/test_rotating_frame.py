@@ -230,6 +230,7 @@ def test_residuals_of_several_rates_are_those_of_each(frame):
     model = bf.Model([arm], [bf.Clamp(arm.start)], loads, masses=[bf.PointMass(arm.end, 0.2)], frame=frame)
     system, rates = system_of(model, static=False), random.normal(size=(3, 2, model.size))
     p = system.reference + 0.01 * random.normal(size=model.size)
-    found = residuals(system, p, rates, 0.1)
-    np.testing.assert_array_equal(found, [residual(system, p, *pair, 0.1) for pair in rates])
+    rows, times = [(p, *pair) for pair in rates], [0.1, 0.2, 0.1]
+    found = residuals(system, rows, times)
+    np.testing.assert_array_equal(found, [residual(system, *row, at) for row, at in zip(rows, times, strict=True)])
     assert np.abs(found[0] - found[1]).max() > 1e-3

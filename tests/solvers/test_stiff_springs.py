@@ -7,17 +7,19 @@ from slow_values import mostly_slow
 import beamfem as bf
 
 ALUMINIUM, SECTION = bf.Material(7e10, 0.3, 2700.0), bf.Rectangle(0.02, 0.005)
+CUBIC = bf.CRBF(3)
+ELEMENTS = [CUBIC, bf.CRBF(1), bf.CRBF(2), bf.ANCFCRBF(bf.Structural()), bf.ANCF(bf.Structural()), bf.ShearRigid()]
 
 
 def spring(stiffness):
     return lambda a, b: bf.SpringDamper(a, b, stiffness=stiffness)
 
 
-def two_arms(part, turned=0.0):
+def two_arms(part, turned=0.0, element=CUBIC):
     """Two clamped arms whose ends a part holds at a distance, the first one pushed along and across."""
     x, y = np.array([np.cos(turned), np.sin(turned)]), np.array([-np.sin(turned), np.cos(turned)])
     left, right = (
-        bf.Beam(bf.Line(tuple(s * x), tuple((s + 0.5) * x)), 4, bf.CRBF(3), SECTION, ALUMINIUM) for s in (0, 0.7)
+        bf.Beam(bf.Line(tuple(s * x), tuple((s + 0.5) * x)), 4, element, SECTION, ALUMINIUM) for s in (0, 0.7)
     )
     loads = [bf.PointForce(left.end, tuple(-20.0 * y)), bf.PointForce(left.at(0.5), tuple(-100.0 * x))]
     model = bf.Model(
@@ -42,6 +44,13 @@ def test_an_arm_turns_away_from_a_stiff_spring_as_from_a_link(stiffness, turned)
     exact = bf.solve_static(linked).displacement(end)[-1]
     for found in (bf.solve_static(sprung), bf.trace_equilibrium(sprung, until=1.0)):
         assert found.displacement(other)[-1] == pytest.approx(exact, rel=1e-6, abs=1e-9)
+
+
+@mostly_slow("element", ELEMENTS[1:], ids=lambda element: element.name)
+def test_arms_of_any_element_turn_away_from_a_stiff_spring(element):
+    (linked, end), (sprung, other) = (two_arms(part, 0.2, element) for part in (bf.Link, spring(5e15)))
+    exact, found = (bf.solve_static(model).displacement(tip)[-1] for model, tip in ((linked, end), (sprung, other)))
+    assert found == pytest.approx(exact, abs=1e-9)
 
 
 def test_a_static_solve_that_a_spring_leaves_no_digits_names_it():

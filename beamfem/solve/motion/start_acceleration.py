@@ -52,8 +52,8 @@ def mean_acceleration(system: System, state: np.ndarray, time: float, step: floa
     free, zeros = system.free_dofs, np.zeros(len(start))
     if len(system.connectors.multipliers):
         return start
-    rates = (v - step * start, zeros), (v, zeros), (v + step * start, zeros), (v, start)
-    slower, resting, faster, accelerated = residuals(system, p, rates, time)[:, free]
+    moved = (p, v - step * start, zeros), (p, v, zeros), (p, v + step * start, zeros), (p, v, start)
+    slower, resting, faster, accelerated = residuals(system, moved, [time] * len(moved))[:, free]
     quadratic, inertia = 0.5 * (slower + faster) - resting, accelerated - resting
     mass = linearise(system, p, v, zeros, time, INERTIA)[1]
     if quadratic @ mass.solve(quadratic, system.rotated) <= _NEGLIGIBLE**2 * (inertia @ start[free]):

@@ -1,5 +1,7 @@
 """Loads that vary in time: impulses of pulses, kinks that functions declare, and what steps cannot resolve."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -170,7 +172,7 @@ def test_steps_are_divided_at_the_same_kinks_in_any_unit_of_time(unit):
     assert [len(one.times) for one in scaled] == [len(one.times) for one in plain]
     for one, other in zip(plain, scaled, strict=True):
         np.testing.assert_allclose(other.times, unit * one.times, rtol=1e-12)
-        assert (one.whole, one.begins_whole, one.ends_whole) == (other.whole, other.begins_whole, other.ends_whole)
+        assert (one.whole, one.ends_whole) == (other.whole, other.ends_whole)
         assert [other.loads_from, other.loads_to] == pytest.approx([unit * one.loads_from, unit * one.loads_to])
     assert [one.times[0] for one in plain] == [0.0, 3.0, 5.0, 5.5, 6.0, 7.0, 8.0]
 
@@ -188,14 +190,51 @@ def test_a_motion_that_fails_behind_a_kink_ends_with_its_last_whole_step(save_ev
     assert found.displacement(one.start)[:, 0] == pytest.approx(3.0 * found.time, abs=1e-9)
 
 
+ROWS = {
+    "all": {},
+    "some": {"save_every": 5},
+    "at times": {"save_at": 0.005 * np.arange(5)},
+    "with an event": {"events": [bf.Event("never", lambda state: 1.0)]},
+    "under a tolerance": {"tolerance": 1e-4},
+    "in a file": {"file": "motion.h5"},
+}
+
+
 @pytest.mark.parametrize("from_there", [True, False])
-def test_the_acceleration_in_the_row_of_a_jump_is_that_of_the_load_at_its_time(from_there):
-    """A free bar of 0.78 kg under 1 N that begins at 5 ms, or right after it."""
-    begins = (lambda t: float(t >= 0.005)) if from_there else (lambda t: float(t > 0.005))
+@pytest.mark.parametrize("rows", ROWS)
+def test_the_acceleration_in_the_row_of_a_jump_is_that_of_the_load_at_its_time(rows, from_there, tmp_path):
+    """A free bar of 0.78 kg whose weight begins at once, ends at 10 ms, and begins anew at the end, or right after it.
+
+    Rows that a file, `save_at`, an event or a tolerance kept had the acceleration before the jump.
+    """
+    jumps = (0.0, 0.01, 0.02)
+    acts = (lambda t: t < 0.01 or t >= 0.02) if from_there else (lambda t: 0.0 < t <= 0.01)
     one = bf.Beam(bf.Line((0, 0), (1, 0)), 1, bf.CRBF(1), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
-    weight = bf.Gravity((0.0, -10.0), amplitude=bf.Piecewise(begins, (0.005,)))
-    motion = bf.simulate(bf.Model([one], loads=[weight]), 0.01, 1e-3)
-    number = motion.model.meshes[0].coordinates_of(0)["r^y"]
-    expected = np.where(motion.time > 0.0055, -10.0, 0.0)
-    expected[5] = -10.0 if from_there else 0.0
-    assert motion.a[:, number] == pytest.approx(expected, abs=1e-9)
+    weight = bf.Gravity((0.0, -10.0), amplitude=bf.Piecewise(lambda t: float(acts(t)), jumps))
+    how = {key: tmp_path / value if key == "file" else value for key, value in ROWS[rows].items()}
+    motion = bf.simulate(bf.Model([one], loads=[weight]), 0.02, 1e-3, **how)
+    acceleration = motion.acceleration(one.at(0.3))[:, 1]
+    assert set(jumps) < set(motion.time.tolist())
+    assert acceleration == pytest.approx([-10.0 * acts(time) for time in motion.time.tolist()], abs=1e-9)
+
+
+@pytest.mark.parametrize("rows", ["all", "in a file"])
+def test_forces_in_the_row_of_a_jump_are_those_under_the_load_at_its_time(rows, tmp_path):
+    """A rod that a link ties to a mass, on a post with next to no mass of its own, is pushed from 10 ms on."""
+    light = bf.Material(2.1e11, 0.3, 7.8e-6)
+    post, rod = (
+        bf.Beam(bf.Line((x, 0.0), (x + 1.0, 0.0)), 1, bf.CRBF(2), bf.Rectangle(0.02, 0.02), material)
+        for x, material in ((0.0, light), (2.0, STEEL))
+    )
+    link = bf.Link(post.end, rod.start)
+    push = bf.PointForce(rod.end, (1e3, 0.0), amplitude=bf.Piecewise(lambda t: float(t >= 0.01), (0.01,)))
+    mass = bf.PointMass(post.end, 2.0)
+    model = bf.Model([post, rod], [bf.Clamp(post.start)], [push], connectors=[link], masses=[mass])
+    how = {"file": tmp_path / "motion.h5"} if rows == "in a file" else {}
+    motion = bf.simulate(model, 0.015, 1e-3, **how)
+    needed = replace(motion, v=motion.a).linear_momentum()[:, 0]  # it is linear in p', so that this is its rate
+    by_link, carried = motion.joint_force(link)[:, 0], 2.0 * motion.acceleration(post.end)[:, 0]
+    assert by_link[:10] == pytest.approx(0.0, abs=1e-9)
+    assert by_link[10] == pytest.approx(-carried[10], rel=1e-4)
+    assert by_link[10] < -100.0
+    assert by_link[10] + 1e3 == pytest.approx(needed[10] - carried[10], rel=1e-4)

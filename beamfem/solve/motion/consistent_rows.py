@@ -1,6 +1,6 @@
 """Rows of a motion on the conditions of joints, with velocities and accelerations that keep them there."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +15,7 @@ from beamfem.linalg.tangent import SaddleTangent
 from beamfem.parts.at_points import ANALYTIC
 from beamfem.physics.connections import MASS
 from beamfem.solve.motion.constraints import CENTRAL
+from beamfem.solve.motion.start_acceleration import initial_acceleration
 
 _ENTRIES = 1_000_000  # of gradients at a time
 _OFF = 1e-12  # of the model: gap of a condition that is corrected
@@ -44,8 +45,17 @@ class _Compliance(NamedTuple):
     numbers: np.ndarray
 
 
-def finished_rows(system: System, times: Sequence[float], states: np.ndarray) -> np.ndarray:
-    """Return states p, p', p'' (rows, 3, n) at times [s] on all conditions, changed in place."""
+def finished_rows(
+    system: System, times: Sequence[float], states: np.ndarray, jumps: Collection[float] = ()
+) -> np.ndarray:
+    """Return states p, p', p'' (rows, 3, n) at times [s] on all conditions, changed in place.
+
+    jumps: times [s] of jumps of loads. Steps end before these, rows have the accelerations under the loads of their
+    times.
+    """
+    for time, state in zip(times, states, strict=True):
+        if time in jumps:
+            state[2] = initial_acceleration(system, state, time)
     states = on_conditions(system, states)
     states[:, 0] = system.finished(states[:, 0], times)
     return states

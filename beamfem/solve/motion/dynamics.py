@@ -263,7 +263,7 @@ def _solution(plan: MotionPlan, record: Record, last: Last, unresolved: list[str
     status = Status.COMPLETED if done == len(times) - 1 else Status.STOPPED
     taken, ended = done + record.further, _ended(plan, done, unresolved)
     summary = Statistics(record.statistics.iterations, taken, record.cuts, ended, status, rule=plan.rule)
-    p, v, a = finished_rows(system, times[stored_steps].tolist(), rows.states).swapaxes(0, 1)
+    p, v, a = finished_rows(system, times[stored_steps].tolist(), rows.states, plan.jumps).swapaxes(0, 1)
     others: dict[str, Any] = {"turned": rows.rotations, "exchanged": rows.exchanged}
     return Solution(system.model, False, times[stored_steps], p, v, a, summary, **others)
 

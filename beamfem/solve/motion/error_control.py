@@ -90,7 +90,7 @@ def march_to_tolerance(
                 times = time + size * np.arange(steps + 1.0)
                 times[-1] = end if last else times[-1]
                 stretch = Stretch(
-                    times, size, False, False, False,
+                    times, size, False, False,
                     part.loads_from if jumps else time, part.loads_to if last else float(times[-1]),
                 )  # fmt: skip
                 before, turned, rows = state.copy(), rotations.copy(), Rows.empty(steps, state, rotations)

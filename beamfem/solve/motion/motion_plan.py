@@ -61,11 +61,19 @@ class MotionPlan:
     wanted: np.ndarray | None
     acting: list[FunctionOfTime]
 
+    @property
+    def jumps(self) -> frozenset[float]:
+        """Times [s] at which loads jump."""
+        begins = [(part.loads_from, float(part.times[0])) for part in self.parts]
+        ends = [(part.loads_to, float(part.times[-1])) for part in self.parts]
+        return frozenset(time for inside, time in begins + ends if inside != time)
+
     def saved_rows(self) -> SavedRows:
         """Return what collects the rows."""
         settings, pairs = self.settings, self.system.model.numbered.rotation_pairs
         smooth = not is_scheme(settings.integrator)
-        return SavedRows(self.system, pairs, self.wanted, Watch(self.system, settings.events, smooth), smooth)
+        watch = Watch(self.system, settings.events, smooth)
+        return SavedRows(self.system, pairs, self.wanted, self.jumps, watch, smooth)
 
     def live_view(self) -> Callable[[float, np.ndarray], None]:
         """Return what shows states (3, n) at times [s] while the motion runs, if it is to be watched."""

@@ -1,5 +1,6 @@
 """Rows of a motion that are kept: all steps, or states at given times, between the ends of steps as well."""
 
+from collections.abc import Collection
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -17,13 +18,14 @@ from beamfem.solve.motion.events import Watch
 class SavedRows:
     """Times, states (3, n), rotations (m,) [rad] and exchanged energies (2,) [J] of the rows so far, and events.
 
-    at (k,) [s]: times of rows, ascending, None for a row at the end of every step; smooth: see `between`; stopped:
-    whether an event has stopped the motion.
+    at (k,) [s]: times of rows, ascending, None for a row at the end of every step; jumps: see `finished_rows`; smooth:
+    see `between`; stopped: whether an event has stopped the motion.
     """
 
     system: System
     pairs: np.ndarray
     at: np.ndarray | None
+    jumps: Collection[float]
     watch: Watch
     smooth: bool = False
     times: list[float] = field(default_factory=list)
@@ -70,7 +72,7 @@ class SavedRows:
         rows = before + np.searchsorted(times, [time for _, time in found])
         events = tuple(Occurrence(*each, row) for each, row in zip(found, rows.tolist(), strict=True))
         states = np.array(self.states).reshape(len(times), 3, self.system.model.size)
-        states = finished_rows(self.system, self.times, states)
+        states = finished_rows(self.system, self.times, states, self.jumps)
         rotations = np.array(self.rotations).reshape(len(times), len(self.pairs))
         exchanged = np.array(self.exchanged).reshape(len(times), 2)
         self.times, self.states, self.rotations, self.exchanged, self.watch.found = [], [], [], [], []

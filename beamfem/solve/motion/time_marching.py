@@ -91,7 +91,7 @@ def march(
             if number > 0:
                 if is_scheme(integrator):
                     keep_momentum(integrator.rule(parts[number - 1].step), state)
-                _begin_anew(system, part, state, _kept(record, first, part))
+                state[2] = state[3] = initial_acceleration(system, state, part.loads_from)
                 record.statistics.begin_anew()
             direct = part.whole and record.every == 1
 
@@ -162,21 +162,7 @@ def cutter_of(
     return StepCutter(system, integrator, record.statistics, record.pairs, end, size, largest, judge, relaxed)
 
 
-def _kept(record: Record, done: int, part: Stretch) -> np.ndarray | None:
-    """Return the row (3, n) that was stored at the beginning of a stretch, if there is one."""
-    return record.rows.states[done // record.every] if part.begins_whole and done % record.every == 0 else None
-
-
 def _keeps_rates(scheme: Scheme) -> bool:
     """Return whether 1 / 2 = beta / gamma, as of the trapezoidal rule."""
     *_, gamma, beta = scheme.rule(1.0)
     return bool(2.0 * beta == gamma)
-
-
-def _begin_anew(system: System, part: Stretch, state: np.ndarray, kept: np.ndarray | None) -> None:
-    """Begin a stretch with accelerations that satisfy the equations under the loads there."""
-    begin = float(part.times[0])
-    if kept is not None and part.loads_from > begin:
-        kept[2] = initial_acceleration(system, state, begin)
-    state[2] = initial_acceleration(system, state, part.loads_from)
-    state[3] = state[2]

@@ -18,14 +18,13 @@ PARTS = 4  # into which a step is cut
 class Stretch:
     """A sequence of equal steps.
 
-    times (m + 1,) [s]: its beginning and the ends of its steps; step [s]; begins_whole, ends_whole, whole: whether its
-    beginning, its end, and the ends of all its steps are multiples of the requested step; loads_from, loads_to [s]:
-    times at which the loads at its beginning and end are evaluated, inside of a jump.
+    times (m + 1,) [s]: its beginning and the ends of its steps; step [s]; ends_whole, whole: whether its end, and the
+    ends of all its steps, are multiples of the requested step; loads_from, loads_to [s]: times at which the loads at
+    its beginning and end are evaluated, inside of a jump.
     """
 
     times: np.ndarray
     step: float
-    begins_whole: bool
     ends_whole: bool
     whole: bool
     loads_from: float
@@ -39,7 +38,7 @@ class Stretch:
         )
         loads_from = self.loads_from if first == 0 else begin
         loads_to = self.loads_to if last == len(self.times) - 1 else end
-        return Stretch(times, self.step / PARTS, False, False, False, loads_from, loads_to)
+        return Stretch(times, self.step / PARTS, False, False, loads_from, loads_to)
 
     def after(self, first: int) -> "Stretch":
         """Return the same steps from one of its times on."""
@@ -54,7 +53,7 @@ def stretches(grid: np.ndarray, amplitudes: list[FunctionOfTime]) -> tuple[Stret
     step, end_time = float(grid[1]), float(grid[-1])
     declaring = [function for function in amplitudes if function.kinks]
     if not declaring:
-        return (Stretch(grid, step, True, True, True, 0.0, end_time),)
+        return (Stretch(grid, step, True, True, 0.0, end_time),)
     kinks = _apart(np.concatenate([function.kinks for function in declaring]), _NEAR * step, end_time)
     nearest = np.minimum(np.round(kinks / step).astype(int), len(grid) - 1)
     inside = np.abs(kinks - grid[nearest]) > _NEAR * step
@@ -82,7 +81,7 @@ def stretches(grid: np.ndarray, amplitudes: list[FunctionOfTime]) -> tuple[Stret
             times, size = np.linspace(begin, end, parts + 1), (end - begin) / parts
         loads_from = jumps[begin] + SIDE * step if begin in jumps else begin
         loads_to = jumps[end] - SIDE * step if end in jumps else end
-        result.append(Stretch(times, size, begin in grid, end in grid, whole, loads_from, loads_to))
+        result.append(Stretch(times, size, end in grid, whole, loads_from, loads_to))
     return tuple(result)
 
 

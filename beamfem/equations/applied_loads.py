@@ -10,7 +10,7 @@ import numpy as np
 from beamfem.cached_properties import cached_property
 from beamfem.element.fields import d_slots, length_rule, r_slots
 from beamfem.kernels.block import Stations
-from beamfem.kernels.record import CONSTANTS
+from beamfem.kernels.model_record import CONSTANTS
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import jacobians, length_points, reference_axis, scales
 from beamfem.model.beam import Beam, Point

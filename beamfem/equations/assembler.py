@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.equations.applied_loads import LoadsAt
 from beamfem.equations.callbacks import Deferred
 from beamfem.equations.element_group import ElementGroup
-from beamfem.kernels import element_passes, model_passes, node_passes, record
+from beamfem.kernels import element_passes, model_passes, model_record, node_passes
 from beamfem.kernels.records import address_of, aligned
 from beamfem.kernels.simd import WIDTH
 
@@ -54,11 +54,11 @@ class Work:
     """A group of elements with a separate workspace, so that solves do not interfere."""
 
     group: ElementGroup
-    record: record.Group
+    record: model_record.Group
 
     def rows(self, first: int, count: int) -> np.ndarray:
         """Return `count` rows of all nodes from row `first` on (N, count), in the order of node numbers."""
-        chunks = self.record.chunks[:, first : first + count, : record.LANES]
+        chunks = self.record.chunks[:, first : first + count, : model_record.LANES]
         values = np.ascontiguousarray(chunks.transpose(0, 2, 1).reshape(-1, count)[: self.record.nodes])
         if self.group.order is None:
             return values
@@ -74,10 +74,14 @@ class Equations:
     """
 
     def __init__(
-        self, groups: Sequence[ElementGroup], size: int, parts: Sequence[record.Parts] = (), called: Sequence[Any] = ()
+        self,
+        groups: Sequence[ElementGroup],
+        size: int,
+        parts: Sequence[model_record.Parts] = (),
+        called: Sequence[Any] = (),
     ) -> None:
         self.groups, self.size = tuple(groups), size
-        self.record = record.System(size=size, group_count=len(self.groups), part_kinds=len(parts), parts=parts)
+        self.record = model_record.System(size=size, group_count=len(self.groups), part_kinds=len(parts), parts=parts)
         self.spare: list[Assembler] = []
         self.called = *called, *(group.law for group in groups if group.law is not None and group.law.in_python)
 
@@ -101,7 +105,7 @@ class Assembler:
                 own.slowed = np.empty(self.size)
             if group.constant is not None:
                 own.chunks[:] = group.constant
-            self.scratch += WIDTH + own.space_rows * record.ROW
+            self.scratch += WIDTH + own.space_rows * model_record.ROW
             self.numbers += own.chunks.size + own.stress.size
         self.numbers += self.scratch
         self.record.groups = [work.record for work in self.works]
@@ -117,8 +121,8 @@ class Assembler:
         self._scratch, first = scratch.memory, 0
         for own in (work.record for work in self.works):
             first += -(address_of(scratch.memory) // 8 + first) % WIDTH  # lanes must not straddle two cache lines
-            size = own.space_rows * record.ROW
-            own.space = scratch.memory[first : first + size].reshape(-1, record.ROW)
+            size = own.space_rows * model_record.ROW
+            own.space = scratch.memory[first : first + size].reshape(-1, model_record.ROW)
             own.filled_count = 0
             first += size
         scratch.user = self

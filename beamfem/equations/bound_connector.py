@@ -101,7 +101,7 @@ class Connector:
 
     @property
     def position_step(self) -> int:
-        """See `kernels.record.Parts`."""
+        """See `kernels.model_record.Parts`."""
         return self.item.position_step if isinstance(self.item, OnElements) else 0
 
     @cached_property

@@ -23,7 +23,7 @@ from beamfem.kernels.block import (
     Stations,
 )
 from beamfem.kernels.compiling import Routine
-from beamfem.kernels.record import LANES, ROW, Group, GroupRoutines, NodePasses, StationPasses
+from beamfem.kernels.model_record import LANES, ROW, Group, GroupRoutines, NodePasses, StationPasses
 from beamfem.kernels.simd import WIDTH
 from beamfem.physics.compiled_connections import passes_of
 from beamfem.physics.compiled_elements import MEASURE_PASSES, NODE_PASSES

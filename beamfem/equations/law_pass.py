@@ -8,8 +8,8 @@ import numpy as np
 from beamfem.equations.callbacks import KeptErrors
 from beamfem.errors import InputError
 from beamfem.kernels.compiler.value_types import REALS
+from beamfem.kernels.model_record import ROW, Group, System
 from beamfem.kernels.point import POINT_ROWS, RESULTANT, STIFFNESS, STRAIN
-from beamfem.kernels.record import ROW, Group, System
 from beamfem.kernels.records import memory_at
 from beamfem.kernels.user_law import MOST_HISTORY, user_resultants
 from beamfem.section.law import THICKNESS, ConstitutiveLaw

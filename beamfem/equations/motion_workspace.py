@@ -9,9 +9,9 @@ import numpy as np
 from beamfem.equations.rotating_vectors import rotating_vectors, runs_of
 from beamfem.equations.system import System
 from beamfem.kernels.bidirectional_lu import SHORT, bidirectional_lu
+from beamfem.kernels.model_record import Border
 from beamfem.kernels.motion_record import MotionRoutines, MotionSolver
 from beamfem.kernels.predictor import difference_rows, padded
-from beamfem.kernels.record import Border
 from beamfem.kernels.records import aligned
 from beamfem.kernels.stage_record import Stages
 from beamfem.linalg import bordered

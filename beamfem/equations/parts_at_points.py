@@ -18,7 +18,7 @@ from beamfem.equations.equation_numbering import Unknowns
 from beamfem.equations.model_coordinates import COORDINATES
 from beamfem.kernels.compiler.value_types import REALS
 from beamfem.kernels.connection_passes import add_parts, commit
-from beamfem.kernels.record import Parts, System
+from beamfem.kernels.model_record import Parts, System
 from beamfem.kernels.records import memory_at
 from beamfem.model.model import Model
 from beamfem.parts.at_points import ANALYTIC
@@ -32,7 +32,7 @@ class Alike(NamedTuple):
     """Parts of one kind: numbers (n, u) of coordinates and unknowns, history (n, h), and data (n, k).
 
     places (n, u, u): positions of the entries of their tangents in the matrix, -1 for none; alternatives: rows that
-    each part has, one at a time; position_step: see `kernels.record.Parts`.
+    each part has, one at a time; position_step: see `kernels.model_record.Parts`.
     """
 
     connection: Connection

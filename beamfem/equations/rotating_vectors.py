@@ -35,7 +35,7 @@ def rotating_vectors(system: System) -> np.ndarray:
 
 
 def runs_of(pairs: np.ndarray) -> np.ndarray:
-    """Return runs (runs, pair fields) of vectors, see `kernels.record.PAIR_X`.
+    """Return runs (runs, pair fields) of vectors, see `kernels.model_record.PAIR_X`.
 
     pairs (np, 4): equation numbers of x and y, node and number of the nodal vector of each. From one vector of a run to
     the next, the node increases by one, and the equation numbers increase by the step.

@@ -7,7 +7,7 @@ import numpy as np
 from beamfem.equations.assembler import Assembler, Equations
 from beamfem.equations.element_group import ElementGroup, make_group
 from beamfem.kernels.block import Block, Layout, Stations
-from beamfem.kernels.record import CONSTANTS
+from beamfem.kernels.model_record import CONSTANTS
 
 
 def free_group(block: Block, size: int) -> ElementGroup:

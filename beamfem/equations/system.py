@@ -160,7 +160,7 @@ class System:
 
     @shared_table
     def solver_fields(self) -> dict[str, Any]:
-        """The fields of `kernels.record.Solver` for a band that are no workspace."""
+        """The fields of `kernels.model_record.Solver` for a band that are no workspace."""
         unknowns, (first, normals), half = self.unknowns, self.rotated, self.layouts[0].half_width
         return {
             "size": self.model.size,

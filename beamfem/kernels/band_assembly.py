@@ -5,8 +5,8 @@ ends that have prescribed coordinates, entries are not looked up then but added 
 """
 
 from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.model_record import ROW
 from beamfem.kernels.pointers import at
-from beamfem.kernels.record import ROW
 from beamfem.kernels.simd import COLUMNS, WIDTH, WRITES_PARTS, add_columns
 
 

@@ -7,8 +7,8 @@ they alone hold a part. The condensed matrix is inverted by exchanges of one or 
 """
 
 from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.model_record import Border
 from beamfem.kernels.pointers import at
-from beamfem.kernels.record import Border
 from beamfem.kernels.records import Reals
 
 _SINGLE = 0.41  # of the largest product of a pair: square of the smallest diagonal entry that is exchanged by itself

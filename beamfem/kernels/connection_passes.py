@@ -1,9 +1,9 @@
 """Forces and tangents of parts at points, added to the residual and the matrix of a model."""
 
 from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.model_record import Parts, System
 from beamfem.kernels.nodes import cosine_sine
 from beamfem.kernels.pointers import at, room
-from beamfem.kernels.record import Parts, System
 
 MOST = 32  # coordinates of a part, or multipliers and prescribed values
 MOST_DATA = 24  # numbers and history variables of a part with history

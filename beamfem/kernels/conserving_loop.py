@@ -1,9 +1,9 @@
 """The stages of a step that conserves energy and momenta, for `stage_steps.march_stages`: Newton's method."""
 
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.model_record import System
 from beamfem.kernels.motion_record import MotionSolver
 from beamfem.kernels.pointers import at
-from beamfem.kernels.record import System
 from beamfem.kernels.stage_record import Stages
 from beamfem.kernels.time_loop import load_row
 

@@ -7,9 +7,9 @@ the accelerations of the pair, so that an iteration or two suffice.
 import math
 
 from beamfem.kernels.compiling import FAST, inlined, routine
+from beamfem.kernels.model_record import System
 from beamfem.kernels.motion_record import MotionSolver
 from beamfem.kernels.pointers import at, small_code
-from beamfem.kernels.record import System
 from beamfem.kernels.simd import WIDTH, as_rows, larger, largest, zeros
 from beamfem.kernels.stage_record import Doubled, Stages
 from beamfem.kernels.stage_steps import end_step, solve_step, start_step

@@ -2,9 +2,9 @@
 
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.model_record import ROW, Group, System
 from beamfem.kernels.point import HESSIAN
 from beamfem.kernels.pointers import at
-from beamfem.kernels.record import ROW, Group, System
 from beamfem.kernels.records import Reals
 
 

@@ -2,11 +2,11 @@
 
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.model_record import ROW, Group, System
 from beamfem.kernels.point import FORCE as POINT_FORCE
 from beamfem.kernels.point import HESSIAN as POINT_HESSIAN
 from beamfem.kernels.point import RATE, RESULTANT
 from beamfem.kernels.pointers import at, given, small_code
-from beamfem.kernels.record import ROW, Group, System
 
 
 @routine()

@@ -5,8 +5,8 @@ yy) and tt (xx, xy, yy). A matrix (columns, rows, ROW) has a row of lanes for ea
 """
 
 from beamfem.kernels.compiling import FAST, inlined, routine
+from beamfem.kernels.model_record import ROW, Group
 from beamfem.kernels.pointers import at
-from beamfem.kernels.record import ROW, Group
 from beamfem.kernels.records import Rows
 from beamfem.kernels.simd import WIDTH, zeros
 

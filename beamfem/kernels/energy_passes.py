@@ -2,9 +2,9 @@
 
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.model_record import ROW, Group, System
 from beamfem.kernels.point import RESULTANT, STRAIN
 from beamfem.kernels.pointers import at, given
-from beamfem.kernels.record import ROW, Group, System
 from beamfem.kernels.records import Reals
 
 # of a beam: kinetic and strain energy [J]; position summed over mass (2,) [kg m] and over length (2,) [m^2]; linear

@@ -1,9 +1,9 @@
 """Time steps of explicit methods, many in one compiled call: each stage follows from those before it."""
 
 from beamfem.kernels.compiling import FAST, inlined, routine
+from beamfem.kernels.model_record import System
 from beamfem.kernels.motion_record import MotionSolver
 from beamfem.kernels.pointers import at, small_code
-from beamfem.kernels.record import System
 from beamfem.kernels.simd import WIDTH, as_rows, zeros
 from beamfem.kernels.stage_record import Stages
 from beamfem.kernels.stage_steps import end_step, place, start_step

@@ -4,8 +4,8 @@ Each table entry is a row of lanes, since the elements of a batch may all be dif
 """
 
 from beamfem.kernels.compiling import FAST, routine
+from beamfem.kernels.model_record import ROW
 from beamfem.kernels.pointers import at, small_code
-from beamfem.kernels.record import ROW
 from beamfem.kernels.simd import WIDTH, zeros
 
 

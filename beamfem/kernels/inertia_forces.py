@@ -1,8 +1,8 @@
 """Inertia and body forces of a batch, and the contribution of inertia to its matrices; each table entry is a row."""
 
 from beamfem.kernels.compiling import FAST, routine
+from beamfem.kernels.model_record import ROW
 from beamfem.kernels.pointers import at, small_code
-from beamfem.kernels.record import ROW
 from beamfem.kernels.simd import WIDTH, zeros
 
 

@@ -6,9 +6,9 @@ row; w: weights.
 """
 
 from beamfem.kernels.compiling import FAST, inlined, routine
+from beamfem.kernels.model_record import ROW, Group, System
 from beamfem.kernels.point import RATE, RESULTANT, STIFFNESS, STRAIN
 from beamfem.kernels.pointers import at
-from beamfem.kernels.record import ROW, Group, System
 from beamfem.kernels.records import Rows
 from beamfem.kernels.simd import WIDTH, zeros
 

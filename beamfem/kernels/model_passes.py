@@ -2,9 +2,9 @@
 
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import FAST, inlined, routine
+from beamfem.kernels.model_record import LANES, ROW, Group, System
 from beamfem.kernels.point import RATE, RATE_CHANGE, RESULTANT, STRAIN, VELOCITY
 from beamfem.kernels.pointers import at, given, small_code
-from beamfem.kernels.record import LANES, ROW, Group, System
 
 
 @inlined

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from beamfem.kernels.record import Solver
+from beamfem.kernels.model_record import Solver
 from beamfem.kernels.records import Reals, Record, Several, Wholes, calls
 
 

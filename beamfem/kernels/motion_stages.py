@@ -2,9 +2,9 @@
 
 from beamfem.kernels import model_passes
 from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.model_record import System
 from beamfem.kernels.motion_record import MotionSolver
 from beamfem.kernels.pointers import at, small_code
-from beamfem.kernels.record import System
 from beamfem.kernels.simd import WIDTH, as_rows
 
 

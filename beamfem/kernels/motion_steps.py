@@ -4,10 +4,10 @@ import math
 from typing import Annotated
 
 from beamfem.kernels.compiling import FAST, routine
+from beamfem.kernels.model_record import LANES, ROW, Group, System
 from beamfem.kernels.motion_record import MotionSolver, MotionStatistics, PairRun
 from beamfem.kernels.pointers import at, small_code
 from beamfem.kernels.predictor import larger_of
-from beamfem.kernels.record import LANES, ROW, Group, System
 from beamfem.kernels.records import Reals, Several
 from beamfem.kernels.simd import WIDTH, as_rows, larger, largest, zeros
 

@@ -3,8 +3,8 @@
 from typing import Annotated
 
 from beamfem.kernels.compiling import FAST, inlined, routine
+from beamfem.kernels.model_record import Solver, System
 from beamfem.kernels.pointers import at
-from beamfem.kernels.record import Solver, System
 from beamfem.kernels.records import Reals, Record, calls
 from beamfem.kernels.simd import WIDTH, as_rows, larger, largest, zeros
 

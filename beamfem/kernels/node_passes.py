@@ -2,9 +2,9 @@
 
 from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH
 from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.model_record import LANES, ROW, Group, System
 from beamfem.kernels.nodes import put, take
 from beamfem.kernels.pointers import at, small_code
-from beamfem.kernels.record import LANES, ROW, Group, System
 from beamfem.kernels.reduction import add_node_forces
 from beamfem.kernels.simd import WIDTH, as_rows
 

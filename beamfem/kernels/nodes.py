@@ -3,8 +3,8 @@
 import numpy as np
 
 from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.model_record import ROW
 from beamfem.kernels.pointers import at, small_code
-from beamfem.kernels.record import ROW
 from beamfem.kernels.simd import WIDTH, as_rows, gathered
 
 # pi / 2 as a sum of three parts, the first two with few digits, so that their products with integers are exact

@@ -6,9 +6,9 @@ with p by t C G', as the sections turn; the product of this with G^T is not symm
 
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import FAST, routine
+from beamfem.kernels.model_record import ROW, Group, System
 from beamfem.kernels.point import RATE, RATE_CHANGE, RESULTANT, VELOCITY
 from beamfem.kernels.pointers import at
-from beamfem.kernels.record import ROW, Group, System
 from beamfem.kernels.records import Reals
 from beamfem.kernels.simd import WIDTH, zeros
 

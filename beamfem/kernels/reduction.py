@@ -7,8 +7,8 @@ numbered -1.
 
 from beamfem.kernels.compiling import FAST, inlined, routine
 from beamfem.kernels.element_stiffness import multiply
+from beamfem.kernels.model_record import ROW, Group, System
 from beamfem.kernels.pointers import at
-from beamfem.kernels.record import ROW, Group, System
 from beamfem.kernels.records import Reals
 from beamfem.kernels.simd import WIDTH, as_rows
 

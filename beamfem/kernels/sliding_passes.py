@@ -5,7 +5,7 @@ h = (r_b - r) . r' = 0, and the condition g = (r_b - r) . n - distance, with the
 is w_i n with r_b - r = sum w_i q_i, and dn = - t (n . dr') / |r'|.
 
 q: the position r_b and then the vectors r_i (m, 2); data: m, the coefficients (m, m) of the powers of xi - 1/2 in
-each N_i, and the distance. Signatures are those of `kernels.record.Parts`.
+each N_i, and the distance. Signatures are those of `kernels.model_record.Parts`.
 """
 
 from beamfem.kernels.compiling import inlined, routine

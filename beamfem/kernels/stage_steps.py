@@ -8,9 +8,9 @@ converge fast.
 import math
 
 from beamfem.kernels.compiling import FAST, inlined, routine
+from beamfem.kernels.model_record import System
 from beamfem.kernels.motion_record import MotionSolver
 from beamfem.kernels.pointers import at, small_code
-from beamfem.kernels.record import System
 from beamfem.kernels.simd import WIDTH, as_rows, larger, largest, zeros
 from beamfem.kernels.stage_record import Stages
 from beamfem.kernels.time_loop import load_row, remember, save_end

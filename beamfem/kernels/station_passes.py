@@ -3,8 +3,8 @@
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.gathering import gather
+from beamfem.kernels.model_record import CONSTANTS, ROW, Group, System
 from beamfem.kernels.pointers import at, room
-from beamfem.kernels.record import CONSTANTS, ROW, Group, System
 from beamfem.kernels.records import Reals
 
 _DATA = 3 + CONSTANTS

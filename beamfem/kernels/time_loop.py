@@ -2,10 +2,10 @@
 
 from beamfem.kernels import motion_steps
 from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.model_record import System
 from beamfem.kernels.motion_record import MotionSolver
 from beamfem.kernels.motion_steps import RATIO
 from beamfem.kernels.pointers import at, given, small_code
-from beamfem.kernels.record import System
 
 _check_convergence = inlined(motion_steps.check_convergence)
 

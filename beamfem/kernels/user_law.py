@@ -1,9 +1,9 @@
 """A user's section law, a C function that is called by its address at one point after the other."""
 
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.model_record import ROW, Group, System
 from beamfem.kernels.point import RESULTANT, STIFFNESS, STRAIN
 from beamfem.kernels.pointers import at, room
-from beamfem.kernels.record import ROW, Group, System
 from beamfem.kernels.records import Reals
 
 MOST_HISTORY = 256  # history variables of a point

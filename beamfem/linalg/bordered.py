@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import coo_array, csc_array, csr_array
 
-from beamfem.kernels import record
+from beamfem.kernels import model_record
 from beamfem.kernels.bidirectional_lu import bidirectional_lu
 from beamfem.kernels.condensation import factor_condensed, solve_condensed
 from beamfem.kernels.records import aligned
@@ -39,11 +39,11 @@ class Border(NamedTuple):
         return len(self.entries)
 
 
-def condensed_record(size: int, half: int, reach: np.ndarray, rows: np.ndarray, border: Border) -> record.Border:
+def condensed_record(size: int, half: int, reach: np.ndarray, rows: np.ndarray, border: Border) -> model_record.Border:
     """Return the workspace to factor a band of n unknowns, in `rows`, with a border, in place."""
     (numbers, multipliers, entries), routines = border, bidirectional_lu(half, True)
     t, m = len(numbers), len(numbers) + multipliers
-    own = record.Border(unknown=size, half=half, reach=reach, edge=t, conditions=multipliers)
+    own = model_record.Border(unknown=size, half=half, reach=reach, edge=t, conditions=multipliers)
     own.fill(rows=rows, entries=entries, numbers=np.ascontiguousarray(numbers))
     own.fill(factor=routines.factor, solve=routines.solve)
     room = {"signs": (size,), "columns": (t, size), "beside": (t, 2 * half + 1), "condensed": (m, m), "sizes": (3, m)}
@@ -55,7 +55,7 @@ def condensed_record(size: int, half: int, reach: np.ndarray, rows: np.ndarray, 
 class CondensedFactors(Factorised):
     """Factors of a band with a border, see `kernels.condensation`."""
 
-    border: record.Border
+    border: model_record.Border
 
     @property
     def negative_pivots(self) -> int:

@@ -13,7 +13,7 @@ from beamfem.errors import InputError
 from beamfem.kernels.compiler.value_types import Signature
 from beamfem.kernels.compiling import Derived, Routine
 from beamfem.kernels.connection_passes import MOST, MOST_DATA
-from beamfem.kernels.record import POINT_FORCE, POINT_TANGENT
+from beamfem.kernels.model_record import POINT_FORCE, POINT_TANGENT
 from beamfem.kernels.records import address_of
 from beamfem.physics.connection_source import connection_source
 from beamfem.physics.connections import Connection

@@ -10,7 +10,7 @@ from typing import Any
 
 from beamfem.kernels import point
 from beamfem.kernels.compiling import Derived
-from beamfem.kernels.record import CONVECT_PASS, ROW, ROWS_PASS
+from beamfem.kernels.model_record import CONVECT_PASS, ROW, ROWS_PASS
 from beamfem.physics.kinematics import KINDS, MEASURES, Kinematics, Measure
 from beamfem.physics.terms import Graph, Number, changes, gradient, source, sqrt, symbols
 

@@ -5,7 +5,7 @@ import pytest
 
 from beamfem.kernels import band_assembly
 from beamfem.kernels.compiling import Routine
-from beamfem.kernels.record import LANES, ROW
+from beamfem.kernels.model_record import LANES, ROW
 
 ELEMENTS = (1, 2, 7, 8, 9, 17, LANES)
 

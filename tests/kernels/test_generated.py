@@ -7,7 +7,7 @@ from beamfem.element.fields import Axis
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, Structural
 from beamfem.kernels import point
 from beamfem.kernels.block import ELASTIC_LINE, GREEN_LAGRANGE, STRUCTURAL
-from beamfem.kernels.record import ROW
+from beamfem.kernels.model_record import ROW
 from beamfem.parts.at_points import ANALYTIC
 from beamfem.physics.compiled_connections import in_python, passes_of
 from beamfem.physics.compiled_elements import MEASURE_PASSES

@@ -7,7 +7,7 @@ import pytest
 
 from beamfem.kernels import nodes
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.record import ROW
+from beamfem.kernels.model_record import ROW
 from beamfem.kernels.records import address_of
 from beamfem.kernels.simd import WIDTH, as_rows, larger, largest, merged, power_of_two, zeros
 

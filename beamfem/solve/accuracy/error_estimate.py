@@ -27,6 +27,7 @@ from beamfem.mesh.reference import reference_axis, reference_position
 from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
 from beamfem.precision.roundoff import FEW_DIGITS
+from beamfem.quadrature import interpolation_weights
 from beamfem.results import postprocess
 from beamfem.results.axis_points import axis_at
 from beamfem.results.full_turns import first_turns
@@ -211,10 +212,7 @@ def _counted(mesh: BeamMesh) -> np.ndarray:
 def _interpolated(old: BeamMesh, new: BeamMesh, at: np.ndarray, wanted: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Return polynomials (new elements, m, k) at xi `wanted` (m,), through values (elements, l, k) at xi `at` (l,)."""
     element, xi = places(old, new, wanted)
-    every = np.arange(len(at))
-    factors = (xi[..., None, None] - at) / (at[:, None] - at + np.eye(len(at)))
-    factors[..., every, every] = 1.0
-    return np.einsum("epi,epik->epk", factors.prod(axis=-1), values[element])
+    return np.asarray(np.einsum("epi,epik->epk", interpolation_weights(at, xi), values[element]))
 
 
 def places(old: BeamMesh, new: BeamMesh, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

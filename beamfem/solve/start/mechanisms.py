@@ -150,10 +150,9 @@ _PROVEN = "supported"
 
 
 class FreeMotion(NamedTuple):
-    """Motions (m, 3 bodies) of bodies that satisfy all conditions in the reference, and the error that names them."""
+    """Conditions that leave motions of bodies free in the reference, and the error that names these."""
 
     conditions: Conditions
-    motions: np.ndarray
     error: FreeMotionError
 
 
@@ -232,7 +231,7 @@ def free_motion(system: System) -> FreeMotion | None:
         remedy=f"{missing} static solve needs supports that hold it (a Clamp, or a Pin and a Roller) or joints that "
         f"stiffen it (Rigid instead of Hinge){closing}; without them, use simulate",
     )
-    return FreeMotion(rows, free, error)
+    return FreeMotion(rows, error)
 
 
 def _parts(rows: Conditions, motions: np.ndarray, pair: Pair) -> bool:

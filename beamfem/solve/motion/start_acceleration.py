@@ -10,6 +10,8 @@ from beamfem.equations.viscosity import viscous_tangent
 from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.solve.motion.constraints import constrained_acceleration
 
+_MOST_PASSES = 50  # each leaves a coefficient of friction, or less, of the change by the one before
+_SETTLED = 1e-12  # of the largest multiplier: change by a pass
 _NEGLIGIBLE = 0.1  # of the inertia forces at the start: those that depend on the velocity after a step
 
 
@@ -33,8 +35,16 @@ def initial_acceleration(
     else:
         unbalanced, mass = linearise(system, p, v, a, time, INERTIA, dt=elapsed)
     if len(multipliers):
-        a[free] = constrained_acceleration(system, (p, v, a), unbalanced, mass, time)
-        state[0, multipliers], state[1, multipliers], a[multipliers] = a[multipliers], 0.0, 0.0
+        given = a.copy()
+        a[free] = constrained_acceleration(system, (p, v, given), unbalanced, mass, time)
+        p[multipliers] = a[multipliers]
+        for _ in range(_MOST_PASSES if len(system.history.numbers) else 0):  # friction depends on multipliers
+            unbalanced = residual(system, p, v, given, time, elapsed)
+            a[free] = constrained_acceleration(system, (p, v, given), unbalanced, mass, time)
+            p[multipliers] += a[multipliers]
+            if np.abs(a[multipliers]).max() <= _SETTLED * np.abs(p[multipliers]).max():
+                break
+        state[0, multipliers], state[1, multipliers], a[multipliers] = p[multipliers], 0.0, 0.0
         return a
     a[free] = mass.solve(-unbalanced[free], system.rotated)
     return a

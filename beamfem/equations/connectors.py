@@ -1,7 +1,8 @@
 """All connectors of a model: forces, tangents, energies, momenta, conditions and history."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, is_dataclass
+from typing import Any
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -13,6 +14,7 @@ from beamfem.equations.connector_nodes import checked_connectors
 from beamfem.equations.connector_traits import follows_time, resists_rates
 from beamfem.equations.equation_numbering import Mesh
 from beamfem.errors import InputError
+from beamfem.model.beam import Beam
 from beamfem.model.contribution import is_one_sided, remembered
 from beamfem.model.load_base import factor
 from beamfem.model.model import Model
@@ -236,7 +238,30 @@ def connectors_of(model: Model, static: bool) -> Connectors:
     return Connectors(model, static, model.tables["connectors"])
 
 
-def same_connectors(own: Connectors, others: Connectors) -> dict[Connector, Connector]:
-    """Return the connectors of a model that are in another one, too, each with the one there."""
+def same_connectors(own: Connectors, others: Connectors, beams: Mapping[Beam, Beam]) -> dict[Connector, Connector]:
+    """Return the connectors of a model that are in another one, too, each with the one there.
+
+    They are the same objects, or equal ones at the same points. beams: those of the model by those of the other one.
+    """
     known = {id(item.item): item for item in others.items}
-    return {item: known[id(item.item)] for item in own.items if id(item.item) in known}
+    result = {item: known[id(item.item)] for item in own.items if id(item.item) in known}
+    left = [item for item in others.items if item not in result.values()]
+    for item in own.items:
+        same = None if item in result else next((each for each in left if _same(each.item, item.item, beams)), None)
+        if same is not None:
+            result[item] = same
+            left.remove(same)
+    return result
+
+
+def _same(one: Any, other: Any, beams: Mapping[Beam, Beam]) -> bool:
+    """Return whether two parts of different models, or what they hold, are equal; beams: see `same_connectors`."""
+    if isinstance(one, Beam):
+        return beams.get(one) is other
+    if one is other or type(one) is not type(other):
+        return one is other
+    if is_dataclass(one):
+        return all(_same(getattr(one, each.name), getattr(other, each.name), beams) for each in fields(one))
+    if isinstance(one, tuple | list):
+        return len(one) == len(other) and all(_same(*pair, beams) for pair in zip(one, other, strict=True))
+    return np.array_equal(one, other) if isinstance(one, np.ndarray) else bool(one == other)

@@ -152,3 +152,23 @@ def test_steps_that_follow_a_tolerance_end_where_a_sled_on_a_spring_slips_and_st
     assert turned[: len(ends) - 1] == pytest.approx(ends[1:], abs=10.0 * tolerance * 0.3)
     assert turned[-1] == pytest.approx(ends[-1], abs=10.0 * tolerance * 0.3)
     assert np.all(np.diff(motion.energy().dissipated) >= -1e-15)  # J of 0.3 J, round-off
+
+
+@pytest.mark.parametrize("how", [{"step": 1e-3}, {"step": 1e-3, "save_every": 7}, {"tolerance": 1e-5}])
+def test_friction_acts_on_where_the_push_ends(how):
+    """At the jump friction was left out for half a step, as the normal force was taken for zero."""
+    push = bf.Piecewise(lambda time: 1.0 if time < 0.1 else 0.0, (0.1,))
+    force = 3.0 * FRICTION * MASS * GRAVITY
+    model, bar = sled(loads=[lambda point: bf.PointForce(point, (force, 0.0), amplitude=push)])
+    motion = bf.simulate(model, 0.15, integrator=bf.GeneralizedAlpha(0.5), **how)
+    after = motion.time > 0.1 - 1e-9
+    time, momentum = motion.time[after], motion.linear_momentum()[after, 0]
+    assert np.diff(momentum) == pytest.approx(-FRICTION * MASS * GRAVITY * np.diff(time), rel=1e-3)
+
+
+def test_friction_acts_in_the_first_row_of_a_motion_that_goes_on():
+    force = 3.0 * FRICTION * MASS * GRAVITY
+    model, bar = sled(loads=[lambda point: bf.PointForce(point, (force, 0.0))])
+    begun = bf.simulate(model, 0.05, 1e-3, bf.GeneralizedAlpha(0.5))
+    further = bf.simulate(model, 2e-3, 1e-3, bf.GeneralizedAlpha(0.5), start=begun)
+    assert further.acceleration(bar.start)[:, 0] == pytest.approx(2.0 * FRICTION * GRAVITY, rel=1e-4)

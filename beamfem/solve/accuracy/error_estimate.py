@@ -169,7 +169,7 @@ def carried_coordinates(state: State, target: Model) -> np.ndarray:
     p = system.reference.copy()
     for old, new in _joined(source, target):
         set_coordinates(new, _values_at_nodes(old, new, state), p)
-    for item, same in same_connectors(system.connectors, system_of(source, True).connectors).items():
+    for item, same in same_connectors(system.connectors, system_of(source, True).connectors, {}).items():
         p[item.own], p[item.amplitudes] = state.p[same.own], state.p[same.amplitudes]
     return p
 

@@ -12,6 +12,7 @@ from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.model_meshes import required_nodes
 from beamfem.mesh.reference import reference_angle
 from beamfem.model.beam import beam_in_words
+from beamfem.model.contribution import remembered
 from beamfem.model.model import Model
 from beamfem.results import postprocess
 from beamfem.results.axis_points import nodal_vectors
@@ -29,20 +30,23 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
 
     Beams are matched by identity or, in a copy of their model, by position, in any order. Nodes are the same, but
     whether their coordinates are gradients or angles depends on supports and joints. Connectors that are in both models
-    keep their history, multipliers and amplitudes, and beams with the same element and section law their history.
+    keep their history, multipliers and amplitudes, see `same_connectors`, and beams with the same element and section
+    law their history.
     Raises InputError if the beams do not match.
     """
     source, target = state.model, system.model
     if source is target:
         return np.array(state.p), np.array(state.v)
     p, v = system.reference.copy(), np.zeros(target.size)
-    for old, new in _matched(source, target, name):
+    matched = _matched(source, target, name)
+    for old, new in matched:
         values, rates = _by_label(old, state)
         set_coordinates(new, values, p)
         set_coordinates(new, rates, v)
         if _keeps_history(old, new):
             p[new.history] = state.p[old.history]
-    known = same_connectors(system.connectors, system_of(source, system.static).connectors)
+    beams = {old.beam: new.beam for old, new in matched}
+    known = same_connectors(system.connectors, system_of(source, system.static).connectors, beams)
     for item in system.connectors.items:
         if item in known:
             same = known[item]
@@ -54,10 +58,21 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
 
 
 def warn_of_lost_history(state: State, system: System, name: str) -> None:
-    """Warn of beams that have a history in a state which their sections here do not continue."""
+    """Warn of beams and connectors that have a history in a state which those here do not continue."""
     if state.model is system.model:
         return
-    for old, new in _matched(state.model, system.model, name):
+    matched = _matched(state.model, system.model, name)
+    own, others = (each.connectors for each in (system, system_of(state.model, system.static)))
+    known = same_connectors(own, others, {old.beam: new.beam for old, new in matched})
+    left = [type(item.item) for item in own.items if item not in known]
+    for item in others.items:
+        kept = item in known.values() or type(item.item) not in left
+        if not kept and not np.array_equal(state.p[item.memory], remembered(item.item)):
+            warn(
+                f"what the {item.name} remembers in {name} is lost: that of this model has other numbers or points, "
+                "and begins without history"
+            )
+    for old, new in matched:
         law = old.beam.law
         if law is None or not old.history.size or _keeps_history(old, new):
             continue

@@ -159,7 +159,7 @@ def test_friction_acts_on_where_the_push_ends(how):
     """At the jump friction was left out for half a step, as the normal force was taken for zero."""
     push = bf.Piecewise(lambda time: 1.0 if time < 0.1 else 0.0, (0.1,))
     force = 3.0 * FRICTION * MASS * GRAVITY
-    model, bar = sled(loads=[lambda point: bf.PointForce(point, (force, 0.0), amplitude=push)])
+    model = sled(loads=[lambda point: bf.PointForce(point, (force, 0.0), amplitude=push)])[0]
     motion = bf.simulate(model, 0.15, integrator=bf.GeneralizedAlpha(0.5), **how)
     after = motion.time > 0.1 - 1e-9
     time, momentum = motion.time[after], motion.linear_momentum()[after, 0]

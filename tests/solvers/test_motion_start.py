@@ -1,5 +1,7 @@
 """What a motion starts from: velocities, accelerations, states of other models."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from conftest import beam
@@ -421,3 +423,32 @@ def test_a_history_that_other_friction_does_not_continue_is_warned_of():
     lost = pytest.warns(UserWarning, match="what the HingeFriction.* remembers in start is lost")
     with lost, pytest.warns(bf.errors.EnergyWarning, match="falls by"):  # of the spring in which it sticks
         bf.simulate(_with_friction(torque=0.2), 5e-3, 5e-3, start=begun)
+
+
+@pytest.mark.parametrize("element", [bf.CRBF(2), bf.ANCF(), bf.ShearRigid()], ids=lambda element: element.label)
+@pytest.mark.parametrize("joint", [bf.Hinge, bf.Rigid])
+def test_a_start_that_a_joint_of_beams_would_move_is_refused(element, joint):
+    """A hinge closed a gap of 24 mm at once, and a rigid joint a bend of 0.6 rad, with up to 19 kJ of strain."""
+    first, second = straight(element, 2), straight(element, 2, (1.0, 0.0), (2.0, 0.0))
+    hinged = {"joints": [bf.Hinge(first.end, second.start)]} if joint is bf.Rigid else {}
+    before = bf.Model([first, second], [bf.Pin(first.start)], [bf.Gravity((0.0, -9.81))], **hinged)
+    after = bf.Model(before.beams, before.supports, before.loads, [joint(first.end, second.start)])
+    moved = bf.simulate(before, 0.05, 1e-3)
+    with pytest.raises(bf.InputError, match=r"the one at \(1, 0\) .* would change beam [01] by .* at once"):
+        bf.simulate(after, 1e-3, 1e-3, start=moved)
+    together = bf.simulate(after, 1e-3, 1e-3, start=bf.simulate(after, 0.05, 1e-3))
+    assert together.position(first.end) == pytest.approx(together.position(second.start), abs=1e-12)
+
+
+@pytest.mark.parametrize("joint", [bf.Hinge, bf.Rigid])
+def test_a_start_whose_rates_a_joint_of_beams_would_change_is_refused(joint):
+    """The joint gave both beams the rates of the second one, and momentum was lost without a word."""
+    first, second = straight(bf.CRBF(2), 2), straight(bf.CRBF(2), 2, (1.0, 0.0), (2.0, 0.0))
+    apart = bf.Model([first, second])
+    rising = bf.simulate(apart, 1e-3, 1e-3, velocity=bf.RigidVelocity((0.0, 1.0)))[0]
+    rates = rising.v.copy()
+    rates[apart.meshes[1].kinematics.dof.ravel()] = 0.0
+    joined = bf.Model(apart.beams, joints=[joint(first.end, second.start)])
+    with pytest.raises(bf.InputError, match="by 1 m/s at once"):
+        bf.simulate(joined, 1e-3, 1e-3, start=replace(rising, v=rates))
+    assert bf.simulate(joined, 1e-3, 1e-3, start=rising).linear_momentum()[:, 1] == pytest.approx(1.56, rel=1e-9)

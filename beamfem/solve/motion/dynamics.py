@@ -25,7 +25,12 @@ from beamfem.solve.motion.constraints import change_of_velocity, impact, require
 from beamfem.solve.motion.cut_steps import Rows
 from beamfem.solve.motion.error_control import march_to_tolerance
 from beamfem.solve.motion.events import Event
-from beamfem.solve.motion.initial_velocity import put_onto_supports, require_on_supports, start_velocity
+from beamfem.solve.motion.initial_velocity import (
+    put_onto_supports,
+    require_joined,
+    require_on_supports,
+    start_velocity,
+)
 from beamfem.solve.motion.motion_error import LOOSE, MOST_MESHES, motion_attempt, rows_of, with_estimate_of
 from beamfem.solve.motion.motion_plan import AnyIntegrator, MotionPlan, planned, settings_of, usual_integrator
 from beamfem.solve.motion.period_error import detuned
@@ -187,6 +192,8 @@ def simulate(
     start = last_state(start)
     state[0] = start_state(system, start)
     state[1] = start_velocity(system, state[0], velocity, start)
+    if start is not None:
+        require_joined(system, start, moving=velocity is None)
     if start is not None or system.moved:
         require_on_supports(system, state[0], prescribed[0, 0], start is not None)
     stopped = put_onto_supports(system, state, prescribed[0])

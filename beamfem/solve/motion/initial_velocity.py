@@ -13,10 +13,11 @@ from beamfem.errors import InputError
 from beamfem.kernels.block import SHEAR_RIGID, STRETCH
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import reference_position
+from beamfem.model.beam import beam_in_words
 from beamfem.model.supports import PointSupport
-from beamfem.results.postprocess import nodal_vectors
+from beamfem.results.postprocess import nodal_rotations, nodal_vectors
 from beamfem.results.solution import State
-from beamfem.solve.start.start_state import transferred
+from beamfem.solve.start.start_state import matched, transferred
 from beamfem.validation import called, vector
 
 _NEAR = 0.01  # of an element, between the points of a difference
@@ -105,8 +106,7 @@ def require_on_supports(system: System, p: np.ndarray, prescribed: np.ndarray, g
     p (n,): coordinates of the start; prescribed (nh,): values of the prescribed coordinates at time 0; given: whether
     the start is a state, not the reference.
     """
-    moved = float(np.abs(p - system.reference)[system.positions].max()) / system.extent
-    near = max(_OFF * min(moved, 1.0), _SAME)
+    near = _near(system, p)
     gaps = prescribed - p[system.prescribed_dofs]
     gaps -= _unfelt_turns(system, gaps)
     jumps = _large(system.prescribed_dofs, gaps, near * system.scale[system.prescribed_dofs])
@@ -130,6 +130,53 @@ def require_on_supports(system: System, p: np.ndarray, prescribed: np.ndarray, g
                 f"the motion begins, but {'start' if given else 'the reference'} has {_number(system, dof, p[dof])}, "
                 f"so that it would jump by {abs(jumps[dof]):.4g}; shift its function of time, which begins at 0"
             )
+
+
+def require_joined(system: System, start: State, moving: bool) -> None:
+    """Raise InputError if joints of beams would change positions, rotations or their rates of a start at once.
+
+    In its transfer, nodes that are joined have the coordinates and rates of one of the beams. moving: whether the
+    motion begins with its rates.
+    """
+    model = system.model
+    if start.model is model:
+        return
+    p, v = transferred(start, system, "start")
+    near = _near(system, p)
+    shared = np.bincount(np.concatenate([mesh.kinematics.dof[:, 0] for mesh in model.meshes])) > 1
+    fastest = max(float(np.abs(start.v).max()), np.finfo(float).tiny)
+    for old, new in matched(start.model, model, "start"):
+        before, after = _of_sections(old, start.p, start.v), _of_sections(new, p, v)
+        change = after - before
+        change[1] -= 2.0 * np.pi * np.round(change[1].real / (2.0 * np.pi))
+        joined = shared[new.kinematics.dof[:, 0]]
+        sizes = system.extent, 1.0, *((fastest, fastest / system.extent) if moving else (np.inf, np.inf))
+        relative = np.abs(change).T / sizes * joined[:, None]
+        if (relative > near).any():
+            node = int(relative.max(axis=1).argmax())
+            (x, y), unit = new.position[node].tolist(), model.unit
+            units = unit("m"), "rad", f"{unit('m')}/{unit('s')}", f"rad/{unit('s')}"
+            changes = zip(np.abs(change[:, node]).tolist(), units, (relative[node] > near).tolist(), strict=True)
+            by = " and ".join(f"{size:.3g} {name}" for size, name, large in changes if large)
+            raise InputError(
+                f"start does not satisfy a joint of this model: the one at ({x:g}, {y:g}), undeformed, would change "
+                f"{beam_in_words(model.beams, model.number_of(new.beam))} by {by} at once; join what meets in the state"
+            )
+
+
+def _of_sections(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return position [m] as a complex number, rotation [rad] and their rates (4, nodes) of the nodes of a beam."""
+    e, rate = nodal_vectors(mesh, p[None])[0], nodal_vectors(mesh, p[None], v=v[None])[0]
+    way = mesh.vectors.index("r_x") if mesh.beam.element.forces.turns_with == "r_x" else -1
+    turning = cross(e[:, way], rate[:, way]) / dot(e[:, way], e[:, way])
+    position, velocity = (values[:, 0, 0] + 1j * values[:, 0, 1] for values in (e, rate))
+    return np.array([position, nodal_rotations(mesh, p[None])[0], velocity, turning])
+
+
+def _near(system: System, p: np.ndarray) -> float:
+    """Return how far, in sizes of the model or rad, a state p (n,) may be off what holds it: the error of solvers."""
+    moved = float(np.abs(p - system.reference)[system.positions].max()) / system.extent
+    return max(_OFF * min(moved, 1.0), _SAME)
 
 
 def put_onto_supports(system: System, state: np.ndarray, prescribed: np.ndarray) -> np.ndarray:

@@ -38,14 +38,14 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
     if source is target:
         return np.array(state.p), np.array(state.v)
     p, v = system.reference.copy(), np.zeros(target.size)
-    matched = _matched(source, target, name)
-    for old, new in matched:
+    pairs = matched(source, target, name)
+    for old, new in pairs:
         values, rates = _by_label(old, state)
         set_coordinates(new, values, p)
         set_coordinates(new, rates, v)
         if _keeps_history(old, new):
             p[new.history] = state.p[old.history]
-    beams = {old.beam: new.beam for old, new in matched}
+    beams = {old.beam: new.beam for old, new in pairs}
     known = same_connectors(system.connectors, system_of(source, system.static).connectors, beams)
     for item in system.connectors.items:
         if item in known:
@@ -61,9 +61,9 @@ def warn_of_lost_history(state: State, system: System, name: str) -> None:
     """Warn of beams and connectors that have a history in a state which those here do not continue."""
     if state.model is system.model:
         return
-    matched = _matched(state.model, system.model, name)
+    pairs = matched(state.model, system.model, name)
     own, others = (each.connectors for each in (system, system_of(state.model, system.static)))
-    known = same_connectors(own, others, {old.beam: new.beam for old, new in matched})
+    known = same_connectors(own, others, {old.beam: new.beam for old, new in pairs})
     left = [type(item.item) for item in own.items if item not in known]
     for item in others.items:
         kept = item in known.values() or type(item.item) not in left
@@ -72,7 +72,7 @@ def warn_of_lost_history(state: State, system: System, name: str) -> None:
                 f"what the {item.name} remembers in {name} is lost: that of this model has other numbers or points, "
                 "and begins without history"
             )
-    for old, new in matched:
+    for old, new in pairs:
         law = old.beam.law
         if law is None or not old.history.size or _keeps_history(old, new):
             continue
@@ -102,7 +102,7 @@ def transferred_turns(state: State | None, model: Model, name: str) -> np.ndarra
     meshes = model.numbered.uncounted
     if state is None or not meshes:
         return np.zeros(len(meshes))
-    pairs = zip(model.meshes, model.meshes, strict=True) if state.model is model else _matched(state.model, model, name)
+    pairs = zip(model.meshes, model.meshes, strict=True) if state.model is model else matched(state.model, model, name)
     old = {id(new): source for source, new in pairs}
     return np.array([_rotations(old[id(mesh)], state)[0] for mesh in meshes])
 
@@ -137,7 +137,7 @@ def _by_label(mesh: BeamMesh, state: State) -> tuple[dict[str, np.ndarray], dict
     return values, rates
 
 
-def _matched(source: Model, target: Model, name: str) -> list[tuple[BeamMesh, BeamMesh]]:
+def matched(source: Model, target: Model, name: str) -> list[tuple[BeamMesh, BeamMesh]]:
     """Return the mesh of each beam in both models. Raises InputError if a beam has no counterpart."""
     by_beam = {id(mesh.beam): mesh for mesh in source.meshes}
     unmatched = [mesh for mesh in source.meshes if all(mesh.beam is not new.beam for new in target.meshes)]

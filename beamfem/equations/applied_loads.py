@@ -250,6 +250,8 @@ class Loads:
 class _Moving:
     """A moving load of a block, its number in `model.acting`, and the first of its rows, one for each Gauss point.
 
+    going: end at which it leaves for another beam, where the load beside, the same one there, takes its place.
+
     A polynomial of the degree of the field is determined by its values at the Gauss points of an element, so that
     forces there, in the shares of Lagrange's polynomials, have the nodal forces of one between them.
     """
@@ -258,15 +260,38 @@ class _Moving:
     number: int
     mesh: BeamMesh
     first: int
+    going: tuple[tuple[float, MovingLoad, float], ...]
 
     def at(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the numbers (n,) of the times (m,) when it is on the beam, and its stations and shares (n, k)."""
-        place = np.array([self.load.place_at(time) for time in times.tolist()]) / self.mesh.beam.curve.length
-        row = np.flatnonzero((place >= 0.0) & (place <= 1.0))
+        place = _fractions(self.load, times)
+        acts = (place >= 0.0) & (place <= 1.0)
+        for end, other, begin in self.going:
+            leaves = np.flatnonzero(place == end)
+            acts[leaves[_fractions(other, times[leaves]) == begin]] = False
+        row = np.flatnonzero(acts)
         element, xi = self.mesh.locate(place[row])
         points = length_rule(self.mesh.beam.element.field)[0]
         stations = self.first + element[:, None] * len(points) + np.arange(len(points))
         return row, stations, interpolation_weights(points, xi)
+
+
+def _fractions(load: MovingLoad, times: np.ndarray) -> np.ndarray:
+    """Return where a load is at times (n,) or load factors, in lengths of its beam."""
+    return np.array([load.place_at(time) for time in times.tolist()]) / load.beam.curve.length
+
+
+def _going(model: Model, number: int, load: MovingLoad) -> tuple[tuple[float, MovingLoad, float], ...]:
+    """Return the joints at which the load of a number goes over to a later one that is the same: see `_Moving`."""
+    later = [other for other in model.acting[number + 1 :] if isinstance(other, MovingLoad)]
+    later = [each for each in later if each.vector == load.vector and each.amplitude is load.amplitude]
+    sides = [pair for joint in model.shared_joints for pair in ((joint.a, joint.b), (joint.b, joint.a))]
+    return tuple(
+        (own.fraction, other, beside.fraction)
+        for own, beside in sides
+        for other in later
+        if own.beam is load.beam and beside.beam is other.beam
+    )
 
 
 def build_actions(model: Model, block: int) -> Actions:
@@ -286,7 +311,8 @@ def build_actions(model: Model, block: int) -> Actions:
             continue
         where, xi, weight = length_points(mesh)
         if isinstance(load, MovingLoad):
-            moving.append(_Moving(load, number, mesh, sum(len(part[0]) for part in parts)))
+            first = sum(len(part[0]) for part in parts)
+            moving.append(_Moving(load, number, mesh, first, _going(model, number, load)))
             parts.append(_part(mesh, where, xi, DEAD))
         elif along := load.acting(mesh.arc_length(where, xi)):
             unit = np.column_stack([weight[:, None] * along["line_force"], np.zeros(len(xi))])

@@ -118,3 +118,25 @@ def test_a_path_ends_where_a_force_leaves_a_free_end():
     tip = solution.displacement(beam.end)[:, 1]
     alone = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -0.1 * FORCE))]))
     assert tip == pytest.approx([0.0, alone.displacement(beam.end)[-1, 1], 0.0, 0.0], abs=1e-9)
+
+
+@pytest.mark.parametrize("back", [False, True])
+def test_a_force_that_goes_over_to_the_next_beam_acts_once_at_the_joint(back):
+    """Both beams had it when it stood there: twice the force for a step."""
+    whole, model = bridge()
+    halves = [bf.Beam(bf.Line((x, 0), (x + 2.0, 0)), 4, bf.CRBF(4), SECTION, STEEL) for x in (0.0, 2.0)]
+    place = (lambda t: LENGTH - 8.0 * t) if back else (lambda t: 8.0 * t)
+    force = (0.0, -FORCE)
+    wheels = [bf.MovingForce(halves[0], place, force), bf.MovingForce(halves[1], lambda t: place(t) - 2.0, force)]
+    supports, joints = [bf.Pin(halves[0].start), bf.Roller(halves[1].end)], [bf.Rigid(halves[0].end, halves[1].start)]
+    for loads in (wheels, wheels[::-1]):
+        parted = bf.Model(halves, supports, loads, joints)
+        one, other = (
+            bf.simulate(m, 0.5, 0.0125) for m in (model.with_loads([bf.MovingForce(whole, place, force)]), parted)
+        )
+        assert place(one.time[20]) == 2.0
+        sag = one.displacement(whole.at(0.5))
+        assert other.displacement(halves[0].end) == pytest.approx(sag, abs=1e-9 * abs(sag).max())
+        still = [bf.MovingForce(load.beam, lambda t, own=load: own.position(0.25), force, scale=True) for load in loads]
+        static = bf.solve_static(bf.Model(halves, supports, still, joints))
+        assert static.reaction(halves[0].start)[-1, 1] == pytest.approx(0.5 * FORCE, rel=1e-3)

@@ -434,7 +434,7 @@ def test_a_start_that_a_joint_of_beams_would_move_is_refused(element, joint):
     before = bf.Model([first, second], [bf.Pin(first.start)], [bf.Gravity((0.0, -9.81))], **hinged)
     after = bf.Model(before.beams, before.supports, before.loads, [joint(first.end, second.start)])
     moved = bf.simulate(before, 0.05, 1e-3)
-    with pytest.raises(bf.InputError, match="undeformed, would change beam [01] by .* at once"):
+    with pytest.raises(bf.InputError, match=r"undeformed, would change beam [01] by .* at once"):
         bf.simulate(after, 1e-3, 1e-3, start=moved)
     together = bf.simulate(after, 1e-3, 1e-3, start=bf.simulate(after, 0.05, 1e-3))
     assert together.position(first.end) == pytest.approx(together.position(second.start), abs=1e-12)

@@ -110,6 +110,16 @@ class Alike(NamedTuple):
                 found.append(np.where(dissipates, rate, 0.0))
         return np.concatenate(found, axis=1)
 
+    def changes(self, q: np.ndarray, v: np.ndarray, history: np.ndarray) -> np.ndarray:
+        """Return whether history (rows, n, h) would change in a step to coordinates and rates (rows, n, u)."""
+        own = self.connection
+        if own.remember is None:
+            return np.zeros(history.shape, dtype=bool)
+        q, v, before = (np.moveaxis(x, -1, 0) for x in (q, v, history))
+        data = [*self.data.T, *before, *q[own.size :]]
+        after = own.remember(own.split(q), own.split(v), data, ANALYTIC)
+        return np.moveaxis(np.array([now != then for now, then in zip(after, before, strict=True)]), 0, -1)
+
 
 def springs_to_ground(model: Model, unknowns: Unknowns, reference: np.ndarray) -> Alike:
     """Return the springs of supports, which are unstressed at the coordinates `reference` (n,)."""

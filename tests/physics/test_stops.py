@@ -203,3 +203,28 @@ def test_a_stop_without_friction_has_no_history_and_counts_in_paths_and_buckling
 def test_refused_with_a_reason(values, message):
     with pytest.raises(bf.InputError, match=message):
         bf.Stop(block().end, *values)
+
+
+@pytest.mark.parametrize("duration", [0.3, 0.35, 0.4, 0.45])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-6])
+@pytest.mark.parametrize("kind", ["slider", "hinge"])
+def test_end_stops_give_back_their_share_of_the_speed_at_any_tolerance(kind, tolerance, duration):
+    """A body left a stop of 0.5 at 0.53 to 0.99 of its speed, as steps went over the deepest state."""
+    stiff = bf.Section.from_stiffness(axial=1e8, shear=1e8, bending=1e5, mass=1e-6, rotary_inertia=1e-9)
+    place = ((0.3, 0.0), (0.35, 0.0)) if kind == "slider" else ((0.0, 0.0), (0.0, 0.1))
+    base, moved = (bf.Beam(bf.Line(*ends), 1, bf.CRBF(1), stiff) for ends in (((0.0, 0.0), (-0.1, 0.0)), place))
+    a, b = base.start, moved.start
+    if kind == "slider":
+        stop = bf.SliderStop(a, b, (1.0, 0.0), high=0.2, stiffness=1e5, restitution=0.5)
+        guide, mass = bf.Prescribed(b, uy=0.0, rotation=0.0), bf.PointMass(b, 1.0, 1e-3)
+        model = bf.Model([base, moved], [bf.Clamp(a), guide], connectors=[stop], masses=[mass])
+        motion = bf.simulate(model, duration, tolerance=tolerance, velocity=lambda x: (float(x[0] > 0.2), 0.0))
+        ratio = -motion.velocity(b)[-1, 0]
+    else:
+        stop = bf.HingeStop(a, b, high=0.4, stiffness=5e2, restitution=0.5)
+        body = bf.RigidBody(b, 1.0, 5e-3)
+        model = bf.Model([base, moved], [bf.Clamp(a)], joints=[bf.Hinge(a, b)], connectors=[stop], masses=[body])
+        turning = bf.RigidVelocity(angular=2.0)
+        motion = bf.simulate(model, duration, tolerance=tolerance, velocity=turning)
+        ratio = -motion.angular_velocity(b)[-1] / motion.angular_velocity(b)[0]
+    assert ratio == pytest.approx(0.5, abs=10.0 * max(tolerance, 1e-5))  # errors are held to 10 times the tolerance

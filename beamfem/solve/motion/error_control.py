@@ -27,6 +27,7 @@ _CANCELLED = 4.0  # times the tolerance that the estimates add up to: errors tur
 _SUM = 2.0  # times the tolerance that the same of methods of stages add up to
 _SAVED = 1.0  # times the tolerance: error that one step may make of what earlier ones have not
 _TO_KINK = 8  # steps of the first call, and of that after a kink: what follows one is lost
+_REDONE = 8  # times at most that steps up to a kink end at an earlier one, where these show that it is
 _LONGEST = 64  # steps of equal size, at the end of which the error is judged
 _SHORTEST = 1e-12  # of the motion: a step that fails however short it is
 
@@ -143,7 +144,7 @@ def _march_pairs(
     """Do what `march_to_tolerance` does with a method of stages, in compiled pairs of steps."""
     system, taken = cutter.system, 0
     largest = 2 if saved.watch.events else max(cutter.size, 2)  # what follows an error in an event is lost
-    kinks, kink, size = bool(system.table(kinked)), 0.0, 0.0
+    kinks, kink, size, redone = bool(system.table(kinked)), 0.0, 0.0, 0
     room = min(_TO_KINK, largest) if kinks else largest
     with progress("time [s]", cutter.end) as report, motion_workspace(system) as space:
         motion = DoubledSteps(system, space, coefficients(method), method.order, cutter.statistics)
@@ -166,15 +167,16 @@ def _march_pairs(
                 until = replace(part, times=np.array([own.time, kink])) if ahead else part
                 times, rows = motion.follow(until, state, rotations, max(int(min(room, most - taken)), 2))
                 room = min(2 * room, largest)
-                if kinks and not ahead and (found := first_kink(system, times, rows.states)) is not None:
+                found = first_kink(system, times, rows.states) if kinks and redone < _REDONE else None
+                if found is not None:
                     first, kink = found[0] // 2 * 2, found[1]  # the pair of steps is redone up to the kink
-                    room, own.time, size = min(_TO_KINK, largest), float(times[first]), float(times[first + 1])
-                    size -= own.time
+                    room, own.time, own.step = min(_TO_KINK, largest), float(times[first]), float(np.diff(times)[first])
+                    redone, size = (redone + 1, size) if ahead else (0, own.step)
                     times, rows = times[: first + 1], rows.between(0, first)
                     state[:3], state[3], rotations[:] = rows.states[-1], rows.states[-1, 2], rows.rotations[-1]
-                    own.step, own.failed, own.fine.known, own.before = size, 0, 0, 0.0
+                    own.failed, own.fine.known, own.before = 0, 0, 0.0
                 elif ahead and own.time == kink:
-                    own.step, own.fine.known, own.before = max(own.step, size), 0, 0.0
+                    redone, own.step, own.fine.known, own.before = 0, max(own.step, size), 0, 0.0
                 taken += len(times) - 1
                 record.cuts = cutter.cuts = cutter.cuts + own.refused - refused
                 record.further = cutter.further = cutter.further + len(times) - 1

@@ -21,12 +21,16 @@ def first_kink(system: System, times: np.ndarray, states: np.ndarray) -> tuple[i
 
     times (m + 1,) [s], states (m + 1, 3, n): of the ends of m steps of a method with stages. Steps are looked into if a
     measure changes its sign to their ends, or would to their middle with its rate at an end, with their history at the
-    beginning.
+    beginning. A stop that turns back within a step may be no deeper at its end, so that what counts is whether history
+    would change to the middle as well.
     """
     parts, steps, past = system.table(kinked), np.diff(times), states[:-1, 0]
     changed, half = past != states[1:, 0], 0.5 * steps[:, None]
     (p0, v0), (p1, v1) = (states[rows, :2].swapaxes(0, 1) for rows in (slice(-1), slice(1, None)))
     rows = (p0, v0), (p1, v1), (p0 + half * v0, v0), (p1 - half * v1, v1)
+    for each in parts:
+        middle = ((p0 + half * v0)[:, each.numbers], v0[:, each.numbers])
+        changed[:, each.history] |= each.changes(*middle, past[:, each.history])
     begin, *others = (_measures(parts, p, v, past, changed) for p, v in rows)
     for step in np.flatnonzero(np.any([_crossings(begin, other) >= _AT_END for other in others], axis=(0, 2))).tolist():
         at, same = times[step] + _SHARES * steps[step], np.zeros(len(_SHARES), dtype=int) + step

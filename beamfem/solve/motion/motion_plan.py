@@ -90,12 +90,21 @@ def usual_integrator(model: Model, tolerance: float | None) -> AnyIntegrator:
 
     Of random motions Radau's method of three stages meets tolerances from 1e-4 to 1e-6 with the least work, see
     `studies.benchmarks.random_tolerances`; at looser ones its iterations limit the steps, and two stages suffice, while
-    four take less time up to 1e-7. With history, hinges are followed more closely by the generalized-alpha method.
+    four take less time up to 1e-7. Hinges with friction turn back at an instant that vibrations smaller than the
+    tolerance decide, which `Radau` damps. But stops, and sliders with friction, need steps that end at their kinks.
     """
-    if tolerance is None or len(system_of(model, static=False).history.numbers):
+    if tolerance is None or _follows_vibrations(system_of(model, static=False)):
         return GeneralizedAlpha()
     tolerance = positive("tolerance", tolerance)
     return Radau(2 if tolerance >= _LOOSE else 3 if tolerance > _TIGHT else 4)
+
+
+def _follows_vibrations(system: System) -> bool:
+    """Return whether there is history, of sections, user-defined parts, or friction with a constant limit alone."""
+    if not system.history.compiled:
+        return len(system.history.numbers) > 0
+    memories = [item.compiled.memory for item in system.connectors.items if item.compiled]
+    return all("slip" in memory and "limit" not in memory for memory in memories if memory)
 
 
 def settings_of(

@@ -310,9 +310,9 @@ def _read(file: Any, selected: slice) -> Solution:
     optional_arrays: dict[str, Any] = {
         name: hdf5.read_checked(file, name)[:rows][np.array(chosen)] for name in _OPTIONAL if name in file
     }
-    events = _events(file)
-    if len(chosen) < rows:
-        events = tuple(replace(event, row=int(np.searchsorted(at, event.time))) for event in events)
+    events = tuple(
+        replace(event, row=min(int(np.searchsorted(at, event.time)), len(at) - 1)) for event in _events(file)
+    )
     return load_path(file, Solution(model, static, at, p, v, a, statistics, **optional_arrays, events=events))
 
 

@@ -13,8 +13,8 @@ from beamfem.validation import convert, finite, squared
 class Gear(BetweenPlaces):
     """A gear between two sections: the rotation of b from the reference is `ratio` times that of a.
 
-    Its condition is t_b - ratio t_a = 0, its multiplier the moment on b [N m]. Raises InputError for an invalid value,
-    or a ratio of zero.
+    Its condition is t_b - ratio t_a = 0, its multiplier the moment [N m] that b exerts on it, opposite to the one on b.
+    Raises InputError for an invalid value, or a ratio of zero.
 
     Parameters
     ----------

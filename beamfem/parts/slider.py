@@ -17,7 +17,7 @@ class Slider(BetweenPlaces):
     """A prismatic joint: b slides along an axis that turns with a, and keeps its angle to a.
 
     Its conditions are (r_b - r_a) . n = constant, with the normal n of the axis, and t_b - t_a = 0; its multipliers are
-    the force N across the axis [N] and the moment [N m].
+    the force N across the axis [N] and the moment [N m] on a.
 
     With friction, a spring along the axis holds b until its force reaches friction |N| (Coulomb); then b slips. Its
     losses are in `solution.energy().dissipated`. Raises InputError for an invalid value, or friction without stiffness.

@@ -86,7 +86,7 @@ class Occurrence:
     time : float, [s]
         When.
     row : int
-        The first row of the motion at or after that time.
+        The first row of the motion at or after that time, the last one if there is none.
     """
 
     name: str

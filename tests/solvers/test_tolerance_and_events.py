@@ -297,3 +297,14 @@ def test_a_rigid_bar_swings_as_a_pendulum_however_stiff_it_is(modulus, tolerance
     apart = motion.position(bar.end) - length * np.array([np.cos(swing), np.sin(swing)]).T
     sag = 2.0 * 5.0 / 384.0 * 9.81 * density * side**2 * length**3 / (modulus * side**4 / 12.0)  # under a sudden weight
     assert np.abs(apart).max() < (10.0 * tolerance + sag) * length
+
+
+@pytest.mark.parametrize("kept", ["in memory", "in a file"])
+def test_an_event_after_the_last_row_has_that_row(kept, pendulum, tmp_path):
+    """Its row was that after the last one, so that `position(point)[event.row]` was an IndexError."""
+    late = bf.Event("late", lambda state: state.time - 0.045)
+    file = tmp_path / "motion.h5" if kept == "in a file" else None
+    motion = bf.simulate(pendulum[1], 0.05, 0.01, save_at=[0.0, 0.02, 0.04], events=[late], file=file)
+    (event,) = motion.events
+    assert event.time == pytest.approx(0.045)
+    assert event.row == len(motion) - 1 == 2

@@ -249,6 +249,7 @@ def _collected(
     if not saved.times:
         return None
     times, (states, turned, exchanged), events = saved.take_out(0)
+    events = tuple(replace(event, row=min(event.row, len(times) - 1)) for event in events)
     if saved.stopped:  # steps are taken some at a time
         done = min(done, int(np.ceil(times[-1] / plan.rows_at - 1e-9)))
     steps, fixed = record.further + done, plan.settings.tolerance is None

@@ -2,7 +2,10 @@
 
 import numpy as np
 
+from beamfem.equations.equations import linearise
 from beamfem.equations.system import System
+
+_PART = 0.3  # of a step: what vibrates faster than in some steps hardly strains by p'' that is interpolated
 
 
 def between(system: System, times: np.ndarray, states: np.ndarray, at: np.ndarray, smooth: bool = False) -> np.ndarray:
@@ -10,7 +13,7 @@ def between(system: System, times: np.ndarray, states: np.ndarray, at: np.ndarra
 
     Cubic polynomials have p and p', or p' and p'', of both ends; p'' is linear. Their errors are h^4 / 384 times the
     fourth derivatives. Multipliers and history variables, which have no rates, are linear, and coordinates that
-    supports prescribe have their values. smooth: whether p is of degree 5, with p'' of both ends too.
+    supports prescribe have their values. smooth: whether p is of degree 5, with p'' of both ends too, and p'' its own.
     """
     step, share = _places(times, at)
     result, p = interpolated(times, states, at, smooth), states[:, 0]
@@ -20,6 +23,23 @@ def between(system: System, times: np.ndarray, states: np.ndarray, at: np.ndarra
     if any(callable(item.value) for item in system.prescribed):
         result[:, 0, system.prescribed_dofs] = [system.prescribed_values(time) for time in at.tolist()]
     return result
+
+
+def balanced(system: System, times: np.ndarray, states: np.ndarray, time: float, smooth: bool = False) -> np.ndarray:
+    """Return p, p', p'' (3, n) at a time [s] within a step, as `between` does, in balance.
+
+    The error of interpolation strains what is stiff, such as rods along their axes. (K + M / t^2) dp = -r with a time t
+    that is a part of the step takes it out: p'' + dp / t^2 is in balance, and what is slow hardly changes.
+    """
+    p, v, a = between(system, times, states, np.array([time]), smooth)[0]
+    end = int(np.clip(np.searchsorted(times, time), 1, len(times) - 1))
+    inertia, free = 1.0 / (_PART * (times[end] - times[end - 1])) ** 2, system.free_dofs
+    unbalanced, tangent = linearise(system, p, v, a, time, (1.0, 0.0, float(inertia)))
+    change = np.zeros(len(p))
+    change[free] = tangent.solve(-unbalanced[free], system.rotated)
+    p = p + change
+    change[system.connectors.multipliers] = 0.0
+    return np.array([p, v, a + inertia * change])
 
 
 def _places(times: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -41,11 +61,13 @@ def interpolated(times: np.ndarray, states: np.ndarray, at: np.ndarray, smooth: 
         ],
         axis=1,
     )
-    if smooth:  # p'' of the cubic polynomial is added where it differs
+    if smooth:  # p'' of the cubic polynomial is added where it differs; both are linear between these
         change, share_left = (p[step + 1] - p[step]) / size**2, 1.0 - share
         first = a[step] - 6.0 * change + (4.0 * v[step] + 2.0 * v[step + 1]) / size
         last = a[step + 1] + 6.0 * change - (2.0 * v[step] + 4.0 * v[step + 1]) / size
         result[:, 0] += 0.5 * size**2 * (share * share_left) ** 2 * (share_left * first + share * last)
+        for end, one, other in ((first, share_left, share), (last, share, share_left)):
+            result[:, 2] += (one**3 - 6.0 * other * one**2 + 3.0 * other**2 * one - one) * end
     return result
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from beamfem.equations.system import System
 from beamfem.errors import InputError
 from beamfem.results.motion_state import MotionState
-from beamfem.solve.motion.dense_output import between
+from beamfem.solve.motion.dense_output import balanced
 from beamfem.validation import convert, finite, flag, shown, text
 
 _CLOSE = 1e-12  # of a step: accuracy of the time of an event
@@ -58,7 +58,7 @@ class Event:
 class Watch:
     """Looks for events in steps; found: names and times [s]; values (k,): of functions at the last time [s] looked at.
 
-    smooth: see `between`.
+    smooth: see `dense_output.between`.
     """
 
     system: System
@@ -107,7 +107,7 @@ class Watch:
         return begin + step * float(brentq(value, 0.0, 1.0, xtol=_CLOSE))
 
     def _at(self, time: float, times: np.ndarray, states: np.ndarray) -> MotionState:
-        return self._state(time, between(self.system, times, states, np.array([time]), self.smooth)[0])
+        return self._state(time, balanced(self.system, times, states, time, self.smooth))
 
     def _state(self, time: float, state: np.ndarray) -> MotionState:
         p, v, a = state[:3].copy()

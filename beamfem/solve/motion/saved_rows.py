@@ -10,7 +10,7 @@ from beamfem.kernels.motion_steps import count_rotations
 from beamfem.results.motion_state import Occurrence
 from beamfem.solve.motion.consistent_rows import finished_rows
 from beamfem.solve.motion.cut_steps import Rows
-from beamfem.solve.motion.dense_output import between
+from beamfem.solve.motion.dense_output import balanced
 from beamfem.solve.motion.events import Watch
 
 
@@ -93,11 +93,14 @@ class SavedRows:
             self.rotations += list(rows.rotations[ends])
             self.exchanged += list(rows.exchanged[ends])
             return
-        for time, state in zip(at.tolist(), between(self.system, times, rows.states, at, self.smooth), strict=True):
-            before = max(int(np.searchsorted(times, time, side="left")) - 1, 0)
+        for time, end in zip(at.tolist(), ends.tolist(), strict=True):
+            before, exact = max(end - 1, 0), times[end] == time
+            state = rows.states[end].copy()
+            if not exact:
+                state = balanced(self.system, times, rows.states, time, self.smooth)
             turned = rows.rotations[before].copy()
             count_rotations(len(self.pairs), self.pairs, rows.states[before], state, turned)
             self.times.append(time)
             self.states.append(state)
             self.rotations.append(turned)
-            self.exchanged.append(rows.exchanged[before].copy())
+            self.exchanged.append(rows.exchanged[end if exact else before].copy())

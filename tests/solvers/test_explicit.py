@@ -149,3 +149,18 @@ def test_friction_of_a_hinge_is_that_of_short_steps(method):
     motion = bf.simulate(model, 0.2, 1e-3 if method.order > 2 else 2e-4, method)
     np.testing.assert_allclose(motion.position(other.end)[-1], known.position(other.end)[-1], atol=2e-6)
     assert motion.energy().dissipated[-1] == pytest.approx(known.energy().dissipated[-1], rel=5e-3)
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6])
+@pytest.mark.parametrize(
+    "method", [bf.CentralDifferences(), bf.DormandPrince()], ids=lambda method: type(method).__name__
+)
+def test_steps_of_a_tolerance_are_stable(method, tolerance):
+    """Those of order 8 grew beyond the stable step, and were off by 380 times a tolerance of 1e-6."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 3, bf.CRBF(2), bf.Rectangle(0.03, 0.03), bf.Material(5e6, 0.3, 1100.0))
+    model = bf.Model([beam], [bf.Pin(beam.start)], [bf.Gravity((0.0, -9.81))])
+    at = np.linspace(0.0, 0.2, 11)
+    motion = bf.simulate(model, 0.2, tolerance=tolerance, integrator=method, save_at=at)
+    fine = bf.simulate(model, 0.2, 1e-4, bf.Gauss(4), save_at=at)
+    error = np.abs(motion.position(beam.end) - fine.position(beam.end)).max()
+    assert error < 2.0 * tolerance

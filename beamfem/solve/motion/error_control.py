@@ -13,7 +13,8 @@ from beamfem.solve.motion.generalized_alpha import is_scheme
 from beamfem.solve.motion.kinks import first_kink, kinked
 from beamfem.solve.motion.marching_doubled import DoubledSteps
 from beamfem.solve.motion.saved_rows import SavedRows
-from beamfem.solve.motion.stage_coefficients import Implicit, coefficients, is_implicit
+from beamfem.solve.motion.stable_step import stable_step
+from beamfem.solve.motion.stage_coefficients import Implicit, coefficients, is_explicit, is_implicit
 from beamfem.solve.motion.start_acceleration import initial_acceleration
 from beamfem.solve.motion.time_marching import Failure, Record
 from beamfem.solve.motion.time_steps import Stretch
@@ -72,7 +73,9 @@ def march_to_tolerance(
         )
     reached, duration, order = reached or Reached(), cutter.end, getattr(cutter.integrator, "order", 2)
     time, step, count, taken = reached.time, reached.step, reached.count, 0
-    rule = is_scheme(cutter.integrator)
+    rule, longest = is_scheme(cutter.integrator), np.inf
+    if is_explicit(cutter.integrator):  # the step of double size tells the error, and has to be stable, too
+        longest = 0.5 * stable_step(cutter.system, cutter.integrator)
     with progress("time [s]", duration) as report:
         for number, part in enumerate(parts):
             end, jumps = float(part.times[-1]), time == part.times[0]
@@ -84,7 +87,7 @@ def march_to_tolerance(
             while time < end:
                 if taken >= most:
                     return None
-                step = min(step or _first_step(cutter, state, tolerance), 0.25 * (end - part.times[0]))
+                step = min(step or _first_step(cutter, state, tolerance), 0.25 * (end - part.times[0]), longest)
                 steps = min(count, int(np.ceil((end - time) / step * (1.0 - 1e-9)))) if rule else 2
                 last = time + 1.001 * steps * step >= end
                 size = (end - time) / steps if last else step

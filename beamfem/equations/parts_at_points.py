@@ -26,6 +26,7 @@ from beamfem.physics.compiled_connections import in_python, passes_of, rememberi
 from beamfem.physics.connections import COORDINATE_SPRING, Connection
 
 _IMAGINARY = 1e-30j  # step of complex differences, which are exact
+_SLACK = 1e-9  # of a depth, ten times what is remembered of it in excess
 
 
 class Alike(NamedTuple):
@@ -99,7 +100,9 @@ class Alike(NamedTuple):
         if self.alternatives == 1:
             f = ANALYTIC._replace(positive=positive, rate=np.zeros_like)
             q, v = (np.moveaxis(x, -1, 0) for x in (q, v))
-            places, data = own.split(q), [*self.data.T, *np.moveaxis(history, -1, 0)]
+            # a state that is at its deepest is remembered by a hair deeper, which it does not have to pass again
+            slack = [1.0 - _SLACK * ("deepest" in name) for name in own.memory]
+            places, data = own.split(q), [*self.data.T, *np.moveaxis(history * slack, -1, 0)]
             if own.potential is not None:
                 own.potential(places, data, (0.0, 0.0), f)
             if own.force is not None:

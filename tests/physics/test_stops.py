@@ -228,3 +228,14 @@ def test_end_stops_give_back_their_share_of_the_speed_at_any_tolerance(kind, tol
         motion = bf.simulate(model, duration, tolerance=tolerance, velocity=turning)
         ratio = -motion.angular_velocity(b)[-1] / motion.angular_velocity(b)[0]
     assert ratio == pytest.approx(0.5, abs=10.0 * max(tolerance, 1e-5))  # errors are held to 10 times the tolerance
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-5])
+def test_steps_do_not_crawl_up_to_where_a_soft_beam_turns_back_on_a_stop(tolerance):
+    """Its end vibrates on the stop; steps once ended again and again where it was as deep as it had been."""
+    rubber = bf.Material(1e8, 0.3, 1100.0)
+    beam = bf.Beam(bf.Line((0.0, 0.0), (1.0, 0.0)), 12, bf.CRBF(2), bf.Rectangle(0.02, 0.02), rubber)
+    stop = bf.Stop(beam.end, (0.0, -0.3), (0.0, 1.0), 1e4, restitution=0.6)
+    model = bf.Model([beam], [bf.Pin(beam.start)], [bf.Gravity((0.0, -9.81))], connectors=[stop])
+    statistics = bf.simulate(model, 0.5, tolerance=tolerance, integrator=bf.Radau(3)).statistics
+    assert statistics.iterations < 17 * statistics.steps

@@ -53,9 +53,8 @@ def finished_rows(
     jumps: times [s] of jumps of loads. Steps end before these, rows have the accelerations under the loads of their
     times.
     """
-    for time, state in zip(times, states, strict=True):
-        if time in jumps:
-            state[2] = initial_acceleration(system, state, time)
+    for row in np.flatnonzero(np.isin(times, list(jumps))).tolist():
+        states[row, 2] = initial_acceleration(system, states[row], times[row])
     states = on_conditions(system, states)
     states[:, 0] = system.finished(states[:, 0], times)
     return states

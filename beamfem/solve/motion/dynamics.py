@@ -77,8 +77,8 @@ def simulate(
         Time step; with a tolerance, the time between rows, if it is given.
     integrator : GeneralizedAlpha, Gauss, Radau, Scheme or Integrator, optional
         Time integration method, by default `GeneralizedAlpha()`, with a tolerance `Radau()`, from 1e-3 on `Radau(2)`,
-        up to 1e-7 `Radau(4)`, unless the model remembers its past; a user-defined one is a `Scheme` of the same family,
-        such as Newmark's method, or any other `Integrator`.
+        up to 1e-7 `Radau(4)`, unless all history is that of sections, user-defined parts or friction in hinges; a
+        user-defined one is a `Scheme` of the same family, such as Newmark's method, or any other `Integrator`.
     start : State or Solution, optional
         State to start from: a state of any solution, static or a motion, or a solution for its last state; by default
         the reference at rest. It may come from a model with other supports or connectors, if the state satisfies those

@@ -13,13 +13,17 @@ from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam
+from beamfem.model.time_functions import kinks_of
 from beamfem.parts.at_points import ANALYTIC
 from beamfem.physics.stations import STATIONS
 from beamfem.reprs import brief
+from beamfem.results.full_turns import start_rotations
 from beamfem.results.postprocess import strain_energies
 from beamfem.results.reactions import energies_of_part
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import imposed_measures, imposing, loading
+
+_BESIDE = 1e-9  # of the time between rows: distance from a kink at which loads are evaluated
 
 
 @dataclass(frozen=True)
@@ -235,12 +239,14 @@ class Exchange(NamedTuple):
 
 
 class Forces(NamedTuple):
-    """Generalized forces (rows, n) of follower loads, pressures and moving supports, and of connectors that do work.
+    """Generalized forces (rows, n) of what has no potential.
 
-    lost (rows,) [W]: power that everything else dissipates, but for what has a history.
+    before, after: of follower loads and pressures, which may jump in a row, and of moving supports; connected: of
+    connectors that do work; lost (rows,) [W]: power that everything else dissipates, but for what has a history.
     """
 
-    work: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
     connected: np.ndarray
     lost: np.ndarray
 
@@ -253,21 +259,57 @@ def exchange(solution: Solution, forces: Forces) -> Exchange:
     """
     driving = system_of(solution.model, static=False).connectors.driving
     moved, at, motion = np.diff(solution.p, axis=0), solution.at, (solution.p, solution.v, solution.a)
-    means = [0.5 * (values[1:] + values[:-1]) for values in forces]
-    work, given = (np.einsum("sn,sn->s", mean, moved) for mean in means[:2])
+    ends = ((forces.before, forces.after), (forces.connected,) * 2)
+    work, given = (0.5 * np.einsum("sn,sn->s", before[1:] + after[:-1], moved) for before, after in ends)
     if any(load.amplitude is not None for load in solution.model.loads):
-
-        def energy(times: np.ndarray) -> np.ndarray:
-            total = replace(solution, at=times).energy().total
-            return np.asarray(total - driving.energies(motion, times).sum(axis=1))
-
-        now, later, earlier = map(energy, (at, np.append(at[1:], at[-1]), np.append(at[0], at[:-1])))
-        work = work + 0.5 * ((later - now)[:-1] + (now - earlier)[1:])
-    stored, lost = np.diff(driving.energies(motion, at).sum(axis=1)), means[2] * np.diff(at)
+        work = work + _of_amplitudes(solution, driving)
+    stored = np.diff(driving.energies(motion, at).sum(axis=1))
+    lost = 0.5 * (forces.lost[1:] + forces.lost[:-1]) * np.diff(at)
     if solution.exchanged is not None:
         unseen = np.diff(solution.exchanged, axis=0)
         work, lost = work + unseen[:, 0], lost + unseen[:, 1]
     return Exchange(work, given, stored, lost)
+
+
+def _kinks(solution: Solution) -> list[float]:
+    """Return the times [s] of the kinks that amplitudes of loads declare."""
+    amplitudes = [load.amplitude for load in solution.model.loads]
+    return sorted({kink for each in amplitudes for kink in kinks_of(each)})
+
+
+def _of_amplitudes(solution: Solution, driving: Connectors) -> np.ndarray:
+    """Return the work (rows - 1,) [J] of loads that have a potential at each time, and of imposed strains.
+
+    Displacements are linear between rows; loads are evaluated on both sides of kinks, where they may jump.
+    """
+    kinks = _kinks(solution)
+    at, steps, size = solution.at, np.arange(len(solution) - 1), np.diff(solution.at)
+    touched = [np.searchsorted(at, kinks, side) - 1 for side in ("left", "right")]  # those before and after a row
+    near, step = np.tile(kinks, 2), np.concatenate(touched).astype(int)
+    inside = (step >= 0) & (step < len(steps))
+    near, step = near[inside], step[inside]
+    beside = [np.clip(near + side * size[step], at[step], at[step + 1]) for side in (-_BESIDE, _BESIDE)]
+    step, time = np.concatenate([steps, steps, step, step]), np.concatenate([at[:-1], at[1:], *beside])
+    order = np.lexsort((time, step))
+    step, time = step[order], time[order]
+
+    def changes(rows: np.ndarray) -> np.ndarray:
+        states = replace(with_rows(solution, rows), at=time)
+        motion = (states.p, states.v, states.a)
+        return np.diff(states.energy().total - driving.energies(motion, time).sum(axis=1))
+
+    share = (time - at[step]) / size[step]
+    middle, same = 0.5 * (share[1:] + share[:-1]), step[1:] == step[:-1]
+    change = (1.0 - middle) * changes(step) + middle * changes(step + 1)
+    return np.bincount(step[1:][same], change[same], len(steps))
+
+
+def with_rows(solution: Solution, rows: Any) -> Solution:
+    """Return the rows of a motion that an index of arrays selects."""
+    at, p, v, a = (values[rows] for values in (solution.at, solution.p, solution.v, solution.a))
+    exchanged = None if solution.exchanged is None else solution.exchanged[rows]
+    others: dict[str, Any] = {"stability": None, "turned": start_rotations(solution)[rows], "exchanged": exchanged}
+    return replace(solution, at=at, p=p, v=v, a=a, **others)
 
 
 def forces_without_potential(solution: Solution) -> Forces:
@@ -279,19 +321,36 @@ def forces_without_potential(solution: Solution) -> Forces:
     following = not system.loads.conserves.all()
     damped = system.damped or (len(driving.items) < len(system.connectors.items) and system.connectors.damp)
     if not (moving or following or damped or driving.items):
-        return Forces(work, connected, lost)
+        return Forces(work, work, connected, lost)
     times, states = solution.at.tolist(), list(zip(solution.p, solution.v, solution.a, strict=True))
-    if moving or following:
-        acting = residuals(system, states, times)
-        work[:, moving] = acting[:, moving]
+    if moving:
+        work[:, moving] = residuals(system, states, times)[:, moving]
+    before = after = work
     if following:
-        factors = [np.where(system.loads.conserves, system.loads.factors(at), 0.0) for at in times]
-        left = [system.loads.of(at, own) for at, own in zip(times, factors, strict=True)]
-        work += residuals(system, states, times, left) - acting
+        sides = _beside(solution)
+        before = work + _of_followers(system, states, sides[0])
+        after = before if np.array_equal(*sides) else work + _of_followers(system, states, sides[1])
     _add_forces(driving, connected, states, times)
     if damped:
         lost += _dissipated_power(system, driving, states, times)
-    return Forces(work, -connected, lost)
+    return Forces(before, after, -connected, lost)
+
+
+def _beside(solution: Solution) -> tuple[np.ndarray, np.ndarray]:
+    """Return times (rows,) [s] before and after each row: beside it if a load has a kink there."""
+    at, kinks = solution.at, _kinks(solution)
+    inset = _BESIDE * np.diff(at)
+    before, after = at - np.append(0.0, inset), at + np.append(inset, 0.0)
+    there = np.searchsorted(kinks, before, "left") < np.searchsorted(kinks, after, "right")
+    return np.where(there, before, at), np.where(there, after, at)
+
+
+def _of_followers(system: System, states: Sequence[Sequence[np.ndarray]], times: np.ndarray) -> np.ndarray:
+    """Return the forces (rows, n) of loads without a potential: the difference that their absence makes."""
+    at = times.tolist()
+    factors = [np.where(system.loads.conserves, system.loads.factors(time), 0.0) for time in at]
+    left = [system.loads.of(time, own) for time, own in zip(at, factors, strict=True)]
+    return np.asarray(residuals(system, states, at, left) - residuals(system, states, at))
 
 
 def _dissipated_power(

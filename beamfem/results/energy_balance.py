@@ -12,8 +12,7 @@ from beamfem.equations.system import System, system_of
 from beamfem.kernels.motion_record import MotionLimits
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.time_functions import kinks_of
-from beamfem.results.energies import Forces, exchange, forces_without_potential
-from beamfem.results.full_turns import start_rotations
+from beamfem.results.energies import Forces, exchange, forces_without_potential, with_rows
 
 if TYPE_CHECKING:
     from beamfem.results.energies import Energy
@@ -128,14 +127,6 @@ def energy_drift(solution: "Solution") -> EnergyDrift | None:
     energy = _some_rows(solution).energy()
     exchanged = max(energy.kinetic.max(), np.ptp(energy.strain), np.ptp(energy.potential))
     return EnergyDrift(float(energy.total[-1] - energy.total[0]), float(exchanged), solution.model.unit("J"))
-
-
-def with_rows(solution: "Solution", rows: Any) -> "Solution":
-    """Return the rows of a motion that an index of arrays selects."""
-    at, p, v, a = (values[rows] for values in (solution.at, solution.p, solution.v, solution.a))
-    exchanged = None if solution.exchanged is None else solution.exchanged[rows]
-    others: dict[str, Any] = {"stability": None, "turned": start_rotations(solution)[rows], "exchanged": exchanged}
-    return replace(solution, at=at, p=p, v=v, a=a, **others)
 
 
 def unseen(solution: "Solution", every: int) -> np.ndarray:

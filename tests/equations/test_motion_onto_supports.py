@@ -105,6 +105,26 @@ def test_a_driven_motion_goes_on_where_the_time_of_its_function_is_shifted():
         bf.simulate(driven(0.0), 0.01, 1e-3, start=first[-1])
 
 
+@pytest.mark.parametrize("hinged", [False, True])
+@pytest.mark.parametrize("speed", [3.0, lambda t: 3.0])
+def test_a_motor_whose_speed_is_given_goes_on_by_its_angle(hinged, speed):
+    """A speed moves from the reference, and the message once advised to shift its function of time."""
+    other = bf.Beam(bf.Line((1, 0), (2, 0)), 2, bf.CRBF(order=3), ROD.section, ROD.material)
+    beams, joints = ([ROD, other], [bf.Hinge(ROD.end, other.start)]) if hinged else ([ROD], [])
+    supports = [bf.Clamp(ROD.start)] if hinged else [bf.Pin(ROD.start)]
+    at = joints[0] if hinged else ROD.start
+
+    def driven(**how):
+        return bf.Model(beams, supports, [bf.Motor(at, **how)], joints)
+
+    first = bf.simulate(driven(speed=speed), 0.02, 1e-3)
+    with pytest.raises(bf.InputError, match="in place of its rate: where start has it, and the integral of the rate"):
+        bf.simulate(driven(speed=speed), 0.02, 1e-3, start=first[-1])
+    rest = bf.simulate(driven(angle=lambda t: 0.06 + 3.0 * t), 0.02, 1e-3, start=first[-1])
+    turned = rest.rotation(other.start) - rest.rotation(ROD.end) if hinged else rest.rotation(ROD.start)
+    assert turned == pytest.approx(0.06 + 3.0 * rest.at, abs=1e-9)
+
+
 def test_a_crank_begins_each_period_anew_unless_a_spring_or_a_connector_counts_its_turns():
     """After a full turn the section is where it was; a torsion spring is not."""
     crank = bf.Prescribed(ROD.start, ux=0.0, uy=0.0, rotation=lambda t: 2.0 * np.pi * t / 0.1)

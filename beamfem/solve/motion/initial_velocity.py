@@ -14,7 +14,8 @@ from beamfem.kernels.block import SHEAR_RIGID, STRETCH
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import reference_position
 from beamfem.model.beam import beam_in_words
-from beamfem.model.supports import PointSupport
+from beamfem.model.supports import PointSupport, Value
+from beamfem.model.time_functions import Integral
 from beamfem.results.postprocess import nodal_rotations, nodal_vectors
 from beamfem.results.solution import State
 from beamfem.solve.start.start_state import matched, transferred
@@ -128,7 +129,7 @@ def require_on_supports(system: System, p: np.ndarray, prescribed: np.ndarray, g
             raise InputError(
                 f"{item.name} at {item.item.points[-1]} prescribes {_number(system, dof, p[dof] + jumps[dof])} when "
                 f"the motion begins, but {'start' if given else 'the reference'} has {_number(system, dof, p[dof])}, "
-                f"so that it would jump by {abs(jumps[dof]):.4g}; shift its function of time, which begins at 0"
+                f"so that it would jump by {abs(jumps[dof]):.4g}; {_going_on(item.item.prescribed[0], 'angle')}"
             )
 
 
@@ -224,7 +225,7 @@ def _jumping(
     see `require_on_supports`.
     """
     metre, prescribed = system.model.unit("m"), support.prescribed()
-    imposed, there, hold, driven = [], [], [], False
+    imposed, there, hold, driven, advice = [], [], [], False, ""
     sizes = {metre: 0.0, "rad": 0.0}
     for direction, (name, dof) in dofs.items():
         unit = "rad" if direction == "rotation" else metre
@@ -235,6 +236,7 @@ def _jumping(
             there.append(f"{name} = {_number(system, dof, value)} {unit}")
             sizes[unit] = float(np.hypot(sizes[unit], jumps[dof]))
             driven = driven or callable(prescribed[direction])
+            advice = advice or _going_on(prescribed[direction], name)
     jump = " and ".join(f"{size:.4g} {unit}" for unit, size in sizes.items() if size > 0.0)
     name = system.model.name_of(support)
     message = (
@@ -249,8 +251,15 @@ def _jumping(
         return message + start
     message += f"To hold it where it is, use a Prescribed support with {', '.join(hold)}"
     if driven:
-        return f"{message}; to continue a motion, shift the time of its functions, which begins at 0 again"
+        return f"{message}; to continue a motion, {advice}"
     return f"{message}; or start from what solve_static finds with this support"
+
+
+def _going_on(value: Value, name: str) -> str:
+    """Return what continues the motion that a value prescribes."""
+    if isinstance(value, Integral):
+        return f"prescribe {name} in place of its rate: where start has it, and the integral of the rate from then on"
+    return "shift the time of its functions, which begins at 0 again"
 
 
 def _sliding(system: System, support: PointSupport, beside: float) -> str:

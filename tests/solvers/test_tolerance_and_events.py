@@ -144,6 +144,19 @@ def test_an_event_may_end_the_motion(pendulum, how):
         assert motion.statistics.steps == np.ceil(motion.time[-1] / 1e-3)
 
 
+@pytest.mark.parametrize("how", [{"step": 1e-3}, {"tolerance": 1e-4}])
+def test_events_at_the_instant_at_which_another_ends_the_motion_are_recorded(pendulum, how):
+    """Those that were listed after it were once lost."""
+    beam, model = pendulum
+    passes = bf.Event("passes", lambda state: 2.0 * (state.position(beam.end)[1] + 1.0))
+    stop = bf.Event("below", lambda state: state.position(beam.end)[1] + 1.0, stop=True)
+    later = bf.Event("later", lambda state: state.position(beam.end)[1] + 1.0001)
+    for events in ([passes, stop, later], [later, stop, passes]):
+        motion = bf.simulate(model, 2.0, events=events, **how)
+        assert {event.name for event in motion.events} == {"passes", "below"}
+        assert {event.row for event in motion.events} == {len(motion) - 1}
+
+
 @pytest.mark.parametrize("how", [{"step": 1e-2}, {"tolerance": 1e-3}])
 def test_rows_that_end_before_the_motion_complete_it(pendulum, how):
     motion = bf.simulate(pendulum[1], 0.2, save_at=[0.05, 0.1], **how)

@@ -87,10 +87,15 @@ class Watch:
                 or (before > 0.0 >= value and event.rising is not True)
             ]
             self.values, self.time = now, after.time
-            for time, event in sorted(crossed, key=lambda pair: pair[0]):
-                self.found.append((event.name, time))
-                if event.stop:
-                    return time
+            stop = min((time for time, event in crossed if event.stop), default=np.inf)
+            latest = stop + 2.0 * _CLOSE * float(times[number + 1] - times[number])  # at the same instant
+            self.found += [
+                (event.name, min(time, stop))
+                for time, event in sorted(crossed, key=lambda pair: pair[0])
+                if time <= latest
+            ]
+            if stop < np.inf:
+                return stop
         return None
 
     def _locate(self, event: Event, times: np.ndarray, states: np.ndarray) -> float:

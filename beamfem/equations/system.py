@@ -154,6 +154,15 @@ class System:
         """Those of them that Python evaluates."""
         return tuple(each for each in self.parts if isinstance(each, PartsInPython))
 
+    @shared_table
+    def kinked(self) -> tuple[Alike, ...]:
+        """Parts whose forces have kinks, such as cables, stops and friction."""
+        p, v = self.reference[None], np.zeros((1, self.model.size))
+        places = ((each, each.numbers, each.history) for each in self.parts if isinstance(each, Alike))
+        return tuple(
+            each for each, at, kept in places if each.kinks(p[:, at], v[:, at], p[:, kept], v[:, kept] > 0.0).size
+        )
+
     def assembler(self, shared: bool = False) -> Assembler:
         """Return the equations with a new workspace; shared: see `Assembler`."""
         return Assembler(self.equations, shared=shared)

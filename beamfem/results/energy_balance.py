@@ -1,9 +1,9 @@
 """Energy of motions: the balance of work and damping in every row, drift, and whether steps resolve what carries it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import sqrt
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -30,12 +30,15 @@ def resolved(solution: "Solution") -> bool:
     It gains energy only where steps h do not resolve a vibration w that carries energy, of which three successive
     velocities v have a second difference of (w h)^2 v; for what it loses see `removal`. Where not all steps are rows,
     and of collocation methods, which resolve a vibration if its period is long beside the time between stages, (w h)^2
-    is that of accelerations and velocities. Laws with history are not judged: their steps dissipate too.
+    is that of accelerations and velocities. Laws with history are not judged: their steps dissipate too. Kinks of
+    forces may last for less than the time between rows.
     """
     system, rule, steps = system_of(solution.model, static=False), solution.statistics.rule, solution.statistics.steps
     if not rule or system.history.laws:
         return False
     collocates = len(rule) == _OF_COLLOCATION
+    if collocates and system.kinked:
+        return False
     if len(solution) == steps + 1 and not collocates:
         before, now, after = (solution.v[first : steps - 1 + first : 1 + steps // _COMPARED] for first in range(3))
         squares = np.array((now, before - 2.0 * now + after)) ** 2 @ system.table(masses)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 
 _SHOWN = 6  # critical points of each kind in the text of a path
+_STILL = 1e-10  # of the coordinates: change between two rows that may be round-off
 _DETOUR = 1.1  # of the distance between two rows: the way from one to the other over a point that is between them
 
 
@@ -139,11 +140,17 @@ class Path(Solution):
         if not len(lost):
             return None
         before, after = (self[int(row)] for row in (lost[0], lost[0] + 1))
-        apart = float(np.linalg.norm(after.p - before.p))
+        still = np.linalg.norm(after.p - before.p) <= _STILL * np.linalg.norm(before.p)
+
+        def distance(one: PathState, other: PathState) -> float:
+            if still:  # heated between walls, say
+                return abs(one.load_factor - other.load_factor)
+            return float(np.linalg.norm(one.p - other.p))
+
         ways = {
-            float(np.linalg.norm(point.p - before.p)): point
+            distance(before, point): point
             for point in (*self.limit_points, *self.bifurcations)
-            if sum(float(np.linalg.norm(point.p - end.p)) for end in (before, after)) <= _DETOUR * apart
+            if distance(before, point) + distance(point, after) <= _DETOUR * distance(before, after)
         }
         return ways[min(ways)] if ways else after
 

@@ -317,6 +317,43 @@ def test_the_stability_limit_of_a_path_may_be_a_limit_point_or_not_there():
     assert "stability" not in str(below)
 
 
+@pytest.mark.parametrize("until", [30.0, 50.0])
+@pytest.mark.parametrize("make", [bf.Temperature, bf.Actuation])
+def test_the_stability_limit_of_a_bar_that_does_not_move_is_its_bifurcation(make, until):
+    """Where nothing moves but by round-off, it once was the first unstable row, up to 75 % above."""
+    steel = bf.Material(2.1e11, 0.3, 7850.0, thermal_expansion=1.2e-5)
+    bar = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(3), bf.Rectangle(0.01, 0.01), steel)
+    heat = make(bar, change=1.0) if make is bf.Temperature else make(bar, stretch=1.2e-5)
+    model = bf.Model([bar], [bf.Clamp(bar.start), bf.Clamp(bar.end)], [heat])
+    path = bf.trace_equilibrium(model, until=until)
+    assert path.stability_limit is path.bifurcations[0]
+    slender = 4.0 * np.pi**2 * 0.01**2 / 12.0 / 1.2e-5
+    assert path.stability_limit.load_factor == pytest.approx(slender, rel=2e-3)
+
+
+@pytest.mark.filterwarnings("ignore::beamfem.errors.UnstableWarning")
+@pytest.mark.parametrize(("damping", "stable"), [(1.0, [True, True, False]), (-1.0, [False] * 3)])
+def test_states_with_forces_of_the_velocity_are_stable_where_no_small_motion_grows(damping, stable):
+    """They once ended with an error of solve_modes, which nobody had called."""
+    steel, section = bf.Material(2.1e11, 0.3, 7850.0), bf.Rectangle(0.01, 0.01)
+    column = bf.Beam(bf.Line((0, 0), (0, 1)), 4, bf.CRBF(3), section, steel)
+    euler = np.pi**2 / 4.0 * 2.1e11 * section.second_moment
+    push = bf.PointForce(column.end, (0.0, -2.0 * euler))
+    control = bf.StateForce(column.end, lambda time, q, v: (-damping * v[0], -damping * v[1], 0.0))
+    model = bf.Model([column], [bf.Clamp(column.start)], [push], connectors=[control])
+    assert bf.solve_static(model, at=[0.2, 0.4, 0.8]).stable.tolist() == stable
+
+
+def test_a_path_follows_forces_of_the_load_factor_alone():
+    """Such a model once had no path, as no load of its list changes."""
+    steel = bf.Material(2.1e11, 0.3, 7850.0)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(3), bf.Rectangle(0.01, 0.01), steel)
+    pull = bf.StateForce(beam.end, lambda factor, q, v: (0.0, -30.0 * factor, 0.0))
+    model = bf.Model([beam], [bf.Clamp(beam.start)], connectors=[pull])
+    path, solved = bf.trace_equilibrium(model, until=1.0), bf.solve_static(model)
+    assert path[-1].displacement(beam.end) == pytest.approx(solved.displacement(beam.end)[-1], rel=1e-9)
+
+
 def test_a_snap_out_and_back_to_no_load_has_completed():
     """Without a load in the end, the residual is as small as round-off allows, which leaves many digits."""
     axis = bf.Parametric(lambda x: (x, 0.05 * np.sin(np.pi * x)), 0.0, 1.0)

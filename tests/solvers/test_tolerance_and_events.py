@@ -144,6 +144,18 @@ def test_an_event_may_end_the_motion(pendulum, how):
         assert motion.statistics.steps == np.ceil(motion.time[-1] / 1e-3)
 
 
+@pytest.mark.parametrize("how", [{"step": 1e-3}, {"step": 2e-3}, {"tolerance": 1e-4}, {"tolerance": 1e-6}])
+@pytest.mark.parametrize("offset", [0.3, 0.5, 0.7])
+def test_a_motion_that_goes_on_from_an_event_does_not_end_there_again(pendulum, how, offset):
+    """Where round-off had left the function on the side of before, it once ended at time 0."""
+    beam, model = pendulum
+    event = bf.Event("passes", lambda state: state.position(beam.end)[0] - offset, stop=True)
+    first = bf.simulate(model, 3.0, events=[event], **how)
+    rest = bf.simulate(model, 3.0, start=first, events=[event], **how)
+    whole = bf.simulate(model, 3.0, events=[bf.Event("passes", event.function)], **how)
+    assert first.time[-1] + rest.time[-1] == pytest.approx(whole.events[1].time, abs=5e-3)
+
+
 @pytest.mark.parametrize("how", [{"step": 1e-3}, {"tolerance": 1e-4}])
 def test_events_at_the_instant_at_which_another_ends_the_motion_are_recorded(pendulum, how):
     """Those that were listed after it were once lost."""

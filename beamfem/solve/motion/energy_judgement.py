@@ -14,7 +14,6 @@ from beamfem.results.energy_balance import balance, driven, masses
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics
 from beamfem.solve.motion.consistent_rows import on_conditions
-from beamfem.solve.motion.kinks import kinked
 
 CHUNK = 8  # steps that are judged together
 _UNRESOLVED = 0.005  # (w h)^6 of vibrations times their share of the kinetic energy; below, energies are not evaluated
@@ -59,7 +58,7 @@ class EnergyJudge:
         self._by_means = implicit and not self._damps
         self._moving = [item.dof for item in system.prescribed if callable(item.value)]
         self._share = _SHARE_MOVED if self._moving and not self._by_means else share
-        self._abrupt = bool(system.table(kinked))  # contacts may begin and end within a chunk
+        self._abrupt = bool(system.kinked)  # contacts may begin and end within a chunk
         self._speed = self._speed_evaluated = 0.0
         self._drift = self._total = 0.0
         self._parts = list[tuple[float, float]]()  # extreme kinetic, strain and potential energies so far
@@ -114,6 +113,9 @@ class EnergyJudge:
             change -= v[3]
             change = np.square(change, out=change) @ self._masses
             change = np.maximum.reduceat(change, np.maximum(bounds[:-1] - 2, 0)) if doubted else change
+            if self._abrupt:  # a contact that begins in the last step of a chunk shows in p'' before it does in p'
+                jump = (times[ends] - times[ends - 1])[:, None] * (states[ends, 2] - states[ends - 1, 2])
+                change = np.maximum(change, np.square(jump) @ self._masses)
             fastest = np.maximum.accumulate(np.append(self._speed, speeds))
             grown = (speeds > _GROWN * fastest[:-1]) & (fastest[:-1] > 0.0) & (change > _SMOOTH * speeds)
             doubtful |= ~(change <= _UNRESOLVED * fastest[1:]) | grown

@@ -10,7 +10,7 @@ from beamfem.results.solution_checks import advice
 from beamfem.solve.motion.cut_steps import Rows, StepCutter
 from beamfem.solve.motion.energy_judgement import CHUNK
 from beamfem.solve.motion.generalized_alpha import is_scheme
-from beamfem.solve.motion.kinks import first_kink, kinked
+from beamfem.solve.motion.kinks import first_kink
 from beamfem.solve.motion.marching_doubled import DoubledSteps
 from beamfem.solve.motion.saved_rows import SavedRows
 from beamfem.solve.motion.stable_step import stable_step
@@ -147,7 +147,7 @@ def _march_pairs(
     """Do what `march_to_tolerance` does with a method of stages, in compiled pairs of steps."""
     system, taken = cutter.system, 0
     largest = 2 if saved.watch.events else max(cutter.size, 2)  # what follows an error in an event is lost
-    kinks, kink, size, redone = bool(system.table(kinked)), 0.0, 0.0, 0
+    kinks, kink, size, redone = bool(system.kinked), 0.0, 0.0, 0
     room = min(_TO_KINK, largest) if kinks else largest
     with progress("time [s]", cutter.end) as report, motion_workspace(system) as space:
         motion = DoubledSteps(system, space, coefficients(method), method.order, cutter.statistics)

@@ -12,6 +12,7 @@ from beamfem.solve.motion.dense_output import balanced
 from beamfem.validation import convert, finite, flag, shown, text
 
 _CLOSE = 1e-12  # of a step: accuracy of the time of an event
+_BEGIN = 1e-9  # of a step: an event this close to the beginning is the one with which the motion before has ended
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,7 @@ class Event:
         Name of the event.
     function : callable
         Takes a `MotionState`, returns a number. A crossing within a step is found if the function has another sign at
-        its end.
+        its end; one at the very beginning of a motion does not count, as with it another one may have ended.
     rising : bool, optional
         Whether only crossings from negative to positive count, or, if False, only those from positive to negative.
     stop : bool, default False
@@ -80,20 +81,18 @@ class Watch:
             after = self._state(float(times[number + 1]), states[number + 1])
             now = [self._value(event, after) for event in self.events]
             pair = slice(number, number + 2)
-            crossed = [
+            located = [
                 (self._locate(event, times[pair], states[pair]), event)
                 for event, before, value in zip(self.events, self.values, now, strict=True)
                 if (before < 0.0 <= value and event.rising is not False)
                 or (before > 0.0 >= value and event.rising is not True)
             ]
             self.values, self.time = now, after.time
+            step = float(times[number + 1] - times[number])
+            crossed = sorted([each for each in located if each[0] > _BEGIN * step], key=lambda pair: pair[0])
             stop = min((time for time, event in crossed if event.stop), default=np.inf)
-            latest = stop + 2.0 * _CLOSE * float(times[number + 1] - times[number])  # at the same instant
-            self.found += [
-                (event.name, min(time, stop))
-                for time, event in sorted(crossed, key=lambda pair: pair[0])
-                if time <= latest
-            ]
+            latest = stop + 2.0 * _CLOSE * step  # at the same instant
+            self.found += [(event.name, min(time, stop)) for time, event in crossed if time <= latest]
             if stop < np.inf:
                 return stop
         return None

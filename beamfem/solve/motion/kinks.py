@@ -10,12 +10,6 @@ _SHARES = np.linspace(0.0, 1.0, 33)  # of a step, between which measures are str
 _AT_END = 1e-3  # of a step: a kink this close to one of its ends is there
 
 
-def kinked(system: System) -> tuple[Alike, ...]:
-    """Return the parts of a model whose forces have kinks."""
-    parts, p = [each for each in system.parts if isinstance(each, Alike)], system.reference[None]
-    return tuple(each for each in parts if _measures((each,), p, 0.0 * p, p, p != p).size)
-
-
 def first_kink(system: System, times: np.ndarray, states: np.ndarray) -> tuple[int, float] | None:
     """Return the first step that a kink is in, and its time [s], or None.
 
@@ -24,7 +18,7 @@ def first_kink(system: System, times: np.ndarray, states: np.ndarray) -> tuple[i
     beginning. A stop that turns back within a step may be no deeper at its end, so that what counts is whether history
     would change to the middle as well.
     """
-    parts, steps, past = system.table(kinked), np.diff(times), states[:-1, 0]
+    parts, steps, past = system.kinked, np.diff(times), states[:-1, 0]
     changed, half = past != states[1:, 0], 0.5 * steps[:, None]
     (p0, v0), (p1, v1) = (states[rows, :2].swapaxes(0, 1) for rows in (slice(-1), slice(1, None)))
     rows = (p0, v0), (p1, v1), (p0 + half * v0, v0), (p1 - half * v1, v1)

@@ -154,6 +154,8 @@ def cutter_of(
     judged: Scheme | None = integrator if is_scheme(integrator) else None
     if is_explicit(integrator):  # by its damping alone
         judged = GeneralizedAlpha(0.0 if integrator.order > 2 else 1.0)
+    elif has_stages(integrator) and system.kinked:
+        judged = GeneralizedAlpha(0.0 if integrator.removed else 1.0)
     if judged is not None:
         judge = EnergyJudge(system, judged.rule(parts[0].step), end, state[:3], implicit=judged is integrator)
     elif has_stages(integrator) and not integrator.removed:  # Gauss; Radau damps what steps do not resolve

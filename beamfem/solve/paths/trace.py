@@ -363,7 +363,7 @@ def _traced(
 
 def _require_load(system: System) -> None:
     """Raise InputError if nothing changes with the load factor."""
-    if system.model.frame is not None and system.model.frame.speed != 0.0:
+    if (system.model.frame is not None and system.model.frame.speed != 0.0) or system.connectors.follow_time:
         return
     kinks = [kink for function in functions_of_time(system) for kink in function.kinks]
     for at in (0.37, 1.0, *kinks):

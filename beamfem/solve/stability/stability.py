@@ -2,12 +2,14 @@
 
 import numpy as np
 
+from beamfem.equations.connector_traits import damps_at_rest
 from beamfem.equations.equations import STATICS, linearise_at_rest, load_change, with_stresses
 from beamfem.equations.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.precision.mixed_tangent import MixedTangent
 from beamfem.precision.roundoff import counts_with_stresses
 from beamfem.results.solution import Solution, State
+from beamfem.solve.linear.linearise import linearise
 from beamfem.solve.modes.modes import solve_modes
 from beamfem.solve.newton.newton import Newton, solve_equilibrium
 from beamfem.solve.start.mechanisms import no_equilibrium_at_start
@@ -26,8 +28,16 @@ def stable_rows(solution: Solution) -> np.ndarray:
         counts = (unstable_directions(system, p, at, mixed) for p, at in zip(solution.p, solution.at, strict=True))
         return np.array([count == 0 for count in counts])
     count = min(_MODES, len(system.free_dofs))
-    rows = (solution[row] for row in range(len(solution)))
-    return np.array([not np.any(solve_modes(solution.model, count, about=row).growth > 0.0) for row in rows])
+    damped = any(damps_at_rest(item) for item in system.connectors.items)
+    return np.array([not np.any(_growth(solution[row], count, damped) > 0.0) for row in range(len(solution))])
+
+
+def _growth(state: State, count: int, damped: bool) -> np.ndarray:
+    """Return the growth (m,) [1/s] of the slowest modes of vibration about a state."""
+    if damped:
+        linear = linearise(state.model, state)
+        return linear.modes(min(count, len(linear))).growth
+    return solve_modes(state.model, count, about=state).growth
 
 
 def unstable_directions(system: System, p: np.ndarray, load_factor: float, mixed: bool) -> int:

@@ -15,7 +15,7 @@ from beamfem.model.load_shapes import Moment
 from beamfem.model.part_units import UNIT
 from beamfem.model.state_protocols import Placed
 from beamfem.model.supports import Value
-from beamfem.model.time_functions import Integral
+from beamfem.model.time_functions import Integral, kinks_of
 from beamfem.parts.at_points import BetweenPlaces
 from beamfem.parts.hinge import Hinge
 from beamfem.parts.point_moment import PointMoment
@@ -50,6 +50,11 @@ class Controller:
 
     unknowns: ClassVar[int] = 0
     conservative: ClassVar[bool] = False
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """The times [s] that the function declares, at which it may jump."""
+        return kinks_of(self.torque)
 
     def force(self, at: At) -> np.ndarray:
         """Return the moments that resist."""

@@ -10,6 +10,7 @@ from beamfem.errors import InputError
 from beamfem.model.beam import Point
 from beamfem.model.contribution import At
 from beamfem.model.load_shapes import Bar
+from beamfem.model.time_functions import kinks_of
 from beamfem.validation import called, takes
 
 
@@ -48,6 +49,11 @@ class StateForce:
             raise InputError(
                 "the function of a StateForce takes time, q and v: lambda time, q, v: (0.0, -50.0 * v[1], 0.0)"
             )
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """The times [s] that the function declares, at which it may jump."""
+        return kinks_of(self.function)
 
     def force(self, at: At) -> np.ndarray:
         """Return the forces and moments that resist."""

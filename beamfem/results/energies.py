@@ -239,15 +239,16 @@ class Exchange(NamedTuple):
 
 
 class Forces(NamedTuple):
-    """Generalized forces (rows, n) of what has no potential.
+    """Generalized forces (rows, n) of what has no potential, before and after each row, in which they may jump.
 
-    before, after: of follower loads and pressures, which may jump in a row, and of moving supports; connected: of
-    connectors that do work; lost (rows,) [W]: power that everything else dissipates, but for what has a history.
+    work: of follower loads, pressures and moving supports; given: of connectors that do work; lost (rows,) [W]: power
+    that everything else dissipates, but for what has a history.
     """
 
-    before: np.ndarray
-    after: np.ndarray
-    connected: np.ndarray
+    work: np.ndarray
+    work_after: np.ndarray
+    given: np.ndarray
+    given_after: np.ndarray
     lost: np.ndarray
 
 
@@ -259,7 +260,7 @@ def exchange(solution: Solution, forces: Forces) -> Exchange:
     """
     driving = system_of(solution.model, static=False).connectors.driving
     moved, at, motion = np.diff(solution.p, axis=0), solution.at, (solution.p, solution.v, solution.a)
-    ends = ((forces.before, forces.after), (forces.connected,) * 2)
+    ends = (forces.work, forces.work_after), (forces.given, forces.given_after)
     work, given = (0.5 * np.einsum("sn,sn->s", before[1:] + after[:-1], moved) for before, after in ends)
     if any(load.amplitude is not None for load in solution.model.loads):
         work = work + _of_amplitudes(solution, driving)
@@ -272,9 +273,10 @@ def exchange(solution: Solution, forces: Forces) -> Exchange:
 
 
 def _kinks(solution: Solution) -> list[float]:
-    """Return the times [s] of the kinks that amplitudes of loads declare."""
-    amplitudes = [load.amplitude for load in solution.model.loads]
-    return sorted({kink for each in amplitudes for kink in kinks_of(each)})
+    """Return the times [s] of the kinks that amplitudes of loads and functions of connectors declare."""
+    connectors = system_of(solution.model, static=False).connectors.items
+    functions = [*(load.amplitude for load in solution.model.loads), *(item.item for item in connectors)]
+    return sorted({kink for each in functions for kink in kinks_of(each)})
 
 
 def _of_amplitudes(solution: Solution, driving: Connectors) -> np.ndarray:
@@ -282,6 +284,8 @@ def _of_amplitudes(solution: Solution, driving: Connectors) -> np.ndarray:
 
     Displacements are linear between rows; loads are evaluated on both sides of kinks, where they may jump.
     """
+    if len(solution) < 2:
+        return np.zeros(0)
     kinks = _kinks(solution)
     at, steps, size = solution.at, np.arange(len(solution) - 1), np.diff(solution.at)
     touched = [np.searchsorted(at, kinks, side) - 1 for side in ("left", "right")]  # those before and after a row
@@ -316,24 +320,24 @@ def forces_without_potential(solution: Solution) -> Forces:
     """Return the forces without a potential; those of loads as the difference that their absence makes."""
     system, (rows, size) = system_of(solution.model, static=False), solution.p.shape
     driving = system.connectors.driving
-    work, connected, lost = np.zeros((rows, size)), np.zeros((rows, size)), np.zeros(rows)
+    work, given, lost = np.zeros((rows, size)), np.zeros((rows, size)), np.zeros(rows)
     moving = [item.dof for item in system.prescribed if callable(item.value)]
     following = not system.loads.conserves.all()
     damped = system.damped or (len(driving.items) < len(system.connectors.items) and system.connectors.damp)
     if not (moving or following or damped or driving.items):
-        return Forces(work, work, connected, lost)
+        return Forces(work, work, given, given, lost)
     times, states = solution.at.tolist(), list(zip(solution.p, solution.v, solution.a, strict=True))
     if moving:
         work[:, moving] = residuals(system, states, times)[:, moving]
-    before = after = work
-    if following:
-        sides = _beside(solution)
-        before = work + _of_followers(system, states, sides[0])
-        after = before if np.array_equal(*sides) else work + _of_followers(system, states, sides[1])
-    _add_forces(driving, connected, states, times)
+    sides = _beside(solution)
+    found = [
+        (work + _of_followers(system, states, side) if following else work, _of(driving, states, side))
+        for side in (sides[:1] if np.array_equal(*sides) else sides)
+    ]
     if damped:
-        lost += _dissipated_power(system, driving, states, times)
-    return Forces(before, after, -connected, lost)
+        lost += _dissipated_power(system, driving, states, solution.at)
+    (work, given), (work_after, given_after) = found[0], found[-1]
+    return Forces(work, work_after, given, given_after, lost)
 
 
 def _beside(solution: Solution) -> tuple[np.ndarray, np.ndarray]:
@@ -354,7 +358,7 @@ def _of_followers(system: System, states: Sequence[Sequence[np.ndarray]], times:
 
 
 def _dissipated_power(
-    system: System, but: Connectors, states: Sequence[Sequence[np.ndarray]], times: Sequence[float]
+    system: System, but: Connectors, states: Sequence[Sequence[np.ndarray]], times: np.ndarray
 ) -> np.ndarray:
     """Return the power (rows,) [W] that all but some connectors dissipate: of the part of the forces odd in p'.
 
@@ -364,15 +368,13 @@ def _dissipated_power(
     odd = np.zeros_like(rates)
     for sign in (1.0, -1.0):
         moved = [(p, sign * v, zeros) for p, v, _ in states]
-        forces = -residuals(system, moved, times)
-        _add_forces(but, forces, moved, times)
-        odd -= 0.5 * sign * forces
+        odd += 0.5 * sign * (residuals(system, moved, times.tolist()) + _of(but, moved, times))
     return np.asarray(np.einsum("sn,sn->s", rates, odd))
 
 
-def _add_forces(
-    connectors: Connectors, forces: np.ndarray, states: Sequence[Sequence[np.ndarray]], times: Sequence[float]
-) -> None:
-    """Add the forces of connectors in states p, p' and p'' (rows, n) at times [s] to forces (rows, n)."""
-    for row, (p, v, a), time in zip(forces, states, times, strict=True):
+def _of(connectors: Connectors, states: Sequence[Sequence[np.ndarray]], times: np.ndarray) -> np.ndarray:
+    """Return the forces (rows, n) that connectors exert in states p, p' and p'' (rows, n) at times [s]."""
+    result = np.zeros((len(times), len(states[0][0])))
+    for row, (p, v, a), time in zip(result, states, times.tolist(), strict=True):
         connectors.add_forces(row, (p, v, a), time)
+    return -result

@@ -88,14 +88,15 @@ def march_to_tolerance(
                 if taken >= most:
                     return None
                 step = min(step or _first_step(cutter, state, tolerance), 0.25 * (end - part.times[0]), longest)
-                steps = min(count, int(np.ceil((end - time) / step * (1.0 - 1e-9)))) if rule else 2
-                last = time + 1.001 * steps * step >= end
-                size = (end - time) / steps if last else step
+                target = part.end_of_steps(time)
+                steps = min(count, int(np.ceil((target - time) / step * (1.0 - 1e-9)))) if rule else 2
+                last = time + 1.001 * steps * step >= target
+                size = (target - time) / steps if last else step
                 times = time + size * np.arange(steps + 1.0)
-                times[-1] = end if last else times[-1]
+                times[-1] = target if last else times[-1]
                 stretch = Stretch(
                     times, size, False, False,
-                    part.loads_from if jumps else time, part.loads_to if last else float(times[-1]),
+                    part.loads_from if jumps else time, part.loads_to if times[-1] == end else float(times[-1]),
                 )  # fmt: skip
                 before, turned, rows = state.copy(), rotations.copy(), Rows.empty(steps, state, rotations)
                 counted = cutter.cuts, cutter.further, cutter.exchanged
@@ -166,8 +167,9 @@ def _march_pairs(
             while own.time < end:
                 if taken >= most:
                     return None
-                refused, ahead = own.refused, own.time < kink < end
-                until = replace(part, times=np.array([own.time, kink])) if ahead else part
+                target = part.end_of_steps(own.time)
+                refused, ahead = own.refused, own.time < kink < target
+                until = replace(part, times=np.array([own.time, kink if ahead else target]))
                 times, rows = motion.follow(until, state, rotations, max(int(min(room, most - taken)), 2))
                 room = min(2 * room, largest)
                 found = first_kink(system, times, rows.states) if kinks and redone < _REDONE else None

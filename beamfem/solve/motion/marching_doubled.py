@@ -37,7 +37,8 @@ class DoubledSteps(StepsInCalls):
         self._moved = any(callable(item.value) for item in system.prescribed)
         self._callback = _Sample(self._guarded)
         self.record = Doubled(fine=self._method("fine"), coarse=self._method("coarse"))
-        own, varies, s, solver = self.record, self._moved or system.loads.varying, len(rule.nodes), space.solver
+        varies = self._moved or system.loads.varying or bool(system.called)
+        own, s, solver = self.record, len(rule.nodes), space.solver
         methods = (own.fine, own.coarse) if is_coupled(system) else ()
         self._coupled = [CoupledPlanes(system, space, each) for each in methods]
         scale = np.zeros(padded(solver.size))
@@ -133,8 +134,9 @@ class DoubledSteps(StepsInCalls):
     def _sample(self) -> None:
         """Sample loads and prescribed coordinates for two steps and the double one."""
         system, solver, rule, part = self._system, self._space.solver, self._rule, self._part
+        solver.times[:] = np.clip(solver.times, part.loads_from, part.loads_to)
         if system.loads.varying:
-            loads = system.loads.of_rows(np.clip(solver.times, part.loads_from, part.loads_to))
+            loads = system.loads.of_rows(solver.times)
             self._space.assembler.load(loads.body, loads.points, loads.imposing)
             solver.bodies = loads.body
         if self._moved:

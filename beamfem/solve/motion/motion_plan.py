@@ -19,7 +19,11 @@ from beamfem.solve.motion.saved_rows import SavedRows
 from beamfem.solve.motion.stable_step import stable_step
 from beamfem.solve.motion.stage_coefficients import Explicit, Staged, has_stages, is_explicit
 from beamfem.solve.motion.time_steps import Stretch, stretches
-from beamfem.solve.start.functions_of_time import FunctionOfTime, functions_of_time
+from beamfem.solve.start.functions_of_time import (
+    FunctionOfTime,
+    functions_of_time,
+    sampled,
+)
 from beamfem.solve.start.start_checks import refuse_frame, require_memory
 from beamfem.validation import count, items, positive, shown
 
@@ -162,7 +166,11 @@ def planned(model: Model, settings: MotionSettings, in_memory: bool) -> MotionPl
     announce_compilation()
     times = rows_at * np.arange(int(np.ceil(settings.duration / rows_at - 1e-9)) + 1)
     acting = functions_of_time(system)
+    if settings.tolerance is not None:
+        acting = [sampled(function, settings.duration) for function in acting]
     parts = stretches(times, [function for function in acting if function.amplitude])
+    if settings.tolerance is not None:
+        parts = tuple(part.ending_at([at for function in acting for at in function.turns]) for part in parts)
     ends = np.concatenate([times[:1], *(part.times[1:] for part in parts)])
     return MotionPlan(system, settings, rule, rows_at, times, ends, parts, _wanted(settings, times), acting)
 

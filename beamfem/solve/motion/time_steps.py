@@ -1,6 +1,7 @@
 """Ends of the time steps of a motion: multiples of the step, and the kinks that its loads declare."""
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -39,6 +40,17 @@ class Stretch:
         loads_from = self.loads_from if first == 0 else begin
         loads_to = self.loads_to if last == len(self.times) - 1 else end
         return Stretch(times, self.step / PARTS, False, False, loads_from, loads_to)
+
+    def ending_at(self, times: list[float]) -> "Stretch":
+        """Return the same with its beginning and end, and those of the times [s] at which steps are to end."""
+        begin, end, near = float(self.times[0]), float(self.times[-1]), _NEAR * self.step
+        inside = [at for at in sorted(times) if begin + near < at < end - near]
+        apart = [at for at, later in pairwise([*inside, end]) if later - at > near]
+        return replace(self, times=np.array([begin, *apart, end]))
+
+    def end_of_steps(self, time: float) -> float:
+        """Return the first of its times [s] after another."""
+        return float(self.times[np.searchsorted(self.times, time, "right")])
 
     def after(self, first: int) -> "Stretch":
         """Return the same steps from one of its times on."""

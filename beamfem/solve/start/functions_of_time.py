@@ -1,7 +1,7 @@
 """Functions of time or load factor that act on a model: their kinks, and whether rows or steps resolve them."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain, pairwise
 from typing import NamedTuple
 
@@ -12,28 +12,37 @@ from beamfem.errors import warn
 from beamfem.model.beam import Beam, beam_in_words
 from beamfem.model.load_base import Load, MovingLoad
 from beamfem.model.model import Model
-from beamfem.model.time_functions import Integral, kinks_of
+from beamfem.model.time_functions import Integral, Piecewise, kinks_of
 from beamfem.validation import function_value
 
 # of a step, at which a function is evaluated; unequal, so that few oscillations are missed
 _SHARES = np.array([0.21, 0.48, 0.77])
 # of a step in statics, which may be far too long at first
 _MANY_SHARES = np.append(0.5 * (np.sqrt(5.0) - 1.0) * np.arange(1, 16) % 1.0, 0.5 ** np.arange(2, 24))
+_LOOKS = 1024  # samples of a motion
+_ABRUPT = 2.0  # times the changes between the samples before and after: those between which a function may jump
+_OFTEN = 4  # turns
+_WIDTHS = np.arange(-3.0, 4.0)  # of a pulse: where steps end, which are short enough there to see it
 _BULGE = 0.1  # of the scale of a function; an oscillation with seven steps per period stays below
 
 
 @dataclass(frozen=True)
 class FunctionOfTime:
-    """A function of time that acts on a model, its description, and whether it is an amplitude or a motion."""
+    """A function of time that acts on a model, its description, and whether it is an amplitude or a motion.
+
+    found, turns [s]: see `sampled`.
+    """
 
     name: str
     function: Callable[[float], float]
     amplitude: bool
+    found: tuple[float, ...] = ()
+    turns: tuple[float, ...] = ()
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Times [s] of the kinks that it declares."""
-        return kinks_of(self.function)
+        """Times [s] of the kinks that it declares, or of those that were found."""
+        return kinks_of(self.function) or self.found
 
     def at(self, time: float) -> float:
         """Return its value at a time [s], in statics a load factor. Raises InputError if it has none."""
@@ -101,7 +110,33 @@ def functions_of_time(system: System) -> list[FunctionOfTime]:
     for item in system.prescribed:
         if callable(item.value):
             by_id.setdefault(id(item.value), FunctionOfTime(f"motion prescribed by {item.source}", item.value, False))
+    for item in () if system.static else system.connectors.items:  # the number of kinks so far jumps at each of them
+        if kinks := getattr(item.item, "kinks", ()):
+            count = Piecewise(lambda time, kinks=kinks: float(np.searchsorted(kinks, time, "right")), kinks)
+            by_id[id(item.item)] = FunctionOfTime(f"function of {item.name}", count, True)
     return list(by_id.values())
+
+
+def sampled(function: FunctionOfTime, end: float) -> FunctionOfTime:
+    """Return an amplitude that declares no kinks with the jumps and the turns that samples until a time [s] show.
+
+    Steps that follow a tolerance would go over a pulse, and a jump between two of their stages, without seeing it. A
+    function that turns often is seen by all steps.
+    """
+    if not function.amplitude or function.kinks:
+        return function
+    at = np.linspace(0.0, end, _LOOKS + 1)
+    values = function.values(at)
+    change, size = np.diff(values), float(np.ptp(values))
+    padded = np.abs(np.concatenate([change[1:2], change, change[-2:-1]]))
+    abrupt = np.abs(change) > _ABRUPT * np.minimum(padded[:-2], padded[2:]) + _LEAST * size
+    jumps = [_jump(function, *at[i : i + 2].tolist(), _LEAST * size) for i in np.flatnonzero(abrupt).tolist()]
+    found = tuple(jump.after for jump in jumps if jump is not None)
+    turning = np.flatnonzero(change[1:] * change[:-1] < 0.0) + 1
+    if found or len(turning) > _OFTEN:
+        return replace(function, found=found)
+    width = (at[1] - at[0]) * np.sqrt(2.0 * size / np.abs(change[turning] - change[turning - 1]))
+    return replace(function, turns=tuple(np.sort((at[turning] + width * _WIDTHS[:, None]).ravel()).tolist()))
 
 
 def _name(load: Load, model: Model) -> str:

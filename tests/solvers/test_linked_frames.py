@@ -173,3 +173,17 @@ def test_linearised_critical_loads_beside_a_very_stiff_spring_are_those_of_a_lin
     """Its elongation is a billionth of the displacements, and its force is still that of the link."""
     linked, sprung = (bf.solve_buckling(thrust(frame(seed, **own)[0]), 2).linearised for own in ({}, {"stiff": stiff}))
     assert sprung == pytest.approx(linked, rel=1e-6)
+
+
+@pytest.mark.parametrize("steps", [1, 2, 4, 8])
+@pytest.mark.parametrize("load", [1500.0, 1700.0])
+def test_a_leaning_column_is_solved_by_any_number_of_steps(load, steps):
+    """Short steps by a nearly perfect bifurcation were once taken for the pace of all that follow."""
+    steel = bf.Material(2.1e11, 0.3, 7850.0)
+    columns = [bf.Beam(bf.Line((x, 0.0), (x, 1.0)), 4, bf.CRBF(3), bf.Rectangle(0.01, 0.01), steel) for x in (0.0, 0.5)]
+    held, leaning = columns
+    supports = [bf.Clamp(held.start), bf.Pin(leaning.start)]
+    push, tie = bf.PointForce(leaning.end, (0.0, -load)), bf.Link(held.end, leaning.end)
+    model = bf.Model(columns, supports, [push], connectors=[tie])
+    traced = bf.trace_equilibrium(model, until=1.0)[-1].displacement(leaning.end)
+    assert bf.solve_static(model, steps=steps).displacement(leaning.end)[-1] == pytest.approx(traced, rel=1e-6)

@@ -14,6 +14,7 @@ from beamfem.kernels.block import SHEAR_RIGID, STRETCH
 from beamfem.mesh.beam_mesh import BeamMesh
 from beamfem.mesh.reference import reference_position
 from beamfem.model.beam import beam_in_words
+from beamfem.model.contribution import prescribed_by
 from beamfem.model.supports import PointSupport, Value
 from beamfem.model.time_functions import Integral
 from beamfem.results.postprocess import nodal_rotations, nodal_vectors
@@ -129,7 +130,7 @@ def require_on_supports(system: System, p: np.ndarray, prescribed: np.ndarray, g
             raise InputError(
                 f"{item.name} at {item.item.points[-1]} prescribes {_number(system, dof, p[dof] + jumps[dof])} when "
                 f"the motion begins, but {'start' if given else 'the reference'} has {_number(system, dof, p[dof])}, "
-                f"so that it would jump by {abs(jumps[dof]):.4g}; {_going_on(item.item.prescribed[0], 'angle')}"
+                f"so that it would jump by {abs(jumps[dof]):.4g}; {_going_on(prescribed_by(item.item)[0], 'angle')}"
             )
 
 

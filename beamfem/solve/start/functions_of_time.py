@@ -112,9 +112,13 @@ def functions_of_time(system: System) -> list[FunctionOfTime]:
             by_id.setdefault(id(item.value), FunctionOfTime(f"motion prescribed by {item.source}", item.value, False))
     for item in () if system.static else system.connectors.items:  # the number of kinks so far jumps at each of them
         if kinks := getattr(item.item, "kinks", ()):
-            count = Piecewise(lambda time, kinks=kinks: float(np.searchsorted(kinks, time, "right")), kinks)
-            by_id[id(item.item)] = FunctionOfTime(f"function of {item.name}", count, True)
+            by_id[id(item.item)] = FunctionOfTime(f"function of {item.name}", Piecewise(_count_of(kinks), kinks), True)
     return list(by_id.values())
+
+
+def _count_of(kinks: Sequence[float]) -> Callable[[float], float]:
+    """Return the function of time [s] that counts kinks so far."""
+    return lambda time: float(np.searchsorted(kinks, time, "right"))
 
 
 def sampled(function: FunctionOfTime, end: float) -> FunctionOfTime:
@@ -130,7 +134,8 @@ def sampled(function: FunctionOfTime, end: float) -> FunctionOfTime:
     change, size = np.diff(values), float(np.ptp(values))
     padded = np.abs(np.concatenate([change[1:2], change, change[-2:-1]]))
     abrupt = np.abs(change) > _ABRUPT * np.minimum(padded[:-2], padded[2:]) + _LEAST * size
-    jumps = [_jump(function, *at[i : i + 2].tolist(), _LEAST * size) for i in np.flatnonzero(abrupt).tolist()]
+    near = [(float(at[i]), float(at[i + 1])) for i in np.flatnonzero(abrupt).tolist()]
+    jumps = [_jump(function, low, high, _LEAST * size) for low, high in near]
     found = tuple(jump.after for jump in jumps if jump is not None)
     turning = np.flatnonzero(change[1:] * change[:-1] < 0.0) + 1
     if found or len(turning) > _OFTEN:

@@ -133,7 +133,8 @@ class PathFollower:
             half = _PACE // 2
             start, middle = self.passed[-_PACE], self.passed[-half]
             before, gained = middle - start, load_factor - middle
-            if _SLOWER * before <= gained <= _FASTER * before and half * (1.0 - load_factor) > _MOST_STEPS * gained:
+            pace = max(gained / half, load_factor - self.passed[-1])  # steps may have begun to grow
+            if _SLOWER * before <= gained <= _FASTER * before and 1.0 - load_factor > _MOST_STEPS * pace:
                 raise OutOfReachError(
                     f"its last steps gained {gained / half:.1e} of the load factor each; at that pace load factor 1 is "
                     "out of reach: the loads are far too large for the structure, or not in its units"

@@ -90,10 +90,12 @@ def _on_axis(given: PartAlongBeam, mesh: BeamMesh, points: list[Point], model: M
     """Return what acts on the axis of a beam and on a point, with its rows: the first node, the point, the others."""
     element, field, point = mesh.beam.element, mesh.beam.element.field, given.points[1]
     wanted = [name for name in field.vectors if name in ("r", "r_x")]
-    if any(f"{name}^x" not in mesh.labels(node) for node in range(mesh.nodes) for name in wanted):
+    without = [node for node in range(mesh.nodes) if any(f"{name}^x" not in mesh.labels(node) for name in wanted)]
+    if without:
+        x, y = mesh.position[without[0]].tolist()
         raise InputError(
-            f"{type(given).__name__} needs r_x as a coordinate, which the nodes of {element.name} do not have; take "
-            "another element, such as CRBF(3)"
+            f"{type(given).__name__} needs r_x as a coordinate, which the node of {element.name} at ({x:g}, {y:g}) "
+            "does not have, by its element, or a Clamp or rotation there; take another element, such as CRBF(3)"
         )
     vectors = reference_vectors(mesh, np.arange(mesh.elements)).reshape(*mesh.node.shape, -1, 2)
     slope = np.zeros((mesh.nodes, 2))

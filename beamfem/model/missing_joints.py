@@ -62,10 +62,12 @@ def _point_in_words(model: Model, point: Point) -> str:
 
 
 def _joined_beams(model: Model) -> dict[tuple[int, float], set[int]]:
-    """Return the beams of the other points that joints connect with a point, by its beam and fraction."""
+    """Return the beams of the other points that joints or parts connect with a point, by its beam and fraction."""
     groups: dict[tuple[int, float], set[tuple[int, float]]] = {}
-    for joint in model.shared_joints:
-        a, b = ((model.number_of(point.beam), point.fraction) for point in (joint.a, joint.b))
+    pairs = [(joint.a, joint.b) for joint in model.shared_joints]
+    pairs += [(part.points[0], part.points[1]) for part in model.at_points if len(part.points) > 1]
+    for one, other in pairs:
+        a, b = ((model.number_of(point.beam), point.fraction) for point in (one, other))
         together = groups.get(a, {a}) | groups.get(b, {b})
         for point in together:
             groups[point] = together

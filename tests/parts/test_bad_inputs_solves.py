@@ -9,6 +9,7 @@ import beamfem as bf
 
 BAD = bf.InputError
 FREE = bf.Model([BEAM])
+SECTION, STEEL = bf.Rectangle(0.01, 0.01), bf.Material(2.1e11, 0.3, 7850.0)
 
 
 def double(x):
@@ -200,3 +201,36 @@ def test_stiffnesses_too_far_apart_are_named_or_do_no_harm(modulus):
         said, loads = found.ended, found.load_factors
     assert len(loads) == 0
     assert "no further" in said or (modulus > 1e20 and "the loading path was lost" in said)
+
+
+def test_a_body_that_a_part_leaves_free_is_not_told_to_be_joined():
+    """It was advised to add a joint between what a slider connects, which makes its conditions redundant."""
+    bars = [bf.Beam(bf.Line((x, 0), (x + 1.0, 0)), 2, bf.CRBF(3), SECTION, STEEL) for x in (0.0, 1.0)]
+    pull = [bf.PointForce(bars[1].end, (1.0, 0.0))]
+    for part in (
+        bf.Slider(bars[0].end, bars[1].start, (1, 0)),
+        bf.Bushing(bars[0].end, bars[1].start, (0.0, 1e3, 10.0)),
+    ):
+        model = bf.Model(bars, [bf.Clamp(bars[0].start)], pull, connectors=[part])
+        with pytest.raises(bf.FreeMotionError, match="beam 1 can move freely: it translates along x") as error:
+            bf.solve_static(model)
+        assert "no joint connects" not in str(error.value)
+
+
+def test_a_law_that_is_not_defined_everywhere_ends_a_motion_with_what_was_found():
+    """A raw error of linear algebra came from a place far away, at which its damping was looked for."""
+    bar = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(3), SECTION, STEEL)
+    spring = bf.SpringDamper(bar.end, (1.0, 1.0), lambda stretch, f: f.sqrt(1e-3 + stretch))
+    model = bf.Model([bar], [bf.Clamp(bar.start)], [bf.PointForce(bar.end, (0.0, 5.0))], connectors=[spring])
+    with pytest.raises(bf.ConvergenceError, match="did not converge") as error:
+        bf.simulate(model, 0.2, 1e-3)
+    assert len(error.value.solution) > 1
+
+
+def test_a_clamped_guide_without_slopes_there_is_named_with_the_place():
+    guide = bf.Beam(bf.Line((-0.5, 1.0), (0.5, 1.0)), 4, bf.ANCF(bf.ElasticLine()), SECTION, STEEL)
+    post = bf.Beam(bf.Line((0.0, 0.0), (0.0, 1.0)), 2, bf.CRBF(3), SECTION, STEEL)
+    supports = [bf.Clamp(post.start), bf.Clamp(guide.start), bf.Clamp(guide.end)]
+    push, slider = bf.PointForce(post.end, (100.0, 0.0)), bf.SliderOnBeam(guide, post.end)
+    with pytest.raises(bf.InputError, match=r"which the node of ANCF at \(-0.5, 1\) does not have, .* a Clamp"):
+        bf.solve_static(bf.Model([post, guide], supports, [push], connectors=[slider]))

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 from scipy.sparse import csc_array
 
+from beamfem.equations.system import system_of
 from beamfem.errors import InputError
 from beamfem.linalg.lapack import superlu
 from beamfem.model.load_base import Load
@@ -16,6 +17,7 @@ from beamfem.model.model import Model
 from beamfem.results.solution import Solution, State
 from beamfem.solve.linear.linear_model import LinearModel, Quantity, require_digits
 from beamfem.solve.linear.linearise import linearise
+from beamfem.solve.modes.modes import meshed_for_modes
 from beamfem.validation import items, not_negative, squared
 
 if TYPE_CHECKING:
@@ -91,7 +93,8 @@ def frequency_response(
 ) -> FrequencyResponse:
     """Find the steady response to a harmonic load, y = c (K + i w C - w^2 M)^-1 b with w = 2 pi f.
 
-    M, C, K, b and c are those of `linearise`: for small vibrations about the state.
+    M, C, K, b and c are those of `linearise`: for small vibrations about the state. Beams with default elements are
+    refined until all frequencies up to those of the load, and the 10 lowest ones, are accurate to 1e-4.
 
     Parameters
     ----------
@@ -114,7 +117,8 @@ def frequency_response(
     Raises
     ------
     InputError
-        For an invalid argument, see `linearise`, and if the response is infinite.
+        For an invalid argument, see `linearise`, if the response is infinite, and for frequencies above too many modes
+        of beams with default elements.
     UnknownPointError
         For a point on a beam that is not in the model.
     ConvergenceError
@@ -127,9 +131,11 @@ def frequency_response(
     >>> response.values.shape
     (2,)
     """
-    linear = linearise(model, about, [load])
     valid = squared(not_negative)
     at = np.array([valid("each of the frequencies", f) for f in items("frequencies", frequencies)], dtype=float)
+    if system_of(model, static=True).model.automatic:
+        model, about = meshed_for_modes(model, about, float(at.max(initial=0.0)))
+    linear = linearise(model, about, [load])
     row = linear.output(quantity)
     values = np.array([row @ _moved(linear, frequency) for frequency in at.tolist()], dtype=complex)
     return FrequencyResponse(model, load, quantity, at, values)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
 
 _REAL = 1e-8  # imaginary parts of lambda below this fraction are round-off
 _LOWEST = 10  # modes that default elements are refined for where no number is given
+_MOST = 160  # modes that they are refined for at all
 _SPARE = 4  # eigenvalues found beyond those asked for
 _LARGE = 2.0**30  # acceleration beside whose inertia forces all others are round-off
 
@@ -363,13 +365,26 @@ def solve_modes(
     return modes
 
 
-def meshed_for_modes(model: Model, about: State | Solution | None) -> tuple[Model, State | Solution | None]:
-    """Return a model whose default elements are refined for its lowest modes about a state, and the state on them."""
+def meshed_for_modes(
+    model: Model, about: State | Solution | None, highest: float = 0.0
+) -> tuple[Model, State | Solution | None]:
+    """Return a model whose default elements are refined for its lowest modes about a state, and the state on them.
+
+    They are the lowest ones up to a frequency `highest` [Hz] at least. Raises InputError if these are too many.
+    """
     model, accuracy = prepared(model, None, about)
     if accuracy is None:
         return model, about
-    modes = refined_until(model, accuracy, lambda model: _attempt(model, _LOWEST, about))
-    return modes.model, modes.state
+    count = _LOWEST
+    while count <= _MOST:
+        modes = refined_until(model, accuracy, partial(_attempt, count=count, about=about))
+        if modes.frequencies[-1] >= highest:
+            return modes.model, modes.state
+        count *= 2
+    raise InputError(
+        f"the default elements resolve {_MOST} modes at most, here up to {modes.frequencies[-1]:.4g} "
+        f"{model.unit('Hz')}, and {highest:.4g} {model.unit('Hz')} is above them: give the beams elements"
+    )
 
 
 def _attempt(model: Model, count: int, about: State | Solution | None) -> tuple[Modes | None, float, Shares]:

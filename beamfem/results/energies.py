@@ -13,7 +13,6 @@ from beamfem.equations.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.equations.system import System, system_of
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam
-from beamfem.model.time_functions import kinks_of
 from beamfem.parts.at_points import ANALYTIC
 from beamfem.physics.stations import STATIONS
 from beamfem.reprs import brief
@@ -272,13 +271,6 @@ def exchange(solution: Solution, forces: Forces) -> Exchange:
     return Exchange(work, given, stored, lost)
 
 
-def _kinks(solution: Solution) -> list[float]:
-    """Return the times [s] of the kinks that amplitudes of loads and functions of connectors declare."""
-    connectors = system_of(solution.model, static=False).connectors.items
-    functions = [*(load.amplitude for load in solution.model.loads), *(item.item for item in connectors)]
-    return sorted({kink for each in functions for kink in kinks_of(each)})
-
-
 def _of_amplitudes(solution: Solution, driving: Connectors) -> np.ndarray:
     """Return the work (rows - 1,) [J] of loads that have a potential at each time, and of imposed strains.
 
@@ -286,7 +278,7 @@ def _of_amplitudes(solution: Solution, driving: Connectors) -> np.ndarray:
     """
     if len(solution) < 2:
         return np.zeros(0)
-    kinks = _kinks(solution)
+    kinks = system_of(solution.model, static=False).declared_kinks
     at, steps, size = solution.at, np.arange(len(solution) - 1), np.diff(solution.at)
     touched = [np.searchsorted(at, kinks, side) - 1 for side in ("left", "right")]  # those before and after a row
     near, step = np.tile(kinks, 2), np.concatenate(touched).astype(int)
@@ -342,7 +334,7 @@ def forces_without_potential(solution: Solution) -> Forces:
 
 def _beside(solution: Solution) -> tuple[np.ndarray, np.ndarray]:
     """Return times (rows,) [s] before and after each row: beside it if a load has a kink there."""
-    at, kinks = solution.at, _kinks(solution)
+    at, kinks = solution.at, system_of(solution.model, static=False).declared_kinks
     inset = _BESIDE * np.diff(at)
     before, after = at - np.append(0.0, inset), at + np.append(inset, 0.0)
     there = np.searchsorted(kinks, before, "left") < np.searchsorted(kinks, after, "right")

@@ -22,7 +22,7 @@ from beamfem.results.reactions import energies_of_part
 from beamfem.results.solution import Solution
 from beamfem.results.solution_system import imposed_measures, imposing, loading
 
-_BESIDE = 1e-9  # of the time between rows: distance from a kink at which loads are evaluated
+_BESIDE = 1e-9  # of the time between rows: distance from a jump at which loads are evaluated
 
 
 @dataclass(frozen=True)
@@ -274,14 +274,14 @@ def exchange(solution: Solution, forces: Forces) -> Exchange:
 def _of_amplitudes(solution: Solution, driving: Connectors) -> np.ndarray:
     """Return the work (rows - 1,) [J] of loads that have a potential at each time, and of imposed strains.
 
-    Displacements are linear between rows; loads are evaluated on both sides of kinks, where they may jump.
+    Displacements are linear between rows; loads are evaluated on both sides of jumps.
     """
     if len(solution) < 2:
         return np.zeros(0)
-    kinks = system_of(solution.model, static=False).declared_kinks
+    jumps = system_of(solution.model, static=False).declared_jumps
     at, steps, size = solution.at, np.arange(len(solution) - 1), np.diff(solution.at)
-    touched = [np.searchsorted(at, kinks, side) - 1 for side in ("left", "right")]  # those before and after a row
-    near, step = np.tile(kinks, 2), np.concatenate(touched).astype(int)
+    touched = [np.searchsorted(at, jumps, side) - 1 for side in ("left", "right")]  # those before and after a row
+    near, step = np.tile(jumps, 2), np.concatenate(touched).astype(int)
     inside = (step >= 0) & (step < len(steps))
     near, step = near[inside], step[inside]
     beside = [np.clip(near + side * size[step], at[step], at[step + 1]) for side in (-_BESIDE, _BESIDE)]
@@ -333,11 +333,11 @@ def forces_without_potential(solution: Solution) -> Forces:
 
 
 def _beside(solution: Solution) -> tuple[np.ndarray, np.ndarray]:
-    """Return times (rows,) [s] before and after each row: beside it if a load has a kink there."""
-    at, kinks = solution.at, system_of(solution.model, static=False).declared_kinks
+    """Return times (rows,) [s] before and after each row: beside it if a load jumps there."""
+    at, jumps = solution.at, system_of(solution.model, static=False).declared_jumps
     inset = _BESIDE * np.diff(at)
     before, after = at - np.append(0.0, inset), at + np.append(inset, 0.0)
-    there = np.searchsorted(kinks, before, "left") < np.searchsorted(kinks, after, "right")
+    there = np.searchsorted(jumps, before, "left") < np.searchsorted(jumps, after, "right")
     return np.where(there, before, at), np.where(there, after, at)
 
 

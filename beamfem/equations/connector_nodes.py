@@ -95,7 +95,7 @@ def _on_axis(given: PartAlongBeam, mesh: BeamMesh, points: list[Point], model: M
         x, y = mesh.position[without[0]].tolist()
         raise InputError(
             f"{type(given).__name__} needs r_x as a coordinate, which the node of {element.name} at ({x:g}, {y:g}) "
-            "does not have, by its element, or a Clamp or rotation there; take another element, such as CRBF(3)"
+            "does not have, by its element or as its rotation is fixed; take another element, such as CRBF(3)"
         )
     vectors = reference_vectors(mesh, np.arange(mesh.elements)).reshape(*mesh.node.shape, -1, 2)
     slope = np.zeros((mesh.nodes, 2))

@@ -1,6 +1,7 @@
 """Eigenvalues s of (s^2 M + s C + K) x = 0, the slowest ones of damped or gyroscopic systems."""
 
 import numpy as np
+from scipy.linalg import LinAlgError
 from scipy.sparse import csc_array, csr_array, eye_array
 
 from beamfem.linalg.eigenpairs import Pairs, dominant_pairs, orthonormal
@@ -75,7 +76,11 @@ def _sharpened(
     size = max(abs(rate**2 * np.vdot(x, mass @ x)), abs(rate * np.vdot(x, damping @ x)))
     if abs(np.vdot(x, matrix @ x)) <= _BLURRED * size:
         return rate, x
-    factors, slope = superlu(csc_array(matrix, dtype=complex)), 2.0 * rate * mass + damping
+    try:
+        factors = superlu(csc_array(matrix, dtype=complex))
+    except LinAlgError:  # of a rate that is exact, up to the round-off of large stiffnesses
+        return rate, x
+    slope = 2.0 * rate * mass + damping
     for _ in range(_SOLVES):
         before = x / np.linalg.norm(x)
         x = factors.solve(slope @ before)

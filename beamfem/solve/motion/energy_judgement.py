@@ -26,6 +26,7 @@ _DIFFERENCES = 3  # steps needed for third differences
 _MOST_DOUBT = 0.1  # of the energy exchanged: in work, which steps that fail do not resolve at all
 _SLIGHT, _TINY = 0.01, 1e-300  # of the largest speed of a support: what is no corner of its motion; instead of zero
 _ACCURACY = 1e-14  # of coordinates, that of the iterations
+_FORGOTTEN = 0.1  # of the energy of a vibration, that numerical damping leaves after a chunk
 _FASTER = 1.1  # times the largest speed so far: of a state at which exchanged energies are evaluated anew
 
 
@@ -53,6 +54,7 @@ class EnergyJudge:
         self._system, self._masses, self._radius = system, system.table(masses), radius_at_infinity(rule)
         self._duration = end
         self._damps = self._radius < 1.0 - 1e-6
+        self._forgets = self._radius ** (2 * CHUNK) < _FORGOTTEN  # the end of a chunk tells nothing of its beginning
         self._first = self._fastest = np.zeros(1), start[None].copy()  # times (1,) [s] and states (1, 3, n)
         # whether the mean of the forces in two rows times the displacement between them is the work of a step
         self._by_means = implicit and not self._damps
@@ -101,7 +103,7 @@ class EnergyJudge:
         speeds = np.square(states[ends, 1]) @ self._masses
         doubtful = np.full(len(ends), cut)
         doubtful[-2:] |= failed
-        doubted = self._abrupt or len(self._parts) > 0
+        doubted = self._abrupt or self._forgets or len(self._parts) > 0
         if steps < _DIFFERENCES:
             doubtful |= doubted
         elif not cut:

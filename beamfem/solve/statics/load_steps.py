@@ -17,7 +17,7 @@ from beamfem.progress import progress
 from beamfem.results.solution_checks import advice, may_turn_back, turned_back
 from beamfem.solve.continuation.steps import leaves_arc
 from beamfem.solve.newton.newton import Newton, NewtonResult, Termination, largest_change, solve_equilibrium
-from beamfem.solve.start.mechanisms import lost_at
+from beamfem.solve.start.mechanisms import NEGLIGIBLE, free_when_open, lost_at
 from beamfem.solve.statics.load_path import (
     BESIDE,
     BifurcatesError,
@@ -390,6 +390,8 @@ def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap
     """Add the state of rest after a limit point. Raises LimitPointError unless jumps are allowed."""
     load_factor = float(turn.limit[-1])
     where = f"a limit point at load factor {load_factor:.6g}: beyond it there is no equilibrium nearby"
+    if abs(load_factor) <= NEGLIGIBLE and (opened := free_when_open(follower.system)):
+        raise LimitPointError(where + opened, load_factor, done.solution())
     if snap == "error":
         loads, loaded = follower.system.model.loads, follower.system.loads.at(1.0).any
         unstable = [at for at, _, count in done.rows if is_unstable(done.symmetric, count)]

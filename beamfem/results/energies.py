@@ -97,7 +97,8 @@ class Energy:
 
         It is that of moving supports, follower loads and pressures, loads that change with time, imposed strains, and
         connectors that follow time or are not conservative: the mean of the forces in two rows times the displacement
-        between them, or the sum of it over steps that were divided. The work of constant dead loads is in `potential`.
+        between them, or the sum of it over steps that were divided; at a declared jump of a load both of its values count.
+        The work of constant dead loads is in `potential`.
         """
         return self._exchange[0]
 
@@ -288,15 +289,15 @@ def _of_amplitudes(solution: Solution, driving: Connectors) -> np.ndarray:
     step, time = np.concatenate([steps, steps, step, step]), np.concatenate([at[:-1], at[1:], *beside])
     order = np.lexsort((time, step))
     step, time = step[order], time[order]
-
-    def changes(rows: np.ndarray) -> np.ndarray:
-        states = replace(with_rows(solution, rows), at=time)
-        motion = (states.p, states.v, states.a)
-        return np.diff(states.energy().total - driving.energies(motion, time).sum(axis=1))
-
+    ends = np.stack([np.append(step, step + 1), np.tile(time, 2)])
+    pairs, places = np.unique(ends, axis=1, return_inverse=True)
+    states = replace(with_rows(solution, pairs[0].astype(int)), at=pairs[1])
+    motion = (states.p, states.v, states.a)
+    energies = states.energy().total - driving.energies(motion, pairs[1]).sum(axis=1)
+    before, after = np.diff(energies[places.ravel()].reshape(2, -1), axis=1)
     share = (time - at[step]) / size[step]
     middle, same = 0.5 * (share[1:] + share[:-1]), step[1:] == step[:-1]
-    change = (1.0 - middle) * changes(step) + middle * changes(step + 1)
+    change = (1.0 - middle) * before + middle * after
     return np.bincount(step[1:][same], change[same], len(steps))
 
 

@@ -97,8 +97,8 @@ class Energy:
 
         It is that of moving supports, follower loads and pressures, loads that change with time, imposed strains, and
         connectors that follow time or are not conservative: the mean of the forces in two rows times the displacement
-        between them, or the sum of it over steps that were divided; at a declared jump of a load both of its values count.
-        The work of constant dead loads is in `potential`.
+        between them, or the sum of it over steps that were divided; at a declared jump of a load both its values
+        count. The work of constant dead loads is in `potential`.
         """
         return self._exchange[0]
 

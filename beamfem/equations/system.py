@@ -35,7 +35,7 @@ from beamfem.equations.strain_rates import StrainRates, strain_rates
 from beamfem.errors import InputError
 from beamfem.kernels.block import Block, Layout, Stations
 from beamfem.model.model import Model
-from beamfem.model.time_functions import jumps_of, kinks_of
+from beamfem.model.time_functions import Interpolated, kinks_of
 from beamfem.physics.stations import FOLLOWING
 from beamfem.precision.roundoff_bounds import residual_errors, stress_errors
 from beamfem.validation import shown
@@ -157,10 +157,10 @@ class System:
 
     @cached_property
     def declared_jumps(self) -> np.ndarray:
-        """Times (k,) [s], in order, of the kinks of amplitudes at which they jump, and of functions of connectors."""
-        amplitudes = (load.amplitude for load in self.model.loads if load.amplitude is not None)
-        jumps = {kink for amplitude in amplitudes for kink in jumps_of(amplitude)}
-        return np.array(sorted(jumps.union(*(kinks_of(each.item) for each in self.connectors.items))))
+        """Times (k,) [s], in order, of the kinks at which amplitudes of loads and functions of connectors may jump."""
+        amplitudes = [load.amplitude for load in self.model.loads if not isinstance(load.amplitude, Interpolated)]
+        functions = [*amplitudes, *(each.item for each in self.connectors.items)]
+        return np.array(sorted({kink for each in functions for kink in kinks_of(each)}))
 
     @shared_table
     def kinked(self) -> tuple[Alike, ...]:

@@ -137,21 +137,6 @@ def kinks_of(function: Any) -> tuple[float, ...]:
     return kinks
 
 
-_BESIDE = 1e-12  # of the time until a kink, and of that between the kinks: on either side of it
-_JUMP = 1e-6  # of the largest value there: a larger change is a jump
-
-
-def jumps_of(function: Callable[[float], float]) -> list[float]:
-    """Return the kinks [s] of a function from time 0 on at which its value jumps."""
-    kinks = np.array([kink for kink in kinks_of(function) if kink >= 0.0])
-    beside = _BESIDE * (kinks + np.ptp(kinks) if len(kinks) else kinks)
-    before, after = (
-        [function(time) for time in at.tolist()] for at in (np.maximum(kinks - beside, 0.0), kinks + beside)
-    )
-    change, size = np.abs(np.subtract(after, before)), np.abs([before, after]).max(initial=0.0)
-    return kinks[change > _JUMP * size].tolist()
-
-
 def sine(frequency: float, size: float = 1.0, phase: float = 0.0, mean: float = 0.0) -> Callable[[float], float]:
     """Return size sin(2 pi frequency t + phase) + mean; frequency [Hz], phase [rad]."""
     positive("frequency", frequency)

@@ -41,6 +41,8 @@ from beamfem.solve.accuracy.quantity_change import Quantity, relative_change, re
 from beamfem.validation import positive
 
 DEFAULT = 1e-4  # accuracy of beams whose elements are "auto"
+# of the largest displacement, and of the model: the accuracy that it needs besides, and that which round-off leaves
+_OF_MOVEMENT, _ROUND_OFF = 1e-3, 1e-14
 _MOST_MESHES = 16
 # orders of elements on the first mesh for a low accuracy, otherwise there are as many as digits
 _LOWEST, _LOWEST_CURVED = 2, 4
@@ -97,15 +99,18 @@ def refined_until(
     attempt: Callable[[Model], tuple[_Result | None, float, Callable[[], Shares] | Shares]],
     most: int = _MOST_MESHES,
     first_order: int | None = None,
+    needs: Callable[[_Result], float] | None = None,
 ) -> _Result:
     """Return the result on the first mesh whose estimated error is well below an accuracy [-].
 
     attempt: returns the result on a mesh, None if it is far too coarse, its relative error, and the shares (ne,) of the
     elements of each beam in it or a function for them, see `error_shares`, or None for equal ones; most: number of
-    meshes to try; first_order: of elements that may have any, by default as many as the accuracy has digits. Raises
-    ConvergenceError if none of them is fine enough, whose `solution` is the result with the smallest error, or that of
-    a solve that fails on finer meshes, too.
+    meshes to try; first_order: of elements that may have any, by default as many as the accuracy has digits; needs:
+    returns the accuracy that a result needs, if that is smaller, as far as round-off allows. Raises ConvergenceError if
+    none of them is fine enough, whose `solution` is the result with the smallest error, or that of a solve that fails
+    on finer meshes, too.
     """
+    asked = accuracy
     # a result lists its elements, and has beams with numbers of them to be saved
     profiles = profiles_of(model)
     jumps = [() if profile is None else profile.jumps for profile in profiles]
@@ -135,6 +140,8 @@ def refined_until(
                 ended = f"{found.statistics.ended}; it stopped on mesh {number}, whose error is not known"
                 interrupt.solution = found.with_statistics(ended=ended)  # type: ignore[attr-defined]
             raise
+        if needs is not None and result is not None:
+            accuracy = min(accuracy, needs(result))
         finer = sum(map(_intervals, model.beams)) > unknowns
         unknowns = sum(map(_intervals, model.beams))
         if isinstance(result, Solution):
@@ -153,6 +160,9 @@ def refined_until(
         before = error
         own = None if evenly else shares() if callable(shares) else shares
         model = refined(model, own, error, accuracy / _SAFETY, fixed)
+    if _TRUST * smallest <= asked:
+        assert best is not None
+        return best
     falls = ", and falls no further" if stalled else ""
     raise ConvergenceError(
         f"the estimated error is at best {smallest:.2g} on {number} meshes{falls}; for an accuracy of {accuracy:g} it "
@@ -190,12 +200,23 @@ def require_unlocked(findings: Iterable[Finding]) -> None:
 
 
 def refined_statically(
-    model: Model, accuracy: float, solve: Callable[[Model], Solution], quantity: Quantity
+    model: Model, accuracy: float, solve: Callable[[Model], Solution], quantity: Quantity, by_movement: bool
 ) -> Solution:
-    """Return the static solution on a mesh with few unknowns whose estimated error is below an accuracy [-]."""
+    """Return the static solution on a mesh with few unknowns whose estimated error is below an accuracy [-].
+
+    by_movement: whether the error is to be small beside the largest displacement as well.
+    """
     lowest = [1 if beam.elements == "auto" else beam.element.field.degree for beam in model.beams]
-    attempts = _StaticAttempts(solve, quantity, accuracy, lowest)
-    return refined_until(model, accuracy, attempts, first_order=HIGHEST_ORDER if quantity is None else None)
+    needs = _accuracy_of_movement if by_movement else None
+    attempts = _StaticAttempts(solve, quantity, accuracy, lowest, needs)
+    first = HIGHEST_ORDER if quantity is None else None
+    return refined_until(model, accuracy, attempts, first_order=first, needs=needs)
+
+
+def _accuracy_of_movement(solution: Solution) -> float:
+    """Return the accuracy [-] that leaves a displacement few digits, but for round-off."""
+    moved = max(largest_displacement(solution.model, p) for p in solution.p)
+    return max(_OF_MOVEMENT * moved / system_of(solution.model, static=True).extent, _ROUND_OFF)
 
 
 class _StaticAttempts:
@@ -209,8 +230,14 @@ class _StaticAttempts:
     """
 
     def __init__(
-        self, solve: Callable[[Model], Solution], quantity: Quantity, accuracy: float, lowest: list[int]
+        self,
+        solve: Callable[[Model], Solution],
+        quantity: Quantity,
+        accuracy: float,
+        lowest: list[int],
+        needs: Callable[[Solution], float] | None,
     ) -> None:
+        self._needs = needs
         self._solve, self._quantity, self._accuracy, self._lowest = solve, quantity, accuracy, lowest
         # the last solution, and its last row on the enriched space
         self._known: tuple[Solution | None, Solution | None] = None, None
@@ -223,6 +250,8 @@ class _StaticAttempts:
         carried = None if path is None else carried_path(path, finer, model)
         solution = self._solve(model) if carried is None else carried
         require_unlocked(solution.computed(locking))
+        if self._needs is not None:
+            self._accuracy = min(self._accuracy, self._needs(solution))
         told = self._quantity is None and all(_raisable(mesh.beam.element) for mesh in model.meshes)
         of_rows = errors_of_orders(solution) if told else None
         if of_rows is not None:

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from functools import lru_cache
 from math import comb
-from typing import Any
+from typing import Any, TypeVar
 from warnings import catch_warnings
 
 import numpy as np
@@ -33,6 +33,8 @@ from beamfem.solve.accuracy.error_estimate import (
     largest_displacement,
     largest_displacement_error,
 )
+
+_Rows = TypeVar("_Rows", bound=Solution)
 
 WARNED = 0.02  # of the largest displacement, or of a frequency: error above which there is a warning
 _ROWS = 50  # of a motion, about: that are compared
@@ -143,18 +145,19 @@ def _differences(nodes: tuple[float, ...]) -> np.ndarray:
     return np.column_stack([coefficients[0], slope, 1.0 / np.diff(xi), highest])
 
 
-def warned_of_coarse_mesh(solution: Solution) -> Solution:
+def warned_of_coarse_mesh(solution: _Rows, unseen: bool = False) -> _Rows:
     """Return a static solution after a warning, which it then holds, if its displacements are off by 2 % or more.
 
-    Where the indicator of its last state exceeds 1, its error is estimated, unless there is a warning that its elements
-    lock, which finer ones would too. It is not estimated again for the same mesh with an indicator that is no larger.
+    unseen: whether its mesh was chosen without it, so that its error is estimated in any case. Elsewhere it is where
+    the indicator of its last state exceeds 1, and not again for the same mesh with an indicator that is no larger. It
+    is not if there is a warning that its elements lock, which finer ones would too.
     """
     system = system_of(solution.model, static=True)
     if not len(solution):
         return solution
     table, state = system.table(_Table), np.ascontiguousarray(solution.p[-1])
     indicator = coarseness.compiled(table.address, address_of(state))
-    if indicator <= table.fine:
+    if indicator <= table.fine and not unseen:
         return solution
     if any(finding.kind is LockingWarning for finding in solution.computed(locking)):
         return solution
@@ -221,7 +224,7 @@ def kept_coarse(what: str, remedy: str = "find that state with more elements") -
     )
 
 
-def _told(solution: Solution, found: Finding) -> Solution:
+def _told(solution: _Rows, found: Finding) -> _Rows:
     warn_of([found])
     return solution.with_statistics(warnings=(*solution.statistics.warnings, found.sentence))
 

@@ -1,6 +1,7 @@
 """Steady response to a harmonic load about a state."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,7 @@ from scipy.linalg import LinAlgError
 from scipy.sparse import csc_array
 
 from beamfem.equations.system import system_of
-from beamfem.errors import InputError
+from beamfem.errors import ConvergenceError, InputError, UnstableWarning, warn
 from beamfem.linalg.lapack import superlu
 from beamfem.model.load_base import Load
 from beamfem.model.model import Model
@@ -22,6 +23,9 @@ from beamfem.validation import items, not_negative, squared
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+_SLOWEST, _GROWTH = 12, 1e-6  # vibrations that are looked at, and growth per radian that is none
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +128,11 @@ def frequency_response(
     ConvergenceError
         If stiffnesses or inertias differ so much that round-off leaves a response no three digits.
 
+    Warns
+    -----
+    UnstableWarning
+        If small motions about the state grow.
+
     Examples
     --------
     >>> push = bf.PointForce(beam.end, (0.0, 1.0))
@@ -136,9 +145,18 @@ def frequency_response(
     if system_of(model, static=True).model.automatic:
         model, about = meshed_for_modes(model, about, float(at.max(initial=0.0)))
     linear = linearise(model, about, [load])
+    if about is not None and linear.static and _grows(linear):
+        warn("small motions about the state grow, so that it has no steady response", UnstableWarning)
     row = linear.output(quantity)
     values = np.array([row @ _moved(linear, frequency) for frequency in at.tolist()], dtype=complex)
     return FrequencyResponse(model, load, quantity, at, values)
+
+
+def _grows(linear: LinearModel) -> bool:
+    """Return whether one of the slowest vibrations grows by more than round-off."""
+    with suppress(ConvergenceError):
+        return bool(np.any(linear.modes(min(_SLOWEST, len(linear))).ratios < -_GROWTH))
+    return False
 
 
 def _moved(linear: LinearModel, frequency: float) -> np.ndarray:

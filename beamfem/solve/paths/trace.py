@@ -19,6 +19,7 @@ from beamfem.results.path import Bifurcation, Path, PathState
 from beamfem.results.solution_checks import advice, warned
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.accuracy.adapted_mesh import prepared, refined_until
+from beamfem.solve.accuracy.coarse_mesh import warned_of_coarse_mesh
 from beamfem.solve.accuracy.quantity_change import Quantity
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
@@ -268,7 +269,9 @@ def trace_equilibrium(
     if direction is None:
         direction = -1 if start is None and isinstance(until, float) and until < 0.0 else 1
     newton = require_newton(newton, Newton(iterations=_ITERATIONS))
+    chosen = False  # whether a branch has a mesh that was chosen for the path that it leaves
     if isinstance(start, Bifurcation):
+        chosen = model.automatic
         model, start = _on_mesh_of(start, model, accuracy)
     model, accuracy = prepared(model, accuracy, quantity=quantity)
 
@@ -276,7 +279,8 @@ def trace_equilibrium(
         return _traced(model, until, start, direction, step, points, newton)
 
     if accuracy is None:
-        return warned(trace(model))
+        path = warned(trace(model))
+        return warned_of_coarse_mesh(path, unseen=True) if chosen else path
     return warned(refined_until(model, accuracy, lambda model: path_attempt(trace(model), quantity, trace, accuracy)))
 
 

@@ -60,6 +60,7 @@ _MODES = 3  # softest ones, of which one may lose its stiffness and gain it agai
 _KEPT = 0.3  # of the least stiffness of a mode at the points of a step: with less in between it may lose it
 _GRID = np.linspace(0.0, 1.0, 65)
 _DISTANCES = 0.5, 2.0, 0.8  # of the usual one
+_ABOVE = 1.2  # times the change of the load by which it is critical, as predicted: what gives a warning
 _UNCERTAIN = 1e-4  # of a load factor: a larger uncertainty gives a warning
 
 
@@ -326,6 +327,15 @@ def _buckling(model: Model, count: int, about: State | Solution | None) -> _Judg
         errors = ", ".join(f"{value:.0e}" for value in uncertainty)
         message = f"round-off leaves few digits of critical load factors, relative errors are up to {errors}"
         found.append(Finding(message, RoundOffWarning))
+    first = criticals[0].load_factor if criticals else np.inf
+    if len(linearised) and first - load_factor > _ABOVE * (linearised[0] - load_factor) > 0.0:
+        later = f"the first critical point is at {first:.6g}" if criticals else "no critical point was found"
+        message = (
+            f"linearised stability predicts a critical load factor of {linearised[0]:.6g}, where the path bends "
+            f"without one, as that of an imperfect structure does; {later}. Look at the displacements of "
+            "trace_equilibrium"
+        )
+        found.append(Finding(message, UserWarning))
     shapes = [point.mode / largest_translation(model, point.p, point.mode) for point in criticals]
     if may_lock(system, p) and shapes:
         at_start = State(p, np.zeros_like(p), np.zeros_like(p), load_factor, model)

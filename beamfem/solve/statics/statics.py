@@ -148,10 +148,11 @@ def solve_static(
         through = solve_through(model, load_factors, steps, newton, snap=snap, unstable=unstable, end=load_factors[-1])
         return _rows_at(through, load_factors)
 
+    by_default = accuracy is None
     model, accuracy = prepared(model, accuracy, quantity=quantity)
     if accuracy is None:
         return warned_of_coarse_mesh(warned(solve(model)))
-    refined = refined_statically(model, accuracy, solve, quantity)
+    refined = refined_statically(model, accuracy, solve, quantity, by_default and quantity is None)
     return warned_of_coarse_mesh(warned(refined))
 
 

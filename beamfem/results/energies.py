@@ -172,13 +172,17 @@ def _recorded(solution: Solution, by_sections: np.ndarray) -> np.ndarray:
     In statics nan if a connector that is not conservative has no record.
     """
     system = loading(solution)[0]
-    items = system.connectors.items
-    own = [item.dissipated for item in items]
     if system.static and any(
-        not item.item.conservative and not len(each) for item, each in zip(items, own, strict=True)
+        not item.item.conservative and not len(item.dissipated) for item in system.connectors.items
     ):
         return np.full(len(solution), np.nan)
-    return by_sections + sum(solution.p[:, each].sum(axis=1) for each in own)
+    return by_sections + recorded_by_parts(solution)
+
+
+def recorded_by_parts(solution: Solution) -> np.ndarray:
+    """Return what history variables of parts at points record as dissipated (steps,) [J]."""
+    own = [item.dissipated for item in loading(solution)[0].connectors.items]
+    return solution.p[:, np.concatenate([np.empty(0, dtype=np.int64), *own])].sum(axis=1)
 
 
 def _of_loads(solution: Solution, moments: np.ndarray, places: list[np.ndarray]) -> np.ndarray:

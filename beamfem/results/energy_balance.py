@@ -12,7 +12,13 @@ from beamfem.equations.system import System, system_of
 from beamfem.kernels.motion_record import MotionLimits
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.time_functions import kinks_of
-from beamfem.results.energies import Forces, exchange, forces_without_potential, with_rows
+from beamfem.results.energies import (
+    Forces,
+    exchange,
+    forces_without_potential,
+    recorded_by_parts,
+    with_rows,
+)
 
 if TYPE_CHECKING:
     from beamfem.results.energies import Energy
@@ -242,7 +248,8 @@ def balance(solution: "Solution", accuracy: float = MotionLimits().tolerance) ->
     if not (works or system.damped or energy.recorded.any()):
         rise = np.append(0.0, np.cumsum(np.diff(energy.total)))
         return Balance(solution.at, energy, rise, -rise, none, none + unsure, none, works)
-    known, driving = _resolved(solution, system), np.fmin(energy.recorded, 0.0)
+    known, by_parts = _resolved(solution, system), recorded_by_parts(solution)
+    driving = np.fmin(energy.recorded - by_parts, 0.0) + by_parts
     forces = forces_without_potential(solution)
     work, given, stored, lost = exchange(solution, forces)
     doubt = _doubt(solution, forces, work + given)

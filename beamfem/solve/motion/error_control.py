@@ -10,7 +10,7 @@ from beamfem.results.solution_checks import advice
 from beamfem.solve.motion.cut_steps import Rows, StepCutter
 from beamfem.solve.motion.energy_judgement import CHUNK
 from beamfem.solve.motion.generalized_alpha import is_scheme
-from beamfem.solve.motion.kinks import first_kink
+from beamfem.solve.motion.kinks import AT_END, first_kink
 from beamfem.solve.motion.marching_doubled import DoubledSteps
 from beamfem.solve.motion.saved_rows import SavedRows
 from beamfem.solve.motion.stable_step import stable_step
@@ -25,6 +25,7 @@ _LARGEST, _SMALLEST = 4.0, 0.2  # changes of the step at once
 _ROUND_OFF = 2e-14  # of the model: error of a step that may be round-off
 _MEAN = 16  # steps whose errors are added
 _CANCELLED = 4.0  # times the tolerance that the estimates add up to: errors turn with the motion, and partly cancel
+_OF_LAWS = 2  # order to which sections with history, which is known at the ends of steps, reduce a method
 _SUM = 2.0  # times the tolerance that the same of methods of stages add up to
 _SAVED = 1.0  # times the tolerance: error that one step may make of what earlier ones have not
 _TO_KINK = 8  # steps of the first call, and of that after a kink: what follows one is lost
@@ -151,7 +152,8 @@ def _march_pairs(
     kinks, kink, size, redone = bool(system.kinked), 0.0, 0.0, 0
     room = min(_TO_KINK, largest) if kinks else largest
     with progress("time [s]", cutter.end) as report, motion_workspace(system) as space:
-        motion = DoubledSteps(system, space, coefficients(method), method.order, cutter.statistics)
+        order = min(method.order, _OF_LAWS) if system.history.laws else method.order
+        motion = DoubledSteps(system, space, coefficients(method), order, cutter.statistics)
         own = motion.record
         own.fill(time=reached.time, step=reached.step, duration=cutter.end, rate=_SUM * tolerance / cutter.end)
         own.shortest, own.most_saved = _SHORTEST * cutter.end, _SAVED * tolerance
@@ -173,6 +175,8 @@ def _march_pairs(
                 times, rows = motion.follow(until, state, rotations, max(int(min(room, most - taken)), 2))
                 room = min(2 * room, largest)
                 found = first_kink(system, times, rows.states) if kinks and redone < _REDONE else None
+                if found is not None and ahead and found[1] - float(times[0]) < AT_END * size:
+                    found = None  # it is where the steps begin: shorter ones would lose multipliers in round-off
                 if found is not None:
                     first, kink = found[0] // 2 * 2, found[1]  # the pair of steps is redone up to the kink
                     room, own.time, own.step = min(_TO_KINK, largest), float(times[first]), float(np.diff(times)[first])

@@ -1,9 +1,12 @@
 """Frequency responses against closed forms: an oscillator, and a beam of Timoshenko."""
 
+import warnings
+
 import numpy as np
 import pytest
 
 import beamfem as bf
+from beamfem.errors import UnstableWarning
 from tests.equations.test_damped_modes import STEEL, oscillator
 
 THICK = bf.Rectangle(0.1, 0.1)
@@ -127,3 +130,17 @@ def test_frequencies_that_default_elements_cannot_resolve_are_refused():
     clamped = bf.Model([beam], [bf.Clamp(beam.start)])
     with pytest.raises(bf.InputError, match=r"resolve 160 modes at most, here up to .* give the beams elements"):
         bf.frequency_response(clamped, bf.PointForce(beam.end, (0.0, 1.0)), ("uy", beam.end), [1e6])
+
+
+def test_an_unstable_state_has_no_steady_response():
+    column = bf.Beam(bf.Line((0, 0), (0, 1)), 4, bf.CRBF(3), bf.Rectangle(0.01, 0.01), bf.Material(2.1e11, 0.3, 7850.0))
+    euler = np.pi**2 / 4.0 * column.section_at(0.0).rigidity(column.material).bending
+    push = bf.PointForce(column.end, (1.0, 0.0))
+    for factor, unstable in ((0.5, False), (2.0, True)):
+        model = bf.Model([column], [bf.Clamp(column.start)], [bf.PointForce(column.end, (0.0, -factor * euler))])
+        with warnings.catch_warnings(record=True) as found:
+            warnings.simplefilter("always")
+            state = bf.solve_static(model)[-1]
+            found.clear()
+            bf.frequency_response(model, push, ("ux", column.end), [1.0], about=state)
+        assert [each.category for each in found] == [UnstableWarning] * unstable

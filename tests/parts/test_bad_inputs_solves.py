@@ -232,5 +232,7 @@ def test_a_clamped_guide_without_slopes_there_is_named_with_the_place():
     post = bf.Beam(bf.Line((0.0, 0.0), (0.0, 1.0)), 2, bf.CRBF(3), SECTION, STEEL)
     supports = [bf.Clamp(post.start), bf.Clamp(guide.start), bf.Clamp(guide.end)]
     push, slider = bf.PointForce(post.end, (100.0, 0.0)), bf.SliderOnBeam(guide, post.end)
-    with pytest.raises(bf.InputError, match=r"which the node of ANCF at \(-0.5, 1\) does not have, .* as its rotation is fixed"):
+    with pytest.raises(
+        bf.InputError, match=r"which the node of ANCF at \(-0.5, 1\) does not have, .* as its rotation is fixed"
+    ):
         bf.solve_static(bf.Model([post, guide], supports, [push], connectors=[slider]))

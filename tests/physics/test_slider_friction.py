@@ -172,3 +172,17 @@ def test_friction_acts_in_the_first_row_of_a_motion_that_goes_on():
     begun = bf.simulate(model, 0.05, 1e-3, bf.GeneralizedAlpha(0.5))
     further = bf.simulate(model, 2e-3, 1e-3, bf.GeneralizedAlpha(0.5), start=begun)
     assert further.acceleration(bar.start)[:, 0] == pytest.approx(2.0 * FRICTION * GRAVITY, rel=1e-4)
+
+
+@pytest.mark.parametrize("integrator", [None, bf.Radau(4), bf.Gauss(2)], ids=repr)
+@pytest.mark.parametrize("stiffness", [5e3, 1e5])
+@pytest.mark.parametrize("friction", [0.05, 0.2, 0.5])
+def test_steps_that_follow_a_tolerance_do_not_crawl_from_kink_to_kink(friction, stiffness, integrator):
+    """They became so short that round-off was all of the force on the slider, and ended."""
+    rubber, section = bf.Material(2e7, 0.3, 1000.0), bf.Rectangle(0.05, 0.05)
+    bars = [bf.Beam(bf.Line((x, 0), (x + 1.0, 0)), 2, bf.CRBF(3), section, rubber) for x in (0.0, 1.0)]
+    slider = bf.Slider(bars[0].end, bars[1].start, (1, 0), friction, stiffness)
+    model = bf.Model(bars, [bf.Pin(bars[0].start)], [bf.Gravity((0.0, -9.81))], joints=[slider])
+    motion = bf.simulate(model, 0.1, None, integrator, tolerance=1e-4, save_at=[0.05, 0.1])
+    fixed = bf.simulate(model, 0.1, 2e-5, save_at=[0.05, 0.1])
+    assert motion.position(bars[1].end) == pytest.approx(fixed.position(bars[1].end), abs=10.0 * 1e-4 * 2.0)

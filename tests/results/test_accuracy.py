@@ -944,3 +944,40 @@ def test_an_axis_that_is_only_interpolated_is_refined_where_it_is():
     (solution, here), (_, exact) = found(accuracy), found(elements=48, element=bf.CRBF(8))
     assert np.linalg.norm(here - exact, axis=1).max() < accuracy
     assert solution.model.meshes[0].elements < 10
+
+
+@pytest.mark.parametrize("load", [1e-3, 1.0, 100.0, 300.0])
+def test_default_elements_resolve_displacements_that_are_small_beside_the_model(load):
+    """Off by less than 1e-4 of the length, deflections, end moments and reactions at service loads once were zero."""
+    steel, span = bf.Material(2.1e11, 0.3, 7850.0), 5.0
+    beam = bf.Beam(bf.Line((0, 0), (span, 0)), section=bf.Profile("IPE 200"), material=steel)
+    stiffness = beam.section_at(0.0).rigidity(steel)
+    press = [bf.DistributedLoad(beam, (0.0, -load))]
+    held = bf.solve_static(bf.Model([beam], [bf.Pin(beam.start), bf.Roller(beam.end)], press))
+    sag = load * span**2 * (5.0 * span**2 / (384.0 * stiffness.bending) + 1.0 / (8.0 * stiffness.shear))
+    assert held.displacement(beam.at(0.5))[-1, 1] == pytest.approx(-sag, rel=1e-3)
+    clamped = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start), bf.Clamp(beam.end)], press))
+    assert clamped.reaction(beam.start)[-1, 2] == pytest.approx(load * span**2 / 12.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("force", [1e-9, 1e-5, 1.0])
+def test_default_elements_of_a_cantilever_under_any_load(force):
+    """It was off by 25 % under small ones, with the advice to use more elements."""
+    steel, section = bf.Material(2.1e11, 0.3, 7850.0), bf.Rectangle(0.01, 0.01)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), section=section, material=steel)
+    solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, force))]))
+    stiffness = section.rigidity(steel)
+    expected = force * (1.0 / (3.0 * stiffness.bending) + 1.0 / stiffness.shear)
+    assert solution.displacement(beam.end)[-1, 1] == pytest.approx(expected, rel=1e-3)
+    assert not solution.warnings
+
+
+def test_a_branch_on_the_mesh_of_a_straight_path_is_warned_of_if_that_is_too_coarse():
+    steel, section = bf.Material(2e11, 0.3, 7850.0, strength=1e12), bf.Rectangle(0.01, 0.002)
+    column = bf.Beam(bf.Line((0, 0), (1, 0)), section=section, material=steel)
+    push = bf.PointForce(column.end, (-section.rigidity(steel).bending, 0.0))
+    model = bf.Model([column], [bf.Pin(column.start), bf.Roller(column.end)], [push])
+    path = bf.trace_equilibrium(model, until=1.6 * np.pi**2)
+    with pytest.warns(bf.CoarseMeshWarning, match="displacements are off by about"):
+        branch = bf.trace_equilibrium(model, until=1.6 * np.pi**2, start=path.bifurcations[0])
+    assert "too coarse" in branch.warnings[-1]

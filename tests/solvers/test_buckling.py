@@ -213,3 +213,14 @@ def test_a_column_that_buckles_at_large_strains_is_not_said_to_be_stiffened():
     with pytest.warns(bf.LargeStrainWarning):
         path = bf.trace_equilibrium(model, 0.3)
     assert [point.load_factor for point in path.bifurcations] == pytest.approx([exact], rel=1e-6)
+
+
+def test_a_path_that_bends_where_linearised_stability_predicts_buckling_is_warned_of():
+    """The critical points of its bent path are far above the load that the structure bears upright."""
+    steel = bf.Material(2.1e11, 0.3, 7850.0)
+    strut = bf.Beam(bf.Line((0, 0), (5, 0)), 6, bf.CRBF(4), bf.Profile("IPE 200"), steel)
+    loads = [bf.Gravity((0.0, -9.81), scale=False), bf.PointForce(strut.end, (-1e3, 0.0))]
+    model = bf.Model([strut], [bf.Pin(strut.start), bf.Roller(strut.end)], loads)
+    with pytest.warns(UserWarning, match="linearised stability predicts a critical load factor of 158"):
+        buckling = bf.solve_buckling(model)
+    assert buckling.load_factors[0] > 2.0 * buckling.linearised[0]

@@ -25,7 +25,6 @@ _LARGEST, _SMALLEST = 4.0, 0.2  # changes of the step at once
 _ROUND_OFF = 2e-14  # of the model: error of a step that may be round-off
 _MEAN = 16  # steps whose errors are added
 _CANCELLED = 4.0  # times the tolerance that the estimates add up to: errors turn with the motion, and partly cancel
-_OF_LAWS = 2  # order to which sections with history, which is known at the ends of steps, reduce a method
 _SUM = 2.0  # times the tolerance that the same of methods of stages add up to
 _SAVED = 1.0  # times the tolerance: error that one step may make of what earlier ones have not
 _TO_KINK = 8  # steps of the first call, and of that after a kink: what follows one is lost
@@ -152,8 +151,7 @@ def _march_pairs(
     kinks, kink, size, redone = bool(system.kinked), 0.0, 0.0, 0
     room = min(_TO_KINK, largest) if kinks else largest
     with progress("time [s]", cutter.end) as report, motion_workspace(system) as space:
-        order = min(method.order, _OF_LAWS) if system.history.laws else method.order
-        motion = DoubledSteps(system, space, coefficients(method), order, cutter.statistics)
+        motion = DoubledSteps(system, space, coefficients(method), method.order, cutter.statistics)
         own = motion.record
         own.fill(time=reached.time, step=reached.step, duration=cutter.end, rate=_SUM * tolerance / cutter.end)
         own.shortest, own.most_saved = _SHORTEST * cutter.end, _SAVED * tolerance

@@ -29,6 +29,7 @@ from beamfem.validation import count, items, positive, shown
 
 AnyIntegrator = Scheme | Integrator | Staged | EnergyMomentum  # as users give it
 _LOOSE, _TIGHT = 1e-3, 1e-7  # tolerances from and up to which methods of lower and higher order need less work
+_OF_LAWS = 2  # order of any method with sections that have history
 _PARTS = 1000  # of a motion whose steps follow a tolerance, within which kinks of loads are found
 
 
@@ -153,6 +154,12 @@ def planned(model: Model, settings: MotionSettings, in_memory: bool) -> MotionPl
     """
     system = system_of(model, static=False)
     refuse_frame(system, "simulate")
+    order = getattr(settings.integrator, "order", 2)
+    if settings.tolerance is not None and order > _OF_LAWS and system.history.laws:
+        raise InputError(
+            f"{type(settings.integrator).__name__} does not follow a tolerance with sections that have history, which "
+            f"makes an order of {order} one of {_OF_LAWS}; leave the integrator out, or give a step"
+        )
     if is_explicit(settings.integrator):
         settings = _stable(system, settings, settings.integrator)
     step = settings.step

@@ -171,6 +171,8 @@ class _Reading:
                 if kind == "PLASTIC":
                     self.note("*PLASTIC (its first yield stress is the strength)")
             case "BEAM SECTION" | "BEAM GENERAL SECTION":
+                if any(number(given.get(name, "0")) for name in ("OFFSET1", "OFFSET2")):
+                    self.note(f"the offset of *{kind}")
                 shape = given.get("SECTION", "GENERAL").upper().replace("RECTANGULAR", "RECT")
                 if "MATERIAL" in given:  # CalculiX has it for general sections too
                     self.sections[given["ELSET"].upper()] = self._shape(shape, rows), given["MATERIAL"].upper()
@@ -261,19 +263,29 @@ class _Reading:
         if shape == "CIRC" and self.calculix:
             self.note("SECTION=CIRC (its size is the diameter, as in CalculiX: B31R and B32R are its elements)")
             sizes = [0.5 * sizes[0]]
-        if len(rows) > 1 and len(rows[1]) >= 3:
-            x, y, z = (abs(number(rows[1][axis])) for axis in self.plane)
-            if z < max(x, y):  # the first axis of the section is in the plane
-                if shape not in ("RECT", "CIRC", "PIPE"):
-                    raise InputError(f"SECTION={shape}: its first axis must be normal to the plane")
-                sizes = sizes[::-1] if shape == "RECT" else sizes
+        if len(rows) > 1 and self._first_in_plane(rows[1]):
+            if shape not in ("RECT", "CIRC", "PIPE"):
+                raise InputError(f"SECTION={shape}: its first axis must be normal to the plane")
+            sizes = sizes[::-1] if shape == "RECT" else sizes
         return make(*sizes)
+
+    def _first_in_plane(self, row: list[str]) -> bool:
+        """Return whether the first axis of a section, if a row has it, is in the plane: bending is about the second."""
+        if len(row) < 3:
+            return False
+        x, y, z = (abs(number(row[axis])) for axis in self.plane)
+        return z < max(x, y)
 
     def _general(self, shape: str, rows: list[list[str]], density: float) -> tuple[Any, Material | None]:
         """Return a section whose elasticity is on its last line: E and G."""
         modulus, shear = _numbers(rows[-1])[:2]
         if shape == "GENERAL":
-            area, second = _numbers(rows[0])[:2]
+            area, *moments = _numbers(rows[0])
+            second = moments[0]
+            if len(moments) > 2:
+                if moments[1]:
+                    self.note("the product of inertia I12 of *BEAM GENERAL SECTION")
+                second = moments[2] if len(rows) > 2 and self._first_in_plane(rows[1]) else second
             inertia = density * area, density * second
             return Section.from_stiffness(modulus * area, shear * area, modulus * second, *inertia), None
         return self._shape(shape, rows[:-1]), Material(modulus, modulus / (2.0 * shear) - 1.0, density)

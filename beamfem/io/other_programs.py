@@ -219,6 +219,12 @@ def _in_pieces(model: Model, pieces: int) -> _Written:
             if stiffness.coupling:
                 raise InputError("a section whose stretch is coupled with its curvature cannot be written")
             result.beams[-1].append((nodes[number, a], nodes[number, b], stiffness, section.inertia(beam.material)))
+    missing = {
+        "laws of sections (they are linear here)": any(beam.law is not None for beam in model.beams),
+        "damping": any(beam.damping is not None for beam in model.beams),
+        "RotatingFrame": model.frame is not None,
+    }
+    result.others |= dict.fromkeys(name for name, is_there in missing.items() if is_there)
     for part in (*model.supports, *model.loads, *model.joints, *model.connectors, *model.masses):
         if not _added(result, model, part, [nodes[_key(model, point)] for point in _points(part)]):
             result.others[type(part).__name__] = None

@@ -11,7 +11,7 @@ from beamfem.mesh.beam_grid import Grid
 from beamfem.mesh.beam_mesh import BeamMesh, JoinedMesh
 from beamfem.mesh.reference import sections_at
 from beamfem.model.along_beam import jumps_along
-from beamfem.model.beam import Beam, names
+from beamfem.model.beam import Beam, beam_in_words, names
 from beamfem.model.imposed_strains import heat_of
 from beamfem.results.axis_points import AxisPoints
 from beamfem.results.batched_beams import of_beam
@@ -292,13 +292,19 @@ def peak_stress(solution: Solution, part: Part = "von_mises") -> Peak:
 
 def safety_factor(solution: Solution, beam: Beam | None) -> float:
     """Return strength over the largest von Mises stress of a beam, or of all, see `Solution.safety_factor`."""
-    peak = peak_stress(solution, "utilisation") if beam is None else beam_stress(solution, beam).peak("utilisation")
-    if not np.isfinite(peak.value):
+    beams = solution.model.beams if beam is None else (beam,)
+    peaks = [beam_stress(solution, each).peak("utilisation").value for each in beams]
+    unknown = [number for number, value in enumerate(peaks) if not np.isfinite(value)]
+    if len(unknown) == len(peaks):
         raise InputError(
             "a safety factor needs the strength of a material, Material(..., strength=), and a section with a stress, "
             "such as Rectangle, Profile or Section(..., height=)"
         )
-    return 1.0 / peak.value if peak.value > 0.0 else np.inf
+    if unknown:
+        named = ", ".join(beam_in_words(solution.model.beams, number) for number in unknown)
+        warn(f"the safety factor leaves out what has no known strength or stress: {named}", UnknownStressWarning)
+    largest = max(value for value in peaks if np.isfinite(value))
+    return 1.0 / largest if largest > 0.0 else np.inf
 
 
 def _measure(part: Part) -> Measure:

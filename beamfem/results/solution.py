@@ -520,7 +520,8 @@ class Solution:
     def safety_factor(self, beam: Beam | None = None) -> float:
         """Return the strength over the largest von Mises stress of a beam, or of all beams, over the rows [-].
 
-        Beams without a strength are left out. Raises InputError if no strength or no stress is known.
+        Warns with UnknownStressWarning of beams without a known strength or stress, which are left out. Raises
+        InputError if there are no others.
 
         Examples
         --------

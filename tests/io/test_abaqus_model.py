@@ -331,3 +331,24 @@ def test_units_are_those_that_are_named(tmp_path):
         bf.read_abaqus_model(tmp_path / "model.inp", units="N, mm")
     with pytest.raises(bf.InputError, match="units"):
         bf.read_abaqus_model(path, units="N, feet")
+
+
+@pytest.mark.parametrize(("axis", "second"), [("0., 0., -1.", 1e-8), ("0., 1., 0.", 4e-8)])
+def test_a_general_section_bends_about_the_axis_that_is_normal_to_the_plane(axis, second, tmp_path):
+    """It took the moment of inertia about the first axis, wherever that was."""
+    general = f"*Beam General Section, section=GENERAL, elset=ARM, density=7800.\n1e-3, 1e-8, 0., 4e-8, 1e-9\n{axis}\n"
+    nodes = "*Node\n1, 0., 0.\n2, 1., 0.\n*Element, type=B21, elset=ARM\n1, 1, 2\n"
+    file = read(tmp_path, f"{nodes}{general}2e11, 7.7e10\n*Boundary\n1, ENCASTRE\n")
+    beam = file.model.beams[0]
+    assert beam.section_at(0.0).rigidity(beam.material).bending == pytest.approx(2e11 * second)
+
+
+def test_what_a_general_or_moved_section_leaves_out_is_named(tmp_path):
+    nodes = "*Node\n1, 0., 0.\n2, 1., 0.\n*Element, type=B21, elset=ARM\n1, 1, 2\n"
+    general = "*Beam General Section, section=GENERAL, elset=ARM\n1e-3, 1e-8, 2e-9, 4e-8, 1e-9\n\n2e11, 7.7e10\n"
+    with pytest.warns(bf.NotReadWarning, match="product of inertia I12"):
+        read(tmp_path, nodes + general)
+    moved = "*Beam Section, section=RECT, elset=ARM, material=S, OFFSET2=0.5\n0.01, 0.02\n0., 0., -1.\n"
+    steel = "*Material, name=S\n*Elastic\n2e11, 0.3\n*Density\n7800.\n"
+    with pytest.warns(bf.NotReadWarning, match=r"the offset of \*BEAM SECTION"):
+        read(tmp_path, nodes + moved + steel)

@@ -177,3 +177,19 @@ def test_what_cannot_be_written_is_named(write, tmp_path):
         write(bf.Model([beam]), tmp_path / "layered.txt")
     with pytest.raises(bf.InputError, match="pieces"):
         write(model, tmp_path / "model.txt", pieces=0)
+
+
+@pytest.mark.parametrize("write", [bf.write_abaqus, bf.write_opensees])
+def test_laws_damping_and_frames_that_are_not_written_are_named(write, tmp_path):
+    """Sections that yield became elastic without a word."""
+    yielding = bf.Fibres(bf.Rectangle(0.01, 0.01), bf.ElasticPlastic(2e11, 3e8, 0.3, density=7800.0), points=4)
+    spun = bf.RotatingFrame(1.0)
+    for section, others, name in (
+        (yielding, {}, "laws of sections"),
+        (bf.Rectangle(0.01, 0.01), {"material": STEEL, "damping": bf.KelvinVoigt(1e-4)}, "damping"),
+        (bf.Rectangle(0.01, 0.01), {"material": STEEL}, "RotatingFrame"),
+    ):
+        beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(3), section, **others)
+        model = bf.Model([beam], [bf.Clamp(beam.start)], frame=spun if name == "RotatingFrame" else None)
+        with pytest.warns(bf.NotWrittenWarning, match=name):
+            write(model, tmp_path / "model.txt")

@@ -119,3 +119,17 @@ def test_what_is_no_set_of_load_cases_is_refused():
         bf.envelope([solution, bf.solve_static(other)])
     with pytest.raises(bf.InputError, match="quantity"):
         bf.envelope([solution]).along(beam, "momentum")
+
+
+def test_a_safety_factor_names_the_beams_that_it_leaves_out():
+    """It was that of the beams with a known strength, although another one had twice the stress."""
+    known, unknown = bf.Material(2.1e11, 0.3, 7850.0, strength=2.35e8), bf.Material(2.1e11, 0.3, 7850.0)
+    beams = [
+        bf.Beam(bf.Line((x, 0), (x + 1.0, 0)), 2, bf.CRBF(3), bf.Rectangle(0.02, 0.02), material)
+        for x, material in ((0.0, unknown), (1.0, known))
+    ]
+    push = bf.PointForce(beams[1].end, (0.0, -50.0))
+    model = bf.Model(beams, [bf.Clamp(beams[0].start)], [push], [bf.Rigid(beams[0].end, beams[1].start)])
+    solution = bf.solve_static(model)
+    with pytest.warns(bf.UnknownStressWarning, match="leaves out .* beam 0"):
+        assert solution.safety_factor() == pytest.approx(solution.safety_factor(beams[1]))

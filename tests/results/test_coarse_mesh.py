@@ -167,3 +167,16 @@ def test_one_element_of_order_two_that_is_too_coarse_warns():
             solution = bf.solve_static(model)
         tips.append(solution.displacement(beam.end)[-1, 1])
     assert abs(tips[0] / tips[1] - 1.0) > 0.05
+
+
+@pytest.mark.parametrize("load", [bf.Temperature, bf.Actuation])
+def test_a_clamped_bar_that_does_not_move_has_no_coarse_mesh(load):
+    """Round-off of its displacements was off by more than the largest one."""
+    steel = bf.Material(2.1e11, 0.3, 7850.0, thermal_expansion=1.2e-5)
+    bar = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(4), bf.Rectangle(0.01, 0.01), steel)
+    bent = load(bar, 0.0, gradient=1e3) if load is bf.Temperature else load(bar, curvature=0.1)
+    model = bf.Model([bar], [bf.Clamp(bar.start), bf.Clamp(bar.end)], [bent])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        solution = bf.solve_static(model)
+    assert not solution.warnings

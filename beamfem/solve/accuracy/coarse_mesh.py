@@ -37,6 +37,7 @@ from beamfem.solve.accuracy.error_estimate import (
 _Rows = TypeVar("_Rows", bound=Solution)
 
 WARNED = 0.02  # of the largest displacement, or of a frequency: error above which there is a warning
+_STILL = 1e-13  # of the size of the model: movement that may be round-off
 _ROWS = 50  # of a motion, about: that are compared
 _ENOUGH = 0.005  # of it: error that the advice leads to
 _MARGIN = 1.05  # of an indicator whose error is small: larger ones for which it is not estimated again
@@ -179,7 +180,8 @@ def _found(solution: Solution) -> Finding | None:
         return None
     state = solution[last]
     moved = max(largest_displacement(model, p) for p in solution.p)  # the last row may be back where it began
-    error = largest_displacement_error(state, finer) / moved if moved > 0.0 else 0.0
+    still = moved <= _STILL * system_of(model, static=True).extent
+    error = 0.0 if still else largest_displacement_error(state, finer) / moved
     if error <= WARNED:
         return None
     places, most = _chief_elements(model, error_shares(state, finer))

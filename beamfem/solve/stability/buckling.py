@@ -327,13 +327,12 @@ def _buckling(model: Model, count: int, about: State | Solution | None) -> _Judg
         errors = ", ".join(f"{value:.0e}" for value in uncertainty)
         message = f"round-off leaves few digits of critical load factors, relative errors are up to {errors}"
         found.append(Finding(message, RoundOffWarning))
-    first = criticals[0].load_factor if criticals else np.inf
+    first = criticals[0].load_factor if criticals else load_factor
     if len(linearised) and first - load_factor > _ABOVE * (linearised[0] - load_factor) > 0.0:
-        later = f"the first critical point is at {first:.6g}" if criticals else "no critical point was found"
         message = (
             f"linearised stability predicts a critical load factor of {linearised[0]:.6g}, where the path bends "
-            f"without one, as that of an imperfect structure does; {later}. Look at the displacements of "
-            "trace_equilibrium"
+            f"without one, as that of an imperfect structure does; the first critical point is at {first:.6g}. Look at "
+            "the displacements of trace_equilibrium"
         )
         found.append(Finding(message, UserWarning))
     shapes = [point.mode / largest_translation(model, point.p, point.mode) for point in criticals]

@@ -16,7 +16,7 @@ import numpy as np
 
 from beamfem.atomic_write import whole
 from beamfem.equations.callbacks import Deferred
-from beamfem.errors import FileError, InputError
+from beamfem.errors import FileError, InputError, MissingFileError
 from beamfem.extras import needed_for
 
 # object headers of this version have checksums; those of later ones mark a file whose writer was killed as unreadable
@@ -213,7 +213,7 @@ class Journal:
         Raises FileError; the file then is as it was, or as `replay` makes it.
         """
         if not self._of.exists() or self._of.stat().st_ino != inode:
-            raise FileError(f"{self._of} was replaced or removed while a motion was written into it")
+            raise MissingFileError(f"{self._of} was replaced or removed while a motion was written into it")
         data = b"".join(part for number, page in pages.items() for part in (_NUMBER.pack(number), page))
         try:
             _put(self._file, _HEAD.pack(_MAGIC, inode, size, len(data), crc32(data)) + data, 0)

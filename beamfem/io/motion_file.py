@@ -10,7 +10,7 @@ import numpy as np
 
 from beamfem.atomic_write import path_of, readable
 from beamfem.equations.callbacks import uninterrupted
-from beamfem.errors import FileError, InputError
+from beamfem.errors import FileError, InputError, MissingFileError
 from beamfem.io import hdf5
 from beamfem.io.description import describe, rebuild
 from beamfem.io.results_hdf5 import (
@@ -139,6 +139,8 @@ class MotionFile:
         self._file.flush()
         try:
             self._pages.commit()
+        except MissingFileError:
+            raise
         except FileError as error:
             raise FileError(f"{error}; the motion up to then is in it, and bf.resume goes on from there") from error
 

@@ -496,3 +496,18 @@ def test_a_file_is_read_while_it_is_written(tmp_path):
     assert process.returncode == 0
     assert counts == sorted(counts)
     assert len(bf.load(path)) == 10_001
+
+
+def test_a_file_that_was_removed_is_none_to_go_on_from(tmp_path):
+    """The message said that the motion up to then was in it."""
+    file, bar = tmp_path / "long.h5", bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), SECTION, RUBBER)
+    model = bf.Model([bar], [bf.Pin(bar.start)], [bf.Gravity((0.0, -9.81))])
+
+    def away(state):
+        if state.time > 0.05:
+            file.unlink(missing_ok=True)
+        return 1.0
+
+    with pytest.raises(bf.MissingFileError, match="replaced or removed") as error:
+        bf.simulate(model, 0.1, 1e-3, file=file, events=[bf.Event("away", away)])
+    assert "resume" not in str(error.value)

@@ -51,7 +51,8 @@ class CentralDifferences:
 class DormandPrince:
     """Explicit Runge-Kutta method of Dormand and Prince, of order 8 with 12 stages.
 
-    Steps are limited by the highest frequency of the reference, as those of `CentralDifferences`.
+    Steps are limited by the highest frequency of the reference, as those of `CentralDifferences`. Sections with
+    history, which is known at the beginning of steps, reduce its order to 1 or 2.
 
     References
     ----------

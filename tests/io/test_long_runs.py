@@ -18,6 +18,7 @@ from refused_steps import ELEMENTS, slider_crank
 from slow_values import mostly_slow
 
 import beamfem as bf
+from beamfem.errors import MissingFileError
 from beamfem.io import hdf5
 from beamfem.io.motion_file import MotionFile
 from beamfem.solve.motion import long_runs
@@ -508,6 +509,6 @@ def test_a_file_that_was_removed_is_none_to_go_on_from(tmp_path):
             file.unlink(missing_ok=True)
         return 1.0
 
-    with pytest.raises(bf.MissingFileError, match="replaced or removed") as error:
+    with pytest.raises(MissingFileError, match="replaced or removed") as error:
         bf.simulate(model, 0.1, 1e-3, file=file, events=[bf.Event("away", away)])
     assert "resume" not in str(error.value)

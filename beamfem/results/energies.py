@@ -299,7 +299,7 @@ def _of_amplitudes(solution: Solution, driving: Connectors) -> np.ndarray:
     motion = (states.p, states.v, states.a)
     energies = states.energy().total - driving.energies(motion, pairs[1]).sum(axis=1)
     before, after = np.diff(energies[places.ravel()].reshape(2, -1), axis=1)
-    share = (time - at[step]) / size[step]
+    share = (time - at[step]) / np.maximum(size[step], np.finfo(float).tiny)
     middle, same = 0.5 * (share[1:] + share[:-1]), step[1:] == step[:-1]
     change = (1.0 - middle) * before + middle * after
     return np.bincount(step[1:][same], change[same], len(steps))

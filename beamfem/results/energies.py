@@ -172,16 +172,19 @@ def _recorded(solution: Solution, by_sections: np.ndarray) -> np.ndarray:
     In statics nan if a connector that is not conservative has no record.
     """
     system = loading(solution)[0]
-    if system.static and any(
-        not item.item.conservative and not len(item.dissipated) for item in system.connectors.items
-    ):
+    items = system.connectors.items
+    if system.static and any(not item.item.conservative and not len(item.dissipated) for item in items):
         return np.full(len(solution), np.nan)
-    return by_sections + recorded_by_parts(solution)
+    return by_sections + sum(solution.p[:, item.dissipated].sum(axis=1) for item in items)
 
 
-def recorded_by_parts(solution: Solution) -> np.ndarray:
-    """Return what history variables of parts at points record as dissipated (steps,) [J]."""
-    own = [item.dissipated for item in loading(solution)[0].connectors.items]
+def recorded_by_stops(solution: Solution) -> np.ndarray:
+    """Return what parts whose energy depends on their history, such as stops, record as dissipated (steps,) [J].
+
+    It is what they do not give back. Friction records that of a mean of its limit over each step.
+    """
+    items = (item for item in loading(solution)[0].connectors.items if item.compiled and item.compiled.stored is None)
+    own = [item.dissipated for item in items]
     return solution.p[:, np.concatenate([np.empty(0, dtype=np.int64), *own])].sum(axis=1)
 
 

@@ -16,7 +16,7 @@ from beamfem.results.energies import (
     Forces,
     exchange,
     forces_without_potential,
-    recorded_by_parts,
+    recorded_by_stops,
     with_rows,
 )
 
@@ -248,8 +248,8 @@ def balance(solution: "Solution", accuracy: float = MotionLimits().tolerance) ->
     if not (works or system.damped or energy.recorded.any()):
         rise = np.append(0.0, np.cumsum(np.diff(energy.total)))
         return Balance(solution.at, energy, rise, -rise, none, none + unsure, none, works)
-    known, by_parts = _resolved(solution, system), recorded_by_parts(solution)
-    driving = np.fmin(energy.recorded - by_parts, 0.0) + by_parts
+    known, by_stops = _resolved(solution, system), recorded_by_stops(solution)
+    driving = np.fmin(energy.recorded - by_stops, 0.0) + by_stops
     forces = forces_without_potential(solution)
     work, given, stored, lost = exchange(solution, forces)
     doubt = _doubt(solution, forces, work + given)

@@ -229,3 +229,20 @@ def test_a_displacement_and_its_rate_are_not_both_prescribed():
         bf.Prescribed(arm.start, uy=0.0, vy=1.0)
     with pytest.raises(bf.InputError, match="at least one of ux, uy, rotation, vx, vy and angular"):
         bf.Prescribed(arm.start)
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-5])
+def test_a_motion_whose_steps_follow_a_tolerance_is_not_asked_beyond_its_end(tolerance):
+    """Sums of steps went beyond it by round-off."""
+
+    def swing(time):
+        assert 0.0 <= time <= 0.3
+        return 0.05 * np.sin(40.0 * time)
+
+    plastic = bf.Material(2e9, 0.3, 1500.0)
+    arm = bf.Beam(
+        bf.Line((0, 0), (1, 0)), 3, bf.CRBF(3), bf.Rectangle(0.02, 0.02), plastic, damping=bf.KelvinVoigt(1e-4)
+    )
+    moved = bf.Prescribed(arm.start, ux=0.0, uy=swing, rotation=0.0)
+    motion = bf.simulate(bf.Model([arm], [moved]), 0.3, tolerance=tolerance)
+    assert motion.displacement(arm.start)[-1, 1] == pytest.approx(0.05 * np.sin(12.0), abs=1e-12)

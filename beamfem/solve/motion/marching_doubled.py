@@ -140,8 +140,8 @@ class DoubledSteps(StepsInCalls):
             self._space.assembler.load(loads.body, loads.points, loads.imposing)
             solver.bodies = loads.body
         if self._moved:
-            begin, h = self.record.time, self.record.fine.time_step
+            begin, h, end = self.record.time, self.record.fine.time_step, self.record.end
             spans = ((begin, h), (begin + h, h), (begin, 2.0 * h))
-            moved = np.concatenate([rule.moved(system, first, first + size, size) for first, size in spans])
+            moved = np.concatenate([rule.moved(system, first, min(first + size, end), size) for first, size in spans])
             moved[:, 0] += system.reference[system.prescribed_dofs]
             solver.prescribed_values[:] = moved

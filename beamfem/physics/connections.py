@@ -247,7 +247,7 @@ def _slid(q: list[Vector], data: Vector, f: Functions) -> Number:
 
 def _slider_limit(q: list[Vector], data: Vector, f: Functions) -> Number:
     """Return friction |N|; the multiplier N follows the history variables."""
-    return data[3] * (f.positive(data[10]) + f.positive(-data[10])) + data[6]
+    return data[3] * (f.positive(data[11]) + f.positive(-data[11])) + data[6]
 
 
 def _penetration(q: list[Vector], data: Vector, f: Functions) -> Number:
@@ -303,7 +303,7 @@ def _with_friction(
 ) -> Connection:
     """Return the definition of a part with friction along a measure, at most a limit, that sticks with a stiffness.
 
-    memory: name of a limit that varies, whose mean over a step dissipates.
+    memory: names of a limit that varies, and of the force; the mean of the limit while it slips dissipates.
     """
     names = *part.data, *further
     stiffness, slip = names.index("stiffness"), len(names)
@@ -317,10 +317,15 @@ def _with_friction(
         return trial - over, (over + back) / data[stiffness]
 
     def remember(q: list[Vector], v: list[Vector], data: Vector, f: Functions) -> tuple[Number, ...]:
-        slipped = slipping(q, data, f)[1]
+        force, slipped = slipping(q, data, f)
         most, way = limit(q, data, f), f.positive(slipped) + f.positive(-slipped)
-        before = data[slip + 2] if memory else most
-        return (data[slip] + slipped, data[slip + 1] + (before + most) / 2 * way, most)[: 2 + len(memory)]
+        onset = most
+        if memory:  # where force and limit, each linear in the step, meet
+            before, sign = data[slip + 2], slipped / (way + _LEAST)
+            left = f.positive(before - sign * data[slip + 3])
+            onset = before + left / (left + data[stiffness] * way + _LEAST) * (most - before)
+        lost = (onset + most) / 2 * way
+        return (data[slip] + slipped, data[slip + 1] + lost, most, force)[: 2 + len(memory)]
 
     def stored(q: list[Vector], data: Vector, f: Functions) -> Number:
         stretch = measure(q, data, f) - data[slip]
@@ -390,13 +395,14 @@ GROUNDED_CABLE = _grounded(CABLE)
 _BUSHING = ("kx", "ky", "kt", "cx", "cy", "ct", "x", "y")
 BUSHING = Connection("bushing", 2, 3, _BUSHING, None, _bushing_potential, _bushing_dissipation)
 SLIDER = Connection("slider", 2, 3, ("nx", "ny", "offset"), None, None, None, _slider_conditions, 2)
-ROUGH_SLIDER = _with_friction(SLIDER, ("friction", "stiffness", "start", "least"), _slid, _slider_limit, ("limit",))
+_VARYING = "limit", "force"
+ROUGH_SLIDER = _with_friction(SLIDER, ("friction", "stiffness", "start", "least"), _slid, _slider_limit, _VARYING)
 WELD = Connection("weld", 2, 3, ("x", "y"), None, None, None, _weld_conditions, 3)
 GEAR = Connection("gear", 2, 3, ("ratio",), None, None, None, _gear_conditions, 1)
 MOTOR = Connection("motor", 2, 3, (), None, None, None, lambda q, data, f: (_turn(q, data, f),), 1, prescribed=1)
 _STOP = ("friction", "x", "y", "nx", "ny", "x0", "y0")
 STOP, BOUNCING_STOP = _barrier("stop", 1, 2, _STOP, _penetration, ("deepest",))
-ROUGH_STOP = _with_friction(STOP, (), _along_wall, _stop_limit, ("limit",))
+ROUGH_STOP = _with_friction(STOP, (), _along_wall, _stop_limit, _VARYING)
 HINGE_FRICTION = _with_friction(
     Connection("hinge_friction", 2, 3, ("stiffness", "torque")), (), _turn, lambda q, data, f: data[1]
 )

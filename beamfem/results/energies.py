@@ -181,7 +181,7 @@ def _recorded(solution: Solution, by_sections: np.ndarray) -> np.ndarray:
 def recorded_by_stops(solution: Solution) -> np.ndarray:
     """Return what parts whose energy depends on their history, such as stops, record as dissipated (steps,) [J].
 
-    It is what they do not give back. Friction records that of a mean of its limit over each step.
+    It is what they do not give back. Friction, whose limit varies, records a mean over each step.
     """
     items = (item for item in loading(solution)[0].connectors.items if item.compiled and item.compiled.stored is None)
     own = [item.dissipated for item in items]

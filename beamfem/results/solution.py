@@ -426,9 +426,9 @@ class Solution:
     def history(self, connector: Contribution) -> dict[str, np.ndarray]:
         """Return the history variables of a connector in each row by name, those of a user-defined one by number.
 
-        Of friction, "slip" [m or rad], "dissipated" [J] and, if it varies, the "limit" [N] at which it slips; of stops
-        with a coefficient of restitution, the "deepest" [m or rad] since they were hit, of `HingeStop` and `SliderStop`
-        "low_deepest" and "high_deepest". Raises InputError for a connector without history, or of another model.
+        Of friction, "slip" [m or rad], "dissipated" [J] and, if its limit varies, the "limit" [N] at which it slips and
+        the "force" [N]; of stops with a coefficient of restitution, the "deepest" [m or rad] since they were hit, of
+        `HingeStop` and `SliderStop` "low_deepest" and "high_deepest". Raises InputError for a connector without history, or of another model.
 
         Parameters
         ----------

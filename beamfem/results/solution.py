@@ -428,7 +428,8 @@ class Solution:
 
         Of friction, "slip" [m or rad], "dissipated" [J] and, if its limit varies, the "limit" [N] at which it slips and
         the "force" [N]; of stops with a coefficient of restitution, the "deepest" [m or rad] since they were hit, of
-        `HingeStop` and `SliderStop` "low_deepest" and "high_deepest". Raises InputError for a connector without history, or of another model.
+        `HingeStop` and `SliderStop` "low_deepest" and "high_deepest". Raises InputError for a connector without
+        history, or of another model.
 
         Parameters
         ----------

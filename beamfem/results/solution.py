@@ -446,7 +446,7 @@ class Solution:
         >>> table = bf.Stop(beam.end, (0.0, -0.01), (0, 1), stiffness=1e8, friction=0.3)
         >>> held = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0, -1e4))], connectors=[table])
         >>> sorted(bf.solve_static(held).history(table))
-        ['dissipated', 'limit', 'slip']
+        ['dissipated', 'force', 'limit', 'slip']
         """
         from beamfem.results.reactions import history
 

@@ -293,7 +293,10 @@ def _read(file: Any, selected: slice) -> Solution:
             raise InputError(f"its {name} has {len(data)} rows that were never written")
     sizes = {name: (model.size,) if name != "at" else () for name in STATES}
     if any(len(file[name]) < rows or file[name].shape[1:] != size for name, size in sizes.items()):
-        raise InputError(f"its arrays do not fit its model of {model.size} coordinates and its {rows} rows")
+        raise InputError(
+            f"its arrays do not fit its model of {model.size} coordinates and its {rows} rows: it is damaged, or of a "
+            "version of beamfem whose parts have other history variables; compute it again"
+        )
     chosen = range(rows)[selected]
     if not chosen or chosen.step < 0:
         raise InputError(f"rows must select some of its {rows} rows in ascending order, got {selected}")

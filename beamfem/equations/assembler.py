@@ -174,8 +174,10 @@ class Assembler:
 
         With ca = 0 there are no inertia forces unless `moving` or beams are damped and cv is not 0, with cv = ca = 0
         no damping forces either. dt [s]: time step since the committed history.
+        The geometric part of the tangent uses the stresses of the state from now on.
         """
         own = self.record
+        own.predicted = 0
         own.weight_p, own.weight_v, own.weight_a = coefficients
         own.since_committed, own.rated = dt, moving or own.weight_a != 0.0 or own.weight_v != 0.0
         own.moving = moving or own.weight_a != 0.0 or (self._damped and own.rated)

@@ -121,10 +121,12 @@ def peer(kind: str, elements: int, chain: Chain) -> "Peer":
     return exudyn_models.chain(kind, elements, chain, 0.1)
 
 
-def swing(model: bf.Model, steps: int, duration: float = 1.0) -> bf.Solution:
-    """March with the trapezoidal rule and keep every tenth of a second, as the peer does."""
-    step, rule = duration / steps, bf.GeneralizedAlpha(1.0)
-    return bf.simulate(model, duration=duration, step=step, integrator=rule, save_every=round(0.1 / step))
+def swing(
+    model: bf.Model, steps: int, duration: float = 1.0, method: bf.Integrator | bf.Scheme | None = None
+) -> bf.Solution:
+    """March, by the trapezoidal rule unless told otherwise, and keep every tenth of a second, as the peer does."""
+    step, method = duration / steps, method or bf.GeneralizedAlpha(1.0)
+    return bf.simulate(model, duration=duration, step=step, integrator=method, save_every=round(0.1 / step))
 
 
 def tips_of(solution: bf.Solution) -> np.ndarray:

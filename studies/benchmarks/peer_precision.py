@@ -1,8 +1,9 @@
 """Work and precision: error against CPU time over meshes and step sizes together, beamfem and Exudyn.
 
 The error of the pendulum at one instant passes through zero for some pairs of mesh and step, where that of the mesh
-and that of the steps cancel; so a run is judged by the largest error of the tip over ten instants, 0.1 to 1 s. Exudyn
-marches by its trapezoidal rule; its explicit methods, which have a limit of their own, are in `integrators`.
+and that of the steps cancel; so a run is judged by the largest error of the tip over ten instants, 0.1 to 1 s, against
+the exact solution. beamfem marches by the trapezoidal rule and by methods of stages, Exudyn by the trapezoidal rule;
+its explicit methods, which have a limit of their own, are in `integrators`.
 """
 
 from collections.abc import Callable, Iterable
@@ -43,16 +44,21 @@ PEER_STATIC_MESHES = {TWO_NODES: (8, 16, 32, 64, 128, 256, 512), THREE_NODES: (4
 MOTION_MESHES = (
     (STRUCTURAL, (12, 24, 48, 96)),
     (bf.CRBF(2), (6, 8, 10, 12, 14, 16, 24, 32, 48)),
-    (bf.CRBF(3), (4, 5, 6, 8, 10, 12, 16)),
-    (bf.CRBF(4), (3, 4, 6, 8, 12)),
+    (bf.CRBF(3), (4, 5, 6, 8, 10, 12, 16, 24, 32)),
+    (bf.CRBF(4), (3, 4, 6, 8, 12, 16, 20)),
 )
-PEER_MOTION_MESHES = {TWO_NODES: (12, 24, 48, 96), THREE_NODES: (6, 8, 10, 12, 14, 16, 24, 32, 48)}
-STEPS = (50, 70, 100, 140, 200, 280, 400, 560, 800, 1120, 1600, 2240, 3200, 4480)
+PEER_MOTION_MESHES = {TWO_NODES: (12, 24, 48, 96), THREE_NODES: (6, 8, 10, 12, 14, 16, 24, 32, 48, 96)}
+STEPS = (50, 70, 100, 140, 200, 280, 400, 560, 800, 1120, 1600, 2240, 3200, 4480, 6400, 9000)
+TRAPEZOIDAL = bf.GeneralizedAlpha(1.0)
+WITH_STAGES = {bf.Radau(3): (50, 70, 100, 140, 200, 280), bf.Radau(5): (50, 70, 100), bf.Gauss(3): (100, 140, 200)}
 
 
 @dataclass(frozen=True)
 class Run:
-    """One run: name of the element, mesh, steps, CPU time [ms], largest error and that at the end [m], and the task."""
+    """One run: name of the element, mesh, steps, CPU time [ms], largest error and that at the end [m], and the task.
+
+    method: of the steps, if it is not the trapezoidal rule.
+    """
 
     peer: bool
     name: str
@@ -63,6 +69,7 @@ class Run:
     last_error: float
     element: bf.Element | None
     task: Callable[[], object]
+    method: str = ""
 
 
 def static_runs() -> list[Run]:
@@ -103,9 +110,12 @@ def motion_runs(steps: Iterable[int] = STEPS) -> list[Run]:
         name = "beamfem, bilinear" if element is STRUCTURAL else f"beamfem, order {element.field.degree}"
         for count in meshes:
             model = pendulum(element, count)
-            for number in steps:
-                errors = motion_errors(tips_of(swing(model, number)), REISSNER_TIPS)
-                runs.append(_timed(name, count, number, errors, partial(swing, model, number), element))
+            for method, numbers in ({TRAPEZOIDAL: steps} | WITH_STAGES).items():
+                for number in numbers:
+                    task = partial(swing, model, number, method=method)
+                    errors = motion_errors(tips_of(task()), REISSNER_TIPS)
+                    of = "" if method is TRAPEZOIDAL else f" of {method}"
+                    runs.append(_timed(name, count, number, errors, task, element, of))
     for kind, meshes in PEER_MOTION_MESHES.items():
         for count in meshes:
             other = peer(kind, count, PENDULUM)
@@ -125,8 +135,9 @@ def _timed(
     errors: tuple[float, float],
     task: Callable[[], object],
     element: bf.Element | None = None,
+    method: str = "",
 ) -> Run:
-    return Run(element is None, name, elements, steps, once(task), *errors, element, task)
+    return Run(element is None, name, elements, steps, once(task), *errors, element, task, method)
 
 
 def envelope(runs: Iterable[Run]) -> tuple[np.ndarray, np.ndarray]:
@@ -154,7 +165,7 @@ def equal_accuracy(case: str, runs: list[Run], error: float, goal: float, at_end
     left = mine.element, mine.elements, timings[0], errors[0]
     name = f"{theirs.name.removeprefix('Exudyn, ')}, {theirs.steps} steps"
     return row(
-        f"{case}{f', {mine.steps} steps' if mine.steps > 1 else ''}",
+        f"{case}{f', {mine.steps} steps{mine.method}' if mine.steps > 1 else ''}",
         left,
         (name, theirs.elements, timings[1], errors[1]),
         goal,

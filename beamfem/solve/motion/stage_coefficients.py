@@ -38,7 +38,8 @@ class Coefficients:
 
     of_p, of_v (s, s): weights of p'' of the stages in their p and p', A^2 and A of a Runge-Kutta method; of_begin
     (s, 2): those of p'' at the beginning, if that is a stage besides; at_end (3, s): in p and p' at the end, and
-    polynomial through the stages there; ahead (s, s + 1): that through
+    polynomial through the stages there; to_end (s, k): the least change of p'' at the stages for one of p and p' at the
+    end, of p alone with one stage, k = 0 where the beginning is a stage; ahead (s, s + 1): the polynomial through
     the stages, and the end of the step if it is no stage, at the stages of the next step; values: eigenvalues of A, the
     real ones first and one of each complex pair; into, back (s, s): the stages as parts of its eigenvectors and the
     inverse, see `kernels.stage_record`; error: factor and power, see there; samples: times of the stages and of the end
@@ -50,6 +51,7 @@ class Coefficients:
     of_v: np.ndarray
     of_begin: np.ndarray
     at_end: np.ndarray
+    to_end: np.ndarray
     samples: np.ndarray
     points: np.ndarray
     ahead: np.ndarray
@@ -75,21 +77,24 @@ class Coefficients:
     def moved(self, system: System, begin: float, end: float, step: float) -> np.ndarray:
         """Return prescribed changes u and their rates (samples, 3, nh) in a step [s] between two times [s].
 
-        They are those of the polynomial through the `points`, whose u'' the method integrates without error. Values of
-        conditions, as of a motor, are at the stages what the method itself makes of u'': with u there, accelerations
-        would be those of lower order that u as a sum over the stages asks for.
+        They are those of the polynomial through the `points`, whose u'' the method integrates without error. But u is
+        at the stages what the method itself makes of u'', or of what is next to it and leads to u and u' at the end of
+        the step: what is stiff follows u at the stages, and would end beside it.
         """
         points, stages = self.points, slice(len(self.nodes))
         changes = system.prescribed_course(begin + (end - begin) * points)
         fitted = np.linalg.solve(chebyshev.chebvander(2.0 * points - 1.0, len(points) - 1), changes)
-        at = 2.0 * np.append(self.samples, 0.0) - 1.0
+        at = 2.0 * np.array([*self.samples, 0.0, 1.0]) - 1.0
         rates = [chebyshev.chebder(fitted, order, scl=2.0 / step) if order else fitted for order in range(3)]
         result = np.array([chebyshev.chebval(at, each).T for each in rates])
-        result, start = result[:, :-1], result[:, -1]
-        own = system.prescribed_dofs >= system.model.coordinates
-        if own.any() and not self.explicit:
-            course = start[0] + step * self.nodes[:, None] * start[1]
-            course += step**2 * (self.of_p @ result[2, stages] + self.of_begin[:, :1] * start[2])
+        result, first, last = result[:, :-2], result[:, -2], result[:, -1]
+        if not self.explicit:
+            accelerations, count = result[2, stages], self.to_end.shape[1]
+            means = np.array([(last[0] - first[0]) / step**2 - first[1] / step, (last[1] - first[1]) / step])[:count]
+            accelerations = accelerations + self.to_end @ (means - self.at_end[:count] @ accelerations)
+            course = first[0] + step * self.nodes[:, None] * first[1]
+            course += step**2 * (self.of_p @ accelerations + self.of_begin[:, :1] * first[2])
+            own = (count > 0) | (system.prescribed_dofs >= system.model.coordinates)
             result[0, stages, own] = course[:, own].T
         return result.swapaxes(0, 1)
 
@@ -106,7 +111,8 @@ def coefficients(method: Staged) -> Coefficients:
     nodes, s, weights = a.sum(axis=1)[inner:], method.stages, _weights(method, a)
     of_p, of_v = (each[inner:, inner:] for each in (a @ a, a))
     of_begin = np.stack([each[inner:, 0] for each in (a @ a, a)], axis=1) if inner else np.zeros((s, 2))
-    at_end = np.linalg.solve(np.vander(nodes, increasing=True).T, np.ones(s))
+    there = np.linalg.solve(np.vander(nodes, increasing=True).T, np.ones(s))
+    at_end = np.array([(weights @ a)[inner:], weights[inner:], there])
     known = nodes if nodes[-1] == 1.0 else np.append(nodes, 1.0)
     ahead = np.zeros((s, s + 1))
     wanted = np.vander(1.0 + nodes, len(known), increasing=True)
@@ -124,7 +130,7 @@ def coefficients(method: Staged) -> Coefficients:
     )
     power = (method.order + 2) / (len(known) + 2)  # of p', by which errors of iterations are judged too
     return Coefficients(
-        nodes, of_p, of_v, of_begin, np.array([(weights @ a)[inner:], weights[inner:], at_end]), known, points,
+        nodes, of_p, of_v, of_begin, at_end, np.linalg.pinv(at_end[: 0 if inner else min(s, 2)]), known, points,
         ahead, np.append(values[real].real, values[pairs]), np.array(into), np.ascontiguousarray(np.array(back).T),
         (abs(integrated) / first**power, power),
     )  # fmt: skip
@@ -159,6 +165,6 @@ def _explicit(method: Explicit, points: np.ndarray) -> Coefficients:
         of_p, at_end, samples = 0.5 * of_v, np.array([[0.5, 0.0], [0.5, 0.5], [0.0, 1.0]]), nodes
     none, square = np.zeros(0), np.zeros_like(of_v)
     return Coefficients(
-        nodes, of_p, of_v, np.zeros((len(nodes), 2)), at_end, samples, points,
+        nodes, of_p, of_v, np.zeros((len(nodes), 2)), at_end, np.zeros((len(nodes), 0)), samples, points,
         np.zeros((len(nodes), len(nodes) + 1)), none, square, square, (0.0, 1.0), explicit=True,
     )  # fmt: skip

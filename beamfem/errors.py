@@ -133,7 +133,7 @@ class EnergyWarning(UserWarning):
 
 
 class TimeStepWarning(UserWarning):
-    """The step of a motion changes the frequencies that carry its energy by more than their damping allows."""
+    """Steps change frequencies that carry the energy of a motion, or leave forces in its rows that are not its own."""
 
 
 class LongRunWarning(UserWarning):

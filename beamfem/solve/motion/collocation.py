@@ -13,8 +13,9 @@ from beamfem.validation import number_below
 class Gauss:
     """Gauss collocation with s stages: order 2 s, without numerical damping, symmetric in time.
 
-    One stage is the implicit midpoint rule. Accelerations at the ends of steps are those of the equations there. Raises
-    InputError for another number of stages.
+    One stage is the implicit midpoint rule. Accelerations at the ends of steps are those of the equations there, which
+    strain what is stiff: steps that do not resolve its vibrations give wrong forces (TimeStepWarning), unlike those of
+    `Radau`. Raises InputError for another number of stages.
 
     Parameters
     ----------

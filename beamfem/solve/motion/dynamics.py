@@ -39,6 +39,7 @@ from beamfem.solve.motion.saved_rows import SavedRows
 from beamfem.solve.motion.start_acceleration import initial_acceleration
 from beamfem.solve.motion.time_marching import Last, Record, cutter_of, march
 from beamfem.solve.motion.time_steps import SIDE
+from beamfem.solve.motion.undamped_rows import undamped_rows
 from beamfem.solve.start.functions_of_time import name_unresolved
 from beamfem.solve.start.start_state import last_state, start_state, transferred_turns
 from beamfem.validation import flag, positive
@@ -135,6 +136,8 @@ def simulate(
     -----
     LongRunWarning
         If Ctrl-C has ended the motion.
+    TimeStepWarning
+        If steps detune a resonance, or if rows have forces of vibrations that they do not resolve.
     RoundOffWarning
         If round-off of a very stiff part changes the energy.
     LockingWarning
@@ -239,7 +242,8 @@ def simulate(
         raise InputError("the motion has ended before the first time of save_at")
     if tolerance is not None:
         return warned(solution)
-    return warned_motion(solution.with_statistics(warnings=detuned(solution, system, acting)))
+    doubts = (*detuned(solution, system, acting), *undamped_rows(solution, system))
+    return warned_motion(solution.with_statistics(warnings=doubts))
 
 
 def _collected(

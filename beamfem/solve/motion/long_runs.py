@@ -37,6 +37,7 @@ from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.saved_rows import SavedRows
 from beamfem.solve.motion.start_acceleration import initial_acceleration
 from beamfem.solve.motion.time_marching import Failure, Record, cutter_of
+from beamfem.solve.motion.undamped_rows import undamped_rows
 from beamfem.validation import flag, positive
 
 _STEPS = 1000  # of a section
@@ -252,7 +253,8 @@ def _run(file: MotionFile, plan: MotionPlan, checkpoint: Checkpoint, saved: Save
     solution = replace(_loaded(file), model=plan.system.model)  # functions of time in a file are known at rows only
     if plan.settings.tolerance is not None:
         return warned(solution)
-    solution = solution.with_statistics(warnings=detuned(solution, plan.system, plan.acting))
+    doubts = (*detuned(solution, plan.system, plan.acting), *undamped_rows(solution, plan.system))
+    solution = solution.with_statistics(warnings=doubts)
     if solution.statistics.warnings:
         file.commit(no_rows, solution.statistics, arrays)
     return warned_motion(solution)

@@ -1,0 +1,34 @@
+"""Forces in the rows of methods without damping, which solve the equations between the rows."""
+
+import numpy as np
+
+from beamfem.equations.system import System
+from beamfem.errors import TimeStepWarning, warn
+from beamfem.results.energy_balance import masses
+from beamfem.results.solution import Solution
+
+_OF_COLLOCATION = 3  # numbers of a rule, see `Statistics`
+_BEYOND = 10.0  # square of what is not explained by velocities, in sum over rows, over what is
+
+
+def undamped_rows(solution: Solution, system: System) -> tuple[str, ...]:
+    """Warn of accelerations in rows, by methods that damp nothing, that do not lead to their velocities.
+
+    What is stiff is in balance at the stages, and strained beside them by what steps do not resolve: the motion hardly
+    shows it, but forces in rows do. Return the sentence.
+    """
+    rule = solution.statistics.rule
+    if len(rule) != _OF_COLLOCATION or rule[2] > 0.0 or not 1.5 * rule[0] > np.diff(solution.at).max(initial=0.0) > 0.0:
+        return ()
+    change, steps = np.diff(solution.v, axis=0), np.diff(solution.at)[:, None]
+    beside = change - 0.5 * steps * (solution.a[1:] + solution.a[:-1])
+    excess, explained = (float((np.square(each) @ system.table(masses)).sum()) for each in (beside, change))
+    if not excess > _BEYOND * explained:
+        return ()
+    sentence = (
+        f"accelerations in the rows are some {np.sqrt(excess / explained):.2g} times those that change the velocities: "
+        "forces there are those of vibrations that the steps do not resolve, and that Gauss does not damp. Use Radau, "
+        "or smaller steps"
+    )
+    warn(sentence, TimeStepWarning)
+    return (sentence,)

@@ -1,6 +1,7 @@
 """Gauss, Radau and Bathe's methods: their orders, what they keep, and stiff motions at steps without resolution."""
 
 import itertools
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -284,14 +285,15 @@ def test_vibrations_decay_as_by_the_recursion_of_bathe():
     [(bf.Midpoint(), 4e-3, True), (bf.Gauss(2), 4e-3, True), (bf.Gauss(3), 1e-3, False), (bf.Radau(2), 4e-3, False)],
     ids=repr,
 )
-def test_forces_of_vibrations_that_gauss_does_not_damp_are_named(method, step, warns, recwarn, tmp_path):
+def test_forces_of_vibrations_that_gauss_does_not_damp_are_named(method, step, warns, tmp_path):
     """A falling steel bar pulls its pin with 77 N; rows of the midpoint rule had 4.8 kN in silence."""
     bar = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(2), bf.Rectangle(0.02, 0.02), bf.Material(2e11, 0.3, 7800.0))
     model = bf.Model([bar], [bf.Pin(bar.start)], [bf.Gravity((0.0, -9.81))])
     for file in (None, tmp_path / "motion.h5"):
-        recwarn.clear()
-        motion = bf.simulate(model, 0.6, step, method, file=file)
-        named = [str(each.message) for each in recwarn if each.category is bf.TimeStepWarning]
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            motion = bf.simulate(model, 0.6, step, method, file=file)
+        named = [str(each.message) for each in caught if each.category is bf.TimeStepWarning]
         assert [sentence.endswith("Use Radau, or smaller steps") for sentence in named] == [True] * warns
         assert motion.statistics.warnings == tuple(named)
         weight = 7800.0 * 4e-4 * 9.81

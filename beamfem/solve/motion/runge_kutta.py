@@ -9,7 +9,8 @@ class Bathe:
     """Bathe's method: the trapezoidal rule over half the step, then the backward difference formula of second order.
 
     v1 = v0 + h / 4 (a0 + a1), v2 = (4 v1 - v0) / 3 + h / 3 a2, and the same for positions; also known as TR-BDF2. It is
-    L-stable, of order 2, and damps what a step does not resolve.
+    L-stable, of order 2, and damps what a step does not resolve. Forces of stiff parts on a support that moves are of
+    order 1.
 
     References
     ----------

@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from slow_values import mostly_slow
 
 import beamfem as bf
@@ -210,3 +211,36 @@ def test_gauss_collocation_meets_conditions_and_keeps_its_order():
     errors = [np.abs(each - found[2]).max() for each in found[:2]]
     assert errors[0] < 2e-4
     assert errors[1] < errors[0] / 12
+
+
+def rigid_bar(start, end):
+    """A bar of 1 kg and 1 m: a light beam whose ends are welded together, with a rigid body."""
+    light = bf.Section.from_stiffness(axial=1e6, shear=1e6, bending=1e6, mass=1e-9, rotary_inertia=1e-12)
+    beam = bf.Beam(bf.Line(start, end), 1, bf.CRBF(1), light)
+    middle = 0.5 * (end[0] - start[0]), 0.5 * (end[1] - start[1])
+    return beam, bf.Weld(beam.start, beam.end), bf.RigidBody(beam.start, 1.0, 1.0 / 12.0, middle)
+
+
+@pytest.mark.parametrize("method", [bf.GeneralizedAlpha(), bf.GeneralizedAlpha(1.0), bf.Gauss(2)], ids=repr)
+def test_closed_loops_of_rigid_bars_start_and_swing_as_their_equation(method):
+    """Two cranks that carry a bar, from a velocity along x: (2/3 + 1) t'' = -2 g cos t after an impulse of 40 %.
+
+    Gaps of conditions were solved for in the order of the multipliers, not of the equations: angles were off by up to
+    1.5 rad, and energies by 980 J, at times in silence.
+    """
+    parts = [rigid_bar(*ends) for ends in (((0, 0), (0, 1)), ((1, 0), (1, 1)), ((0, 1), (1, 1)))]
+    (left, right, bar), welds, bodies = zip(*parts, strict=True)
+    joints = [bf.Hinge(left.end, bar.start), bf.Hinge(right.end, bar.end)]
+    supports = [bf.Pin(left.start), bf.Pin(right.start)]
+    model = bf.Model([left, right, bar], supports, [bf.Gravity((0.0, -9.81))], joints, welds, masses=bodies)
+    with pytest.warns(bf.EnergyWarning, match=r"take 40\.00% of the kinetic energy"):
+        motion = bf.simulate(model, 0.7, 1e-3, method, velocity=lambda x: (x[1], 0.0))
+
+    def turning(_, state):
+        return state[1], -2.0 * 9.81 * np.cos(state[0]) / (5.0 / 3.0)
+
+    exact = solve_ivp(turning, (0.0, 0.71), (0.5 * np.pi, -0.6), rtol=1e-11, atol=1e-12, t_eval=motion.time).y[0]
+    np.testing.assert_allclose(motion.rotation(left.start) + 0.5 * np.pi, exact, atol=2e-6)
+    np.testing.assert_allclose(motion.acceleration(left.end)[0], (0.0, -0.36), atol=1e-6)
+    np.testing.assert_allclose(np.abs(motion.joint_force(joints[0])[0, :2]), (0.0, 0.5 * (9.81 - 0.36)), atol=1e-6)
+    assert np.ptp(motion.energy().total) < 1e-4

@@ -95,7 +95,7 @@ def onto_conditions(system: System, state: np.ndarray, time: float) -> None:
     and Petzold 1991).
     """
     zeros, multipliers = np.zeros(state.shape[1]), system.connectors.multipliers
-    numbers, right = multipliers - system.model.coordinates, np.zeros(len(system.free_dofs))
+    numbers, right = _conditions(system), np.zeros(len(system.free_dofs))
     for _ in range(_CORRECTIONS):
         gaps = system.connectors.conditions(state[0], zeros, time)[0][numbers]
         if np.abs(gaps).max() <= _GAP * system.extent:
@@ -150,9 +150,13 @@ def _change_of_rates(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray
 
 
 def _rates(system: System, p: np.ndarray, v: np.ndarray, time: float) -> np.ndarray:
-    """Return the rates G p' + dg/dt (k,) of the conditions whose multipliers are unknowns."""
-    rates = system.connectors.conditions(p, v, time)[1]
-    return rates[system.connectors.multipliers - system.model.coordinates]
+    """Return the rates G p' + dg/dt (k,) of the conditions whose multipliers are unknowns, in the equations' order."""
+    return system.connectors.conditions(p, v, time)[1][_conditions(system)]
+
+
+def _conditions(system: System) -> np.ndarray:
+    """Return the numbers (k,) of the conditions whose multipliers are unknowns, in the order of the last equations."""
+    return system.free_dofs[-len(system.connectors.multipliers) :] - system.model.coordinates
 
 
 def impact(system: System, p: np.ndarray, change: np.ndarray) -> np.ndarray:

@@ -247,6 +247,7 @@ def test_steps_do_not_crawl_up_to_where_a_soft_beam_turns_back_on_a_stop(toleran
 INTEGRATORS = [bf.Bathe(), bf.Radau(2), bf.Radau(3), bf.Gauss(1), bf.Gauss(2), bf.Gauss(3)]
 
 
+@pytest.mark.filterwarnings("ignore:accelerations in the rows:beamfem.TimeStepWarning")
 @pytest.mark.parametrize("how", [{}, {"damping": 0.2}, {"restitution": 0.5}], ids=["elastic", "damped", "lossy"])
 @pytest.mark.parametrize("step", [1e-3, 2e-4])
 @pytest.mark.parametrize("integrator", INTEGRATORS, ids=repr)

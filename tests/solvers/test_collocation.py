@@ -188,6 +188,7 @@ def test_gauss_is_symmetric_in_time_and_keeps_the_energy_of_a_soft_pendulum():
     np.testing.assert_allclose(back.position(arm.end)[-1], motion.position(arm.end)[0], atol=1e-7)
 
 
+@pytest.mark.filterwarnings("ignore:accelerations in the rows:beamfem.TimeStepWarning")
 def test_gauss_refuses_steps_that_gain_energy_where_they_do_not_resolve_vibrations():
     """A step that converges to another solution has 1e7 times the energy of the fall."""
     square, steel = bf.Rectangle(0.01, 0.01), bf.Material(2.1e11, 0.3, 7850.0)

@@ -82,6 +82,7 @@ def test_static_solutions_modes_and_paths_are_those_of_shared_coordinates(seed):
         np.testing.assert_allclose(conditioned, plain, rtol=2e-7, atol=1e-9)
 
 
+@pytest.mark.filterwarnings("ignore:linearised stability predicts")
 @mostly_slow("seed", SEEDS, quick=(0, 3, 5))
 def test_buckling_loads_are_those_of_shared_coordinates(seed):
     found = []

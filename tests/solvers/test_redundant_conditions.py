@@ -24,6 +24,7 @@ def square(links, least_norm=False):
     return model, bars, tips
 
 
+@pytest.mark.filterwarnings("ignore:accelerations in the rows:beamfem.TimeStepWarning")
 def test_a_square_with_both_diagonals_moves_as_with_one_and_has_no_self_stress():
     """Statics, path, modes, buckling and motions; self-stress is the null vector of the tensions on the corners."""
     (one, bars, tips), (both, every, corners) = square(5), square(6, least_norm=True)

@@ -390,9 +390,9 @@ def sizes(system: System, p: np.ndarray) -> tuple[float, float]:
 
 
 def _positions_and_others(system: System) -> tuple[np.ndarray, np.ndarray]:
-    """Return the numbers of the coordinates that are positions, and of the others but for history variables."""
+    """Return the numbers of the coordinates that are positions, and of the others, without multipliers and history."""
     others = ~system.positions
-    others[system.history.numbers] = False
+    others[system.history.numbers] = others[system.connectors.every_multiplier] = False
     return np.flatnonzero(system.positions), np.flatnonzero(others)
 
 

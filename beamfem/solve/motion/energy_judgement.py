@@ -18,6 +18,7 @@ from beamfem.solve.motion.consistent_rows import on_conditions
 CHUNK = 8  # steps that are judged together
 _UNRESOLVED = 0.005  # (w h)^6 of vibrations times their share of the kinetic energy; below, energies are not evaluated
 _GROWN = 5.0  # times the largest kinetic energy so far, from a chunk to the next: it may not be by work
+_ALTERNATING, _UNDAMPED = 1e-6, 0.95  # the same of conditions, and the spectral radius from which on
 _SMOOTH = 1e-6  # as _UNRESOLVED, of motions that grow smoothly from rest
 _SHARE = 0.01  # of the energy exchanged: what steps may change it by in all
 _SHARE_MOVED = 0.1  # the same where supports move, of methods whose work rows do not give
@@ -61,6 +62,9 @@ class EnergyJudge:
         self._moving = [item.dof for item in system.prescribed if callable(item.value)]
         self._share = _SHARE_MOVED if self._moving and not self._by_means else share
         self._abrupt = bool(system.kinked)  # contacts may begin and end within a chunk
+        # rates of conditions alternate, and their alternation grows, where hardly anything damps it
+        alternates = self._radius > _UNDAMPED and len(system.connectors.multipliers) > 0
+        self._unresolved = _ALTERNATING if alternates else _UNRESOLVED
         self._speed = self._speed_evaluated = 0.0
         self._drift = self._total = 0.0
         self._parts = list[tuple[float, float]]()  # extreme kinetic, strain and potential energies so far
@@ -120,7 +124,7 @@ class EnergyJudge:
                 change = np.maximum(change, np.square(jump) @ self._masses)
             fastest = np.maximum.accumulate(np.append(self._speed, speeds))
             grown = (speeds > _GROWN * fastest[:-1]) & (fastest[:-1] > 0.0) & (change > _SMOOTH * speeds)
-            doubtful |= ~(change <= _UNRESOLVED * fastest[1:]) | grown
+            doubtful |= ~(change <= self._unresolved * fastest[1:]) | grown
         good = steps
         if doubtful.any():
             chunks = [chunk for chunk, judged in zip(pairwise(bounds.tolist()), doubtful, strict=True) if judged]

@@ -323,6 +323,10 @@ class System:
         """Natural units of the coordinates, and what supports hold."""
         return Coordinates(np.where(self.positions, self.extent, 1.0), self.prescribed_dofs, self.inclined)
 
+    def forget_digits(self) -> None:
+        """Forget what earlier solves have found of lost digits, on which further ones must not depend."""
+        self.proven.difference_update((Proven.LOSES_DIGITS, Proven.KEEPS_DIGITS))
+
     def finished(self, states: np.ndarray, times: Sequence[float]) -> np.ndarray:
         """Return states p (m, n) with multipliers of least norm where conditions are redundant.
 

@@ -478,7 +478,7 @@ class Solution:
         """Generalized forces of all supports and springs (steps, n) [N, N m]."""
         from beamfem.results.reactions import support_forces
 
-        return support_forces(self)
+        return _read_only(support_forces(self))
 
     @cached_property
     def remainders(self) -> np.ndarray:
@@ -488,7 +488,7 @@ class Solution:
         """
         from beamfem.results.solution_system import remainders
 
-        return remainders(self)
+        return _read_only(remainders(self))
 
     def section_forces(self, beam: Beam) -> "SectionForces":
         """Return normal and shear force [N] and moment [N m] along a beam. Raises InputError for another beam."""
@@ -879,3 +879,9 @@ class Solution:
         from beamfem.view.summary import solution_table
 
         return solution_table(self)
+
+
+def _read_only(values: np.ndarray) -> np.ndarray:
+    """Return values that are kept, which nobody is to change."""
+    values.setflags(write=False)
+    return values

@@ -122,6 +122,7 @@ def _state(model: Model, about: State | Solution | None) -> tuple[System, State]
             raise InputError("conditions that depend on time are linearised about a state at rest only, this one moves")
         return system, given
     system = system_of(model, static=True)
+    system.forget_digits()
     p, load_factor = resting_state(system, about)
     require_equilibrium(system, p, load_factor, "linearise")
     zeros = np.zeros_like(p)

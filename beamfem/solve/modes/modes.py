@@ -411,6 +411,7 @@ def _errors(modes: Modes, finer: Modes) -> np.ndarray:
 def _modes(model: Model, count: int, about: State | Solution | None) -> tuple[Modes, Sequence[Finding]]:
     """Return the modes, and warnings of them."""
     system = system_of(model, static=True)
+    system.forget_digits()
     p, load_factor = resting_state(system, about)
     unknown = len(system.free_dofs)
     if count > unknown:

@@ -312,6 +312,7 @@ def _traced(
     newton: Newton,
 ) -> Path:
     system = system_of(model, static=True)
+    system.forget_digits()
     refuse_memory(system, "trace_equilibrium")
     if nothing_acts(system):
         require_support(system)

@@ -300,6 +300,7 @@ def _shapes(buckling: Buckling) -> Iterator[tuple[State, np.ndarray]]:
 def _buckling(model: Model, count: int, about: State | Solution | None) -> _Judged:
     """Return the critical points, and warnings of them."""
     system = system_of(model, static=True)
+    system.forget_digits()
     refuse_memory(system, "solve_buckling")
     require_support(system)
     require_independent(system, system.reference)

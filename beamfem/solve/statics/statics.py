@@ -199,6 +199,7 @@ def solve_through(
     one_of("snap", snap, ("error", "jump"))
     one_of("unstable", unstable, ("keep", "leave"))
     system = system_of(model, static=True)
+    system.forget_digits()
     if unstable == "leave":
         refuse_memory(system, 'unstable="leave"')
         snap = "jump"

@@ -16,7 +16,7 @@ from beamfem.results.energy_balance import unseen
 from beamfem.results.solution_checks import advice
 from beamfem.solve.motion.compiled_steps import CompiledSteps, StepsInCalls
 from beamfem.solve.motion.constraints import stopped_by_conditions
-from beamfem.solve.motion.energy_judgement import CHUNK, EnergyJudge, motion_of
+from beamfem.solve.motion.energy_judgement import CHUNK, MOST_CUTS, EnergyJudge, motion_of
 from beamfem.solve.motion.energy_momentum import ConservingSteps, EnergyMomentum
 from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.generalized_alpha import Scheme, is_scheme
@@ -30,7 +30,6 @@ from beamfem.solve.motion.time_steps import PARTS, Stretch
 from beamfem.solve.start.mechanisms import beside_dead_point
 
 _CHUNK_SECONDS = 0.25  # of a call of compiled code, which the next call is made to last at least
-_MOST = 8  # cuts of a step, to 1 / 65536
 _REFUSED = "changes the energy by more than work and damping explain"
 
 
@@ -201,7 +200,7 @@ class StepCutter:
         done = motion.advance(state, prescribed[which], loads_at, saving)
         if motion.broken:
             return done, None
-        final = level == _MOST
+        final = level == MOST_CUTS
         good = done if done == count or final else max(done - CHUNK, 0)
         last, self.why = min(good + 2 * CHUNK, count), f"did not converge: {motion.why}"
         if self.judge is not None and good > 0:

@@ -14,8 +14,10 @@ from beamfem.results.energy_balance import balance, driven, masses
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics
 from beamfem.solve.motion.consistent_rows import on_conditions
+from beamfem.solve.motion.time_steps import PARTS
 
 CHUNK = 8  # steps that are judged together
+MOST_CUTS = 8  # of a step, to 1 / 65536
 _UNRESOLVED = 0.005  # (w h)^6 of vibrations times their share of the kinetic energy; below, energies are not evaluated
 _GROWN = 5.0  # times the largest kinetic energy so far, from a chunk to the next: it may not be by work
 _ALTERNATING, _UNDAMPED = 1e-6, 0.95  # the same of conditions, and the spectral radius from which on
@@ -53,7 +55,7 @@ class EnergyJudge:
         implicit: bool = True,
     ) -> None:
         self._system, self._masses, self._radius = system, system.table(masses), radius_at_infinity(rule)
-        self._duration = end
+        self._duration, self._shortest = end, float(rule[0]) / PARTS**MOST_CUTS
         self._damps = self._radius < 1.0 - 1e-6
         self._forgets = self._radius ** (2 * CHUNK) < _FORGOTTEN  # the end of a chunk tells nothing of its beginning
         self._first = self._fastest = np.zeros(1), start[None].copy()  # times (1,) [s] and states (1, 3, n)
@@ -94,6 +96,14 @@ class EnergyJudge:
     def conservative(self) -> bool:
         """Whether energies need no work of loads and supports, which is by the reactions at the ends of steps."""
         return not (driven(self._solution(*self._first)) or self._system.damped or self._system.history.laws)
+
+    @cached_property
+    def _unavoidable(self) -> float:
+        """Kinetic energy [J] by the first accelerations within the shortest step, which no cut avoids.
+
+        It matters where these are the round-off of stiff parts with hardly any mass, such as massless rods.
+        """
+        return 0.5 * float(np.square(self._shortest * self._first[1][0, 2]) @ self._masses)
 
     def accept(self, times: np.ndarray, states: np.ndarray, cut: bool, failed: bool, final: bool) -> int:
         """Return how many steps between states (m + 1, 3, n) at times (m + 1,) [s] are good.
@@ -155,7 +165,8 @@ class EnergyJudge:
             table = np.array([*energies, found.rise, found.loss, found.time, doubt, found.unsure])
             place = {row: number for number, row in enumerate(rows, len(before))}
             for first, last in group:
-                if not self._passes(table[:, place[first] : place[last] + 1].tolist(), float(table[-1, 0]), final):
+                unsure = float(table[-1, 0]) + self._unavoidable
+                if not self._passes(table[:, place[first] : place[last] + 1].tolist(), unsure, final):
                     return first
         return len(times) - 1
 

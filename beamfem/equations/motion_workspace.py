@@ -62,6 +62,7 @@ class MotionWorkspace:
             }
         )
         room["inverse_scale"][free] = 1.0 / system.scale[free]
+        room["inverse_scale"][system.connectors.multipliers] = 0.0  # round-off of accelerations grows in short steps
         self.residual, self.stages = room.pop("residual"), dict[object, Stages]()
         if first >= 0:  # unknowns in a row are solved for where the residual is
             room["right"] = self.residual[first : first + unknown]

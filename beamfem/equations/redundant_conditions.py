@@ -10,8 +10,6 @@ from beamfem.linalg.lapack import qr, solve_triangular, svd
 from beamfem.model.contribution import is_one_sided
 
 _DEPENDENT = 1e-10  # of a condition of unit size: its part that is independent of all others
-_NEARLY = 1e-3  # smallest singular value of unit gradients beside a dead point
-_INVOLVED = 0.1  # of a unit combination of conditions
 _SHARE = 1e-6  # of another condition in one that depends on it
 _MET = 1e-8  # of the size of the model: gap of a condition that is left out
 
@@ -78,19 +76,6 @@ def dependent_on_others(given: Gradients) -> tuple[np.ndarray, list[Connector]]:
         involved += order[:rank][shares > _SHARE].tolist()
     parts = {id(given.owners[number]) for number in involved}
     return given.numbers[order[rank:]], list({id(item): item for item in given.owners if id(item) in parts}.values())
-
-
-def nearly_dependent(given: Gradients) -> list[Connector]:
-    """Return the parts whose conditions nearly depend on each other, none if all are independent."""
-    rows = given.rows[given.rows.any(axis=1)][:, given.rows.any(axis=0)]
-    if not rows.size:
-        return []
-    combinations, values, _ = svd(rows, full_matrices=len(rows) > rows.shape[1])
-    if len(values) == len(rows) and values[-1] > _NEARLY:
-        return []
-    owners = [owner for owner, row in zip(given.owners, given.rows, strict=True) if row.any()]
-    involved = [owners[number] for number in np.flatnonzero(np.abs(combinations[:, -1]) > _INVOLVED)]
-    return list({id(item): item for item in involved}.values())
 
 
 def with_least_norm(connectors: Connectors, p: np.ndarray, given: Coordinates, extent: float) -> np.ndarray:

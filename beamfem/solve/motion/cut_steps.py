@@ -27,7 +27,6 @@ from beamfem.solve.motion.stage_coefficients import coefficients, has_stages
 from beamfem.solve.motion.start_acceleration import initial_acceleration, mean_acceleration
 from beamfem.solve.motion.stored_states import Saving
 from beamfem.solve.motion.time_steps import PARTS, Stretch
-from beamfem.solve.start.mechanisms import beside_dead_point
 
 _CHUNK_SECONDS = 0.25  # of a call of compiled code, which the next call is made to last at least
 _REFUSED = "changes the energy by more than work and damping explain"
@@ -143,8 +142,7 @@ class StepCutter:
                     if good < count and window is None:
                         second, at = self.system.model.unit("s"), float(part.times[done])
                         self.why += f", also with steps of {part.step:.3g} {second} from {at:.6g} {second} on"
-                        last = rows.states[good, 0]
-                        self.why += advice(self.system.model, last) + beside_dead_point(self.system, last)
+                        self.why += advice(self.system.model, rows.states[good, 0])
                         return done
                     if level == 0:
                         size = self._next_size(size, count, clock.perf_counter() - started, window)

@@ -18,7 +18,6 @@ from beamfem.solve.motion.stage_coefficients import Implicit, coefficients, is_e
 from beamfem.solve.motion.start_acceleration import initial_acceleration
 from beamfem.solve.motion.time_marching import Failure, Record
 from beamfem.solve.motion.time_steps import Stretch
-from beamfem.solve.start.mechanisms import beside_dead_point
 
 _SAFETY = 0.8  # of the step that would have the error allowed
 _SAME = 1.25  # times the step, up to which it is kept, with its tangent
@@ -32,7 +31,6 @@ _TO_KINK = 8  # steps of the first call, and of that after a kink: what follows 
 _REDONE = 8  # times at most that steps up to a kink end at an earlier one, where these show that it is
 _LONGEST = 64  # steps of equal size, at the end of which the error is judged
 _SHORTEST = 1e-12  # of the motion: a step that fails however short it is
-_FIRST = 1e-8  # square of what the first step moves the model by, at least: multipliers of shorter ones are round-off
 
 
 @dataclass
@@ -192,8 +190,7 @@ def _march_pairs(
                 saved.keep(times, rows)
                 motion.raise_error()
                 if own.failed:
-                    doubts = advice(system.model, state[0]) + beside_dead_point(system, state[0])
-                    why = f"does not converge, however short it is{doubts}"
+                    why = f"does not converge, however short it is{advice(system.model, state[0])}"
                     return Failure(own.time, own.time + own.step, why)
                 report(own.time)
                 record.show(own.time, state[:3])
@@ -207,9 +204,9 @@ def _first_step(cutter: StepCutter, state: np.ndarray, tolerance: float) -> floa
     """Return a step [s] in which accelerations, and velocities, move the model by little."""
     scale, unknown = cutter.system.scale, cutter.system.free_dofs
     moved, pushed = (float(np.max(np.abs(row / scale)[unknown], initial=0.0)) for row in state[1:3])
-    bounds, size = [0.01 * cutter.end], np.sqrt(max(tolerance, _FIRST))
-    bounds += [np.sqrt(size / pushed)] if pushed > 0.0 else []
-    bounds += [size / moved] if moved > 0.0 else []
+    bounds = [0.01 * cutter.end]
+    bounds += [np.sqrt(np.sqrt(tolerance) / pushed)] if pushed > 0.0 else []
+    bounds += [np.sqrt(tolerance) / moved] if moved > 0.0 else []
     return float(min(bounds))
 
 

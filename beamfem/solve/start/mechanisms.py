@@ -10,7 +10,7 @@ from scipy.sparse.linalg import ArpackError, eigsh
 
 from beamfem.equations.bound_connector import Connector
 from beamfem.equations.connector_traits import lets_go
-from beamfem.equations.redundant_conditions import dependent_on_others, gradients_of, nearly_dependent
+from beamfem.equations.redundant_conditions import dependent_on_others, gradients_of
 from beamfem.equations.redundant_conditions import in_words as in_words_of
 from beamfem.equations.rigid_velocity import RigidVelocity, set_rigid_rates
 from beamfem.equations.system import System, system_of
@@ -267,17 +267,6 @@ def require_independent(system: System, p: np.ndarray) -> None:
         raise InputError(dependent(system, p))
     if reference:
         system.tables[_INDEPENDENT] = True
-
-
-def beside_dead_point(system: System, p: np.ndarray) -> str:
-    """Return "; ..." if conditions of connectors nearly depend on each other in a state p (n,), else nothing."""
-    found = nearly_dependent(gradients_of(system.connectors, p, system.held))
-    if not found:
-        return ""
-    return (
-        f"; conditions of connectors ({in_words_of(found)}) nearly depend on each other there, as in a dead point, "
-        "from which a mechanism may go on in several ways; other steps, of a fixed size, may pass it"
-    )
 
 
 def _redundant(system: System, p: np.ndarray) -> tuple[np.ndarray, list[Connector]]:

@@ -242,9 +242,12 @@ def on_a_belt(angle):
 
 @pytest.mark.parametrize("angle", [0.6, 1.0])
 def test_slip_on_a_belt_does_not_depend_on_its_direction(angle):
-    """In the short steps before slip and after it, round-off of multipliers was taken for divergence."""
+    """In the short steps before slip and after it, round-off of multipliers was taken for divergence.
+
+    Slip between the ends of steps was interpolated: rows there were off by 0.7 mm.
+    """
     found, time = on_a_belt(angle)
-    assert found == pytest.approx(on_a_belt(0.0)[0], abs=2e-5)
+    assert found == pytest.approx(on_a_belt(0.0)[0], abs=5e-6)
     centre = FRICTION * 2.0 * GRAVITY / 300.0  # until the belt is as slow; it sticks for less than 0.1 ms before
     slip = centre + (0.15 - centre) * np.cos(np.sqrt(150.0) * time)
-    assert found[:2] == pytest.approx(slip[:2], abs=1e-4)
+    assert found[:2] == pytest.approx(slip[:2], abs=1e-5)

@@ -29,17 +29,21 @@ def balanced(system: System, times: np.ndarray, states: np.ndarray, time: float,
     """Return p, p', p'' (3, n) at a time [s] within a step, as `between` does, in balance.
 
     The error of interpolation strains what is stiff, such as rods along their axes. (K + M / t^2) dp = -r with a time t
-    that is a part of the step takes it out: p'' + dp / t^2 is in balance, and what is slow hardly changes.
+    that is a part of the step takes it out: p'' + dp / t^2 is in balance, and what is slow hardly changes. History is
+    that of a step from the beginning to this time.
     """
     p, v, a = between(system, times, states, np.array([time]), smooth)[0]
     end = int(np.clip(np.searchsorted(times, time), 1, len(times) - 1))
     inertia, free = 1.0 / (_PART * (times[end] - times[end - 1])) ** 2, system.free_dofs
-    unbalanced, tangent = linearise(system, p, v, a, time, (1.0, 0.0, float(inertia)))
+    elapsed, numbers = time - float(times[end - 1]), system.history.numbers
+    p[numbers] = states[end - 1, 0, numbers]
+    unbalanced, tangent = linearise(system, p, v, a, time, (1.0, 0.0, float(inertia)), dt=elapsed)
     change = np.zeros(len(p))
     change[free] = tangent.solve(-unbalanced[free], system.rotated)
     p = p + change
     change[system.connectors.multipliers] = 0.0
-    return np.array([p, v, a + inertia * change])
+    a = a + inertia * change
+    return np.array([system.history.committed((p, v, a), time, elapsed), v, a])
 
 
 def _places(times: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

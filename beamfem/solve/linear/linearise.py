@@ -36,9 +36,10 @@ def linearise(model: Model, about: State | Solution | None = None, loads: Sequen
     geometric stiffness, dampers, and for a moving state gyroscopic terms. Prescribed coordinates are eliminated, as are
     those that constraints with multipliers and inclined rollers determine, p = T z; K includes the curvature of the
     constraints times their multipliers. About a moving state, T changes with time: C includes 2 T^T M T' and K includes
-    T^T (C T' + M T''), so that C, K and modes are those of the `coordinates` that are independent. Beams with default elements are refined until the 10 lowest frequencies about a state at rest
-    are accurate to 1e-4. Raises InputError for an invalid argument, a state that is not in equilibrium, redundant
-    conditions, and a load at a point that is no node.
+    T^T (C T' + M T''), so that C, K and modes are those of the `coordinates` that are independent. Beams with default
+    elements are refined until the 10 lowest frequencies about a state at rest are accurate to 1e-4. Raises InputError
+    for an invalid argument, a state that is not in equilibrium, redundant conditions, and a load at a point that is no
+    node.
 
     Parameters
     ----------

@@ -114,6 +114,6 @@ def written(tmp_path):
 @pytest.fixture
 def uncut_steps(monkeypatch):
     """Take steps as they are, however much energy they gain, and do not redo those that fail."""
-    monkeypatch.setattr("beamfem.solve.motion.cut_steps._MOST", 0)
+    monkeypatch.setattr("beamfem.solve.motion.cut_steps.MOST_CUTS", 0)
     accept = "beamfem.solve.motion.energy_judgement.EnergyJudge.accept"
     monkeypatch.setattr(accept, lambda judge, times, *rest: len(times) - 1)

@@ -25,25 +25,32 @@ def between(system: System, times: np.ndarray, states: np.ndarray, at: np.ndarra
     return result
 
 
-def balanced(system: System, times: np.ndarray, states: np.ndarray, time: float, smooth: bool = False) -> np.ndarray:
+def balanced(
+    system: System, times: np.ndarray, states: np.ndarray, time: float, smooth: bool = False, resolved: bool = False
+) -> np.ndarray:
     """Return p, p', p'' (3, n) at a time [s] within a step, as `between` does, in balance.
 
     The error of interpolation strains what is stiff, such as rods along their axes. (K + M / t^2) dp = -r with a time t
     that is a part of the step takes it out: p'' + dp / t^2 is in balance, and what is slow hardly changes. History is
-    that of a step from the beginning to this time.
+    that of a step from the beginning to this time, between those of both ends, if steps are resolved: as those that
+    follow a tolerance, and end at kinks; else, as in a contact that lasts for less than a step, it is linear.
     """
     p, v, a = between(system, times, states, np.array([time]), smooth)[0]
     end = int(np.clip(np.searchsorted(times, time), 1, len(times) - 1))
     inertia, free = 1.0 / (_PART * (times[end] - times[end - 1])) ** 2, system.free_dofs
     elapsed, numbers = time - float(times[end - 1]), system.history.numbers
-    p[numbers] = states[end - 1, 0, numbers]
+    if resolved:
+        p[numbers] = states[end - 1, 0, numbers]
     unbalanced, tangent = linearise(system, p, v, a, time, (1.0, 0.0, float(inertia)), dt=elapsed)
     change = np.zeros(len(p))
     change[free] = tangent.solve(-unbalanced[free], system.rotated)
     p = p + change
     change[system.connectors.multipliers] = 0.0
     a = a + inertia * change
-    return np.array([system.history.committed((p, v, a), time, elapsed), v, a])
+    if resolved:
+        ends, committed = states[end - 1 : end + 1, 0, numbers], system.history.committed((p, v, a), time, elapsed)
+        p[numbers] = np.clip(committed[numbers], ends.min(axis=0), ends.max(axis=0))
+    return np.array([p, v, a])
 
 
 def _places(times: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

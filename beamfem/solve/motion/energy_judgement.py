@@ -20,7 +20,7 @@ CHUNK = 8  # steps that are judged together
 MOST_CUTS = 8  # of a step, to 1 / 65536
 _UNRESOLVED = 0.005  # (w h)^6 of vibrations times their share of the kinetic energy; below, energies are not evaluated
 _GROWN = 5.0  # times the largest kinetic energy so far, from a chunk to the next: it may not be by work
-_ALTERNATING, _UNDAMPED = 1e-6, 0.95  # the same of conditions, and the spectral radius from which on
+_ALTERNATING, _UNDAMPED = 1e-4, 0.95  # the same of conditions, and the spectral radius from which on
 _SMOOTH = 1e-6  # as _UNRESOLVED, of motions that grow smoothly from rest
 _SHARE = 0.01  # of the energy exchanged: what steps may change it by in all
 _SHARE_MOVED = 0.1  # the same where supports move, of methods whose work rows do not give
@@ -65,7 +65,7 @@ class EnergyJudge:
         self._share = _SHARE_MOVED if self._moving and not self._by_means else share
         self._abrupt = bool(system.kinked)  # contacts may begin and end within a chunk
         # rates of conditions alternate, and their alternation grows, where hardly anything damps it
-        alternates = self._radius > _UNDAMPED and len(system.connectors.multipliers) > 0
+        alternates = implicit and self._radius > _UNDAMPED and len(system.connectors.multipliers) > 0
         self._unresolved = _ALTERNATING if alternates else _UNRESOLVED
         self._speed = self._speed_evaluated = 0.0
         self._drift = self._total = 0.0

@@ -59,12 +59,13 @@ class Event:
 class Watch:
     """Looks for events in steps; found: names and times [s]; values (k,): of functions at the last time [s] looked at.
 
-    smooth: see `dense_output.between`.
+    smooth, resolved: see `dense_output`.
     """
 
     system: System
     events: Sequence[Event]
     smooth: bool = False
+    resolved: bool = False
     found: list[tuple[str, float]] = field(default_factory=list)
     time: float = 0.0
     values: list[float] = field(default_factory=list)
@@ -111,7 +112,7 @@ class Watch:
         return begin + step * float(brentq(value, 0.0, 1.0, xtol=_CLOSE))
 
     def _at(self, time: float, times: np.ndarray, states: np.ndarray) -> MotionState:
-        return self._state(time, balanced(self.system, times, states, time, self.smooth))
+        return self._state(time, balanced(self.system, times, states, time, self.smooth, self.resolved))
 
     def _state(self, time: float, state: np.ndarray) -> MotionState:
         p, v, a = state[:3].copy()

@@ -76,9 +76,9 @@ class MotionPlan:
     def saved_rows(self) -> SavedRows:
         """Return what collects the rows."""
         settings, pairs = self.settings, self.system.model.numbered.rotation_pairs
-        smooth = not is_scheme(settings.integrator)
-        watch = Watch(self.system, settings.events, smooth)
-        return SavedRows(self.system, pairs, self.wanted, self.jumps, watch, smooth)
+        smooth, resolved = not is_scheme(settings.integrator), settings.tolerance is not None
+        watch = Watch(self.system, settings.events, smooth, resolved)
+        return SavedRows(self.system, pairs, self.wanted, self.jumps, watch, smooth, resolved)
 
     def live_view(self) -> Callable[[float, np.ndarray], None]:
         """Return what shows states (3, n) at times [s] while the motion runs, if it is to be watched."""

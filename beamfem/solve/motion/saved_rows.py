@@ -18,8 +18,8 @@ from beamfem.solve.motion.events import Watch
 class SavedRows:
     """Times, states (3, n), rotations (m,) [rad] and exchanged energies (2,) [J] of the rows so far, and events.
 
-    at (k,) [s]: times of rows, ascending, None for a row at the end of every step; jumps: see `finished_rows`; smooth:
-    see `between`; stopped: whether an event has stopped the motion.
+    at (k,) [s]: times of rows, ascending, None for a row at the end of every step; jumps: see `finished_rows`; smooth,
+    resolved: see `dense_output`; stopped: whether an event has stopped the motion.
     """
 
     system: System
@@ -28,6 +28,7 @@ class SavedRows:
     jumps: Collection[float]
     watch: Watch
     smooth: bool = False
+    resolved: bool = False
     times: list[float] = field(default_factory=list)
     states: list[np.ndarray] = field(default_factory=list)
     rotations: list[np.ndarray] = field(default_factory=list)
@@ -97,7 +98,7 @@ class SavedRows:
             before, exact = max(end - 1, 0), times[end] == time
             state = rows.states[end].copy()
             if not exact:
-                state = balanced(self.system, times, rows.states, time, self.smooth)
+                state = balanced(self.system, times, rows.states, time, self.smooth, self.resolved)
             turned = rows.rotations[before].copy()
             count_rotations(len(self.pairs), self.pairs, rows.states[before], state, turned)
             self.times.append(time)

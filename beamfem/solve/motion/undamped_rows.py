@@ -2,12 +2,14 @@
 
 import numpy as np
 
+from beamfem.equations.equations import ROUND_OFF, sizes
 from beamfem.equations.system import System
 from beamfem.errors import TimeStepWarning, warn
 from beamfem.results.energy_balance import masses
 from beamfem.results.solution import Solution
 
 _OF_COLLOCATION = 3  # numbers of a rule, see `Statistics`
+_ROUND_OFF = 1e4 * ROUND_OFF  # of forces, which undamped vibrations add up over many steps
 _BEYOND = 100.0  # square of what is not explained by velocities, in sum over rows, over what is
 
 
@@ -23,8 +25,11 @@ def undamped_rows(solution: Solution, system: System) -> tuple[str, ...]:
     v, a, at = solution.v[1:], solution.a[1:], solution.at[1:]  # a sudden start accelerates vibrations by itself
     change = np.diff(v, axis=0)
     beside = change - 0.5 * np.diff(at)[:, None] * (a[1:] + a[:-1])
-    excess, explained = (float((np.square(each) @ system.table(masses)).sum()) for each in (beside, change))
-    if not excess > _BEYOND * explained:
+    mass = system.table(masses)
+    excess, explained = (float((np.square(each) @ mass).sum()) for each in (beside, change))
+    errors = np.array(sizes(system, np.abs(solution.p).max(axis=0))) @ system.residual_errors
+    impulses = _ROUND_OFF * rule[0] * np.sqrt(len(change)) * errors[mass > 0.0]
+    if not excess > _BEYOND * max(explained, float(np.sum(impulses**2 / mass[mass > 0.0]))):
         return ()
     sentence = (
         f"accelerations in the rows are some {np.sqrt(excess / explained):.2g} times those that change the velocities: "

@@ -10,6 +10,7 @@ from beamfem.results.solution import Solution
 
 _OF_COLLOCATION = 3  # numbers of a rule, see `Statistics`
 _ROUND_OFF = 1e4 * ROUND_OFF  # of forces, which undamped vibrations add up over many steps
+_ROWS = 10_000  # at most, from the end: vibrations that nothing damps are there as well
 _BEYOND = 100.0  # square of what is not explained by velocities, in sum over rows, over what is
 
 
@@ -22,17 +23,19 @@ def undamped_rows(solution: Solution, system: System) -> tuple[str, ...]:
     rule = solution.statistics.rule
     if len(rule) != _OF_COLLOCATION or rule[2] > 0.0 or not 1.5 * rule[0] > np.diff(solution.at).max(initial=0.0) > 0.0:
         return ()
-    v, a, at = solution.v[1:], solution.a[1:], solution.at[1:]  # a sudden start accelerates vibrations by itself
+    last = slice(max(1, len(solution) - _ROWS), None)  # a sudden start accelerates vibrations by itself
+    v, a, at = solution.v[last], solution.a[last], solution.at[last]
     change = np.diff(v, axis=0)
     beside = change - 0.5 * np.diff(at)[:, None] * (a[1:] + a[:-1])
     mass = system.table(masses)
     excess, explained = (float((np.square(each) @ mass).sum()) for each in (beside, change))
     errors = np.array(sizes(system, np.abs(solution.p).max(axis=0))) @ system.residual_errors
     impulses = _ROUND_OFF * rule[0] * np.sqrt(len(change)) * errors[mass > 0.0]
-    if not excess > _BEYOND * max(explained, float(np.sum(impulses**2 / mass[mass > 0.0]))):
+    expected = max(explained, float(np.sum(impulses**2 / mass[mass > 0.0])))
+    if not excess > _BEYOND * expected:
         return ()
     sentence = (
-        f"accelerations in the rows are some {np.sqrt(excess / explained):.2g} times those that change the velocities: "
+        f"accelerations in the rows are some {np.sqrt(excess / expected):.2g} times those that change the velocities: "
         "forces there are those of vibrations that the steps do not resolve, and that Gauss does not damp. Use Radau, "
         "or smaller steps"
     )

@@ -133,6 +133,7 @@ def test_some_random_mechanisms(seed):
     compare(seed)
 
 
+@pytest.mark.filterwarnings("ignore:linearised stability predicts")
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(300))
 def test_random_mechanisms(seed):

@@ -10,7 +10,7 @@ from beamfem.results.solution_checks import advice
 from beamfem.solve.motion.cut_steps import Rows, StepCutter
 from beamfem.solve.motion.energy_judgement import CHUNK
 from beamfem.solve.motion.generalized_alpha import is_scheme
-from beamfem.solve.motion.kinks import AT_END, first_kink
+from beamfem.solve.motion.kinks import first_kink
 from beamfem.solve.motion.marching_doubled import DoubledSteps
 from beamfem.solve.motion.saved_rows import SavedRows
 from beamfem.solve.motion.stable_step import stable_step
@@ -173,8 +173,6 @@ def _march_pairs(
                 times, rows = motion.follow(until, state, rotations, max(int(min(room, most - taken)), 2))
                 room = min(2 * room, largest)
                 found = first_kink(system, times, rows.states) if kinks and redone < _REDONE else None
-                if found is not None and ahead and found[1] - float(times[0]) < AT_END * size:
-                    found = None  # it is where the steps begin: shorter ones would lose multipliers in round-off
                 if found is not None:
                     first, kink = found[0] // 2 * 2, found[1]  # the pair of steps is redone up to the kink
                     room, own.time, own.step = min(_TO_KINK, largest), float(times[first]), float(np.diff(times)[first])

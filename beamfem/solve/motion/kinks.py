@@ -7,7 +7,7 @@ from beamfem.equations.system import System
 from beamfem.solve.motion.dense_output import interpolated
 
 _SHARES = np.linspace(0.0, 1.0, 33)  # of a step, between which measures are straight enough
-AT_END = 1e-3  # of a step: a kink this close to one of its ends is there
+_AT_END = 1e-3  # of a step: a kink this close to one of its ends is there
 
 
 def first_kink(system: System, times: np.ndarray, states: np.ndarray) -> tuple[int, float] | None:
@@ -26,12 +26,12 @@ def first_kink(system: System, times: np.ndarray, states: np.ndarray) -> tuple[i
         middle = ((p0 + half * v0)[:, each.numbers], v0[:, each.numbers])
         changed[:, each.history] |= each.changes(*middle, past[:, each.history])
     begin, *others = (_measures(parts, p, v, past, changed) for p, v in rows)
-    for step in np.flatnonzero(np.any([_crossings(begin, other) >= AT_END for other in others], axis=(0, 2))).tolist():
+    for step in np.flatnonzero(np.any([_crossings(begin, other) >= _AT_END for other in others], axis=(0, 2))).tolist():
         at, same = times[step] + _SHARES * steps[step], np.zeros(len(_SHARES), dtype=int) + step
         p, v, _ = interpolated(times[step : step + 2], states[step : step + 2], at, smooth=True).swapaxes(0, 1)
         found = _measures(parts, p, v, past[same], changed[same])
         shares = _SHARES[:-1, None] + _SHARES[1] * _crossings(found[:-1], found[1:])
-        shares = shares[(shares > AT_END) & (shares < 1.0 - AT_END)]
+        shares = shares[(shares > _AT_END) & (shares < 1.0 - _AT_END)]
         if shares.size:
             return step, float(times[step] + shares.min() * steps[step])
     return None

@@ -36,8 +36,8 @@ def undamped_rows(solution: Solution, system: System) -> tuple[str, ...]:
         return ()
     sentence = (
         f"accelerations in the rows are some {np.sqrt(excess / expected):.2g} times those that change the velocities: "
-        "forces there are those of vibrations that the steps do not resolve, and that Gauss does not damp. Use Radau, "
-        "or smaller steps"
+        "forces there are those of vibrations that the steps do not resolve, and that the method does not damp. Use "
+        "Radau, or smaller steps"
     )
     warn(sentence, TimeStepWarning)
     return (sentence,)

@@ -237,7 +237,7 @@ def test_a_body_that_was_turned_vibrates_as_in_its_reference(pinned, slenderness
 
 @pytest.mark.parametrize("before", [bf.solve_modes, bf.solve_static], ids=["modes", "static"])
 def test_modes_do_not_depend_on_earlier_solves(before):
-    """A foil that carries a block: after another solve that had lost digits, frequencies were up to 2.5 times as high."""
+    """A foil that carries a block: after a solve that had lost digits, frequencies were up to 2.5 times as high."""
     thickness, steel = 1.77e-7, bf.Material(2.1e11, 0.3, 7850.0)
     foil = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(2), bf.Rectangle(0.01, thickness), steel)
     block = bf.Beam(bf.Line((1, 0), (1, 1)), 4, bf.ANCF(), bf.Rectangle(0.1, 0.1), steel)

@@ -35,22 +35,41 @@ def balanced(
     that of a step from the beginning to this time, between those of both ends, if steps are resolved: as those that
     follow a tolerance, and end at kinks; else, as in a contact that lasts for less than a step, it is linear.
     """
-    p, v, a = between(system, times, states, np.array([time]), smooth)[0]
     end = int(np.clip(np.searchsorted(times, time), 1, len(times) - 1))
-    inertia, free = 1.0 / (_PART * (times[end] - times[end - 1])) ** 2, system.free_dofs
-    elapsed, numbers = time - float(times[end - 1]), system.history.numbers
+    times, states = times[end - 1 : end + 1], states[end - 1 : end + 1]
+    step, elapsed = float(times[1] - times[0]), time - float(times[0])
+    if smooth:
+        states = _with_resolved_accelerations(system, step, states)
+    p, v, a = between(system, times, states, np.array([time]), smooth)[0]
+    inertia, free, numbers = 1.0 / (_PART * step) ** 2, system.free_dofs, system.history.numbers
     if resolved:
-        p[numbers] = states[end - 1, 0, numbers]
-    unbalanced, tangent = linearise(system, p, v, a, time, (1.0, 0.0, float(inertia)), dt=elapsed)
+        p[numbers] = states[0, 0, numbers]
+    unbalanced, tangent = linearise(system, p, v, a, time, (1.0, 0.0, inertia), dt=elapsed)
     change = np.zeros(len(p))
     change[free] = tangent.solve(-unbalanced[free], system.rotated)
     p = p + change
     change[system.connectors.multipliers] = 0.0
     a = a + inertia * change
     if resolved:
-        ends, committed = states[end - 1 : end + 1, 0, numbers], system.history.committed((p, v, a), time, elapsed)
+        ends, committed = states[:, 0, numbers], system.history.committed((p, v, a), time, elapsed)
         p[numbers] = np.clip(committed[numbers], ends.min(axis=0), ends.max(axis=0))
     return np.array([p, v, a])
+
+
+def _with_resolved_accelerations(system: System, step: float, ends: np.ndarray) -> np.ndarray:
+    """Return both ends (2, 3, n) of a step [s], with p'' of the cubic polynomial if their own do not lead to p'.
+
+    Methods that damp nothing leave p'' of stiff vibrations there, which their steps do not resolve.
+    """
+    (p, p_end), (v, v_end), a = ends.swapaxes(0, 1)
+    mean = 6.0 * (p_end - p) / step**2
+    cubic = np.array([mean - (4.0 * v + 2.0 * v_end) / step, (2.0 * v + 4.0 * v_end) / step - mean])
+    missed = np.linalg.norm((v_end - v - 0.5 * step * a.sum(axis=0)) / system.scale)
+    if missed <= step * np.linalg.norm(cubic / system.scale, axis=1).max():
+        return ends
+    result = ends.copy()
+    result[:, 2] = cubic
+    return result
 
 
 def _places(times: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
